@@ -40,7 +40,7 @@ def trained(updates: int, **values: object) -> ToyTraining:
 
 def slope(model: ToyTraining) -> float:
     """Return the mean squared slope of the discriminator at true futures, by its derivative."""
-    lesson = model._lesson(model.samples.batch(np.arange(len(model.samples))))
+    lesson = model._to_tensors(model.samples.batch(np.arange(len(model.samples))))
     future = lesson.future.clone().requires_grad_(True)
     said, _ = model.discriminator(lesson.observed, future)
     (steep,) = torch.autograd.grad(said.sum(), future)
@@ -49,7 +49,7 @@ def slope(model: ToyTraining) -> float:
 
 def test_noise_is_centred_and_made_larger() -> None:
     plain, centred = trained(0), trained(0, noise_gain=math.sqrt(12.0))
-    lesson = plain._lesson(plain.samples.batch(np.arange(3)))
+    lesson = plain._to_tensors(plain.samples.batch(np.arange(3)))
     noise = torch.full((1, 3, 1, plain.config.inputs), 0.75)
     there, _ = centred.generator(lesson.sight, noise, 2)
     same, _ = plain.generator(lesson.sight, 0.25 * math.sqrt(12.0) * torch.ones_like(noise), 2)
@@ -60,7 +60,7 @@ def test_noise_is_centred_and_made_larger() -> None:
 
 def test_codes_of_one_step_are_the_same_and_the_rest_of_the_noise_is_left() -> None:
     model = trained(0, code_levels=3, noise_gain=10.0)
-    lesson = model._lesson(model.samples.batch(np.arange(1)))
+    lesson = model._to_tensors(model.samples.batch(np.arange(1)))
 
     def drawn(code: float, rest: float = 0.5) -> torch.Tensor:
         noise = torch.full((1, 1, 1, model.config.inputs), rest)
@@ -76,7 +76,7 @@ def test_codes_of_one_step_are_the_same_and_the_rest_of_the_noise_is_left() -> N
 def test_the_penalty_is_the_squared_slope_and_makes_it_smaller() -> None:
     """The small step aside gives the derivative's square on average, and training with it keeps slopes low."""
     model = trained(0)
-    lesson = model._lesson(model.samples.batch(np.arange(len(model.samples))))
+    lesson = model._to_tensors(model.samples.batch(np.arange(len(model.samples))))
     rng, felt = stream(0, "aside"), []
     with torch.no_grad():
         here, _ = model.discriminator(lesson.observed, lesson.future)
@@ -99,10 +99,10 @@ def test_variety_grows_between_30_and_80_percent() -> None:
     model = trained(0, use_variety_loss=True, variety_weight=10.0, variety_growth=100.0)
     weights = [model._variety_weight(done) for done in (0.0, 0.3, 0.55, 0.8, 1.0)]
     assert weights == pytest.approx([10.0, 10.0, 100.0, 1000.0, 1000.0])
-    first, last = model._lesson(model.samples.batch(np.arange(4))), {}
+    first, last = model._to_tensors(model.samples.batch(np.arange(4))), {}
     for weight in (weights[0], weights[-1]):
         noise = model._noise(first, stream(1, "noise"), 20)
-        losses = model._generator_step(first, model._made(first, noise)[1], noise[0][first.scored][:, :2], weight)
+        losses = model._generator_step(first, model._draw(first, noise)[1], noise[0][first.scored][:, :2], weight)
         last[weight] = losses["variety"]
     assert 50.0 < last[weights[-1]] / last[weights[0]] < 150.0
 

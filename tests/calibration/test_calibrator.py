@@ -183,7 +183,7 @@ def test_a_prior_of_other_parameters_or_of_nobody_is_refused(past: Windows, tmp_
     prior = PopulationPrior.from_fits(each(5).fit(past))
     with pytest.raises(InputError, match="it is of strength, space, radius, and strength are calibrated"):
         Calibrator(Shy(), "absolute", "random-search", budget=5, free=("strength",), prior=prior).fit(past)
-    with pytest.raises(InputError, match="learned from fits of each person"):
+    with pytest.raises(InputError, match="the fits must have individual parameters"):
         PopulationPrior.from_fits(shared(5).fit(past))
     with pytest.raises(InputError, match="a population prior requires individual parameters"):
         shared(5, prior=prior)

@@ -48,7 +48,7 @@ def test_an_own_cost_passes(rule: Rule) -> None:
     ("rule", "message"),
     [
         (lambda tracks: last(tracks)[0], r"Own.measure returned shape .* it must be \[P, W, A\]"),
-        (lambda tracks: np.where(last(tracks) > 0.3, np.nan, last(tracks)), "must follow from the recording"),
+        (lambda tracks: np.where(last(tracks) > 0.3, np.nan, last(tracks)), "must depend on the recording only"),
         (lambda tracks: np.where(tracks.past.robot, 1.0, last(tracks)), "counts robots; their cost must be NaN"),
         (lambda tracks: last(tracks) * np.nan, "counts nobody"),
         (lambda tracks: last(tracks) - 0.2, "must be finite and at least 0"),

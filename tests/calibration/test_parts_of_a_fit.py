@@ -124,16 +124,16 @@ def test_who_comes_late_leaves_early_or_is_a_robot_moves_as_recorded(away: str) 
 
 
 def test_velocities_are_known_only_between_two_observed_rows() -> None:
-    from crowdbot.calibration.resimulation import _recorded
+    from crowdbot.calibration.resimulation import _recorded_tracks
 
     position = np.arange(8.0).reshape(1, 4, 1, 2) ** 2
     present = np.array([True, True, False, True]).reshape(1, 4, 1)
-    recorded = _recorded(made(position, present))
+    recorded = _recorded_tracks(made(position, present))
     np.testing.assert_array_equal(recorded.velocity[0, :, 0], [[8.0, 16.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
     assert recorded.last.tolist() == [[3]]
     assert recorded.changes
-    assert not _recorded(made(position)).changes
-    assert _recorded(made(position, robot=np.array([[True]]))).changes
+    assert not _recorded_tracks(made(position)).changes
+    assert _recorded_tracks(made(position, robot=np.array([[True]]))).changes
 
 
 def test_windows_with_and_without_people_are_predicted_together() -> None:
@@ -248,7 +248,7 @@ def test_a_shared_fit_tells_its_numbers() -> None:
     assert fit.model == Shy(strength=2.0)
     assert fit.shared_rollout.radius == 0.3
     np.testing.assert_array_equal(fit.values_of(straight(W=3)), np.broadcast_to([2.0, 0.3], (3, 2, 2)))
-    with pytest.raises(InputError, match="parameters of each person"):
+    with pytest.raises(InputError, match="individual parameters"):
         _ = fit_of(VALUES).shared_rollout
 
 
@@ -304,7 +304,7 @@ def test_a_prior_of_few_people_is_refused_and_of_enough_is_their_distribution() 
     three = np.array([[True, True, True], [False, False, False]])
     with pytest.raises(InputError, match="3 people are too few for 2 parameters, it needs at least 4"):
         PopulationPrior.from_fits(dataclasses.replace(fit, counted=three))
-    with pytest.raises(InputError, match="fits of each person"):
+    with pytest.raises(InputError, match="the fits must have individual parameters"):
         PopulationPrior.from_fits([])
 
 

@@ -190,7 +190,7 @@ def test_somebody_alone_has_no_distance_to_others() -> None:
 def test_wrong_weights_are_refused() -> None:
     with pytest.raises(InputError, match="1 costs and 2 weights; each cost needs one weight"):
         WeightedSum((Absolute(),), (1.0, 2.0))
-    with pytest.raises(InputError, match=r"weights \(0\.0,\) must be finite, not below 0 and not all 0"):
+    with pytest.raises(InputError, match=r"weights \(0\.0,\) must be finite, at least 0 and not all 0"):
         WeightedSum((Absolute(),), (0.0,))
 
 

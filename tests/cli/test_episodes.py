@@ -52,8 +52,8 @@ def test_repair(capsys, episode, tmp_path):
     cut.write_bytes(whole[: len(whole) // 2])
     assert main(["repair", str(cut), str(episode)]) == 0
     out = capsys.readouterr().out
-    assert "cut.mcap: has its end now, at " in out
-    assert "is whole, nothing to do" in out
+    assert "cut.mcap: repaired, ends at " in out
+    assert "complete, nothing to repair" in out
     assert episode.read_bytes() == whole
     assert _json(capsys, "replay", str(cut))["equal"] is True
 

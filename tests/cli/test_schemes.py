@@ -195,12 +195,12 @@ WRONG = {
     "an unknown search": (["--search", "genetics"], "did you mean 'genetic'"),
     "an unknown goal": (["--goal", "current-directions"], "did you mean 'current-direction'"),
     "an unknown parameter": (["--free", "radios"], "did you mean 'radius'"),
-    "a goal that learns from nothing": (["--goal", "learned-destinations"], "reserve the first part of the recording"),
-    "a layout without exits": (["--goal", "environment-layout"], "reserve the first part of the recording"),
+    "a goal that learns from nothing": (["--goal", "learned-destinations"], "reserve one with --learn"),
+    "a layout without exits": (["--goal", "environment-layout"], "reserve one with --learn"),
     "a prior that is no file": (["--prior", "nowhere.json"], "nowhere.json: cannot be read"),
-    "a share above one": (["--learn", "1.5"], "must be from 0 to below 1"),
-    "a track of one point": (["--observe", "1"], "a track of one point shows no motion"),
-    "the future while live": (["--goal", "ground-truth", "--live"], "which nobody knows while"),
+    "a share above one": (["--learn", "1.5"], "must be at least 0 and below 1"),
+    "a track of one point": (["--observe", "1"], "(3 with the progressive cost), not 1"),
+    "the future while live": (["--goal", "ground-truth", "--live"], "which is unknown in live prediction"),
     "a negative patience": (["--patience", "-1"], "patience = -1 evaluations must be at least 0"),
     "no worker": (["--workers", "0"], "workers = 0 must be at least 1"),
 }
@@ -231,7 +231,7 @@ def test_schemes_without_a_simulated_crowd_are_refused(capsys, street):
         assert main(["predict", "--data", street, "--predictor", "kalman", *words]) == 2
         assert "requires the predictor simulated, not kalman" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--predictor", "simulated", "--shared"]) == 2
-    assert "name a cost and a search" in capsys.readouterr().err
+    assert "set a cost or a search" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--animate", "3"]) == 2
     assert "--animate requires --out DIR" in capsys.readouterr().err
 
@@ -242,7 +242,7 @@ def test_somebody_alone_cannot_be_compared_with_others(capsys, tmp_path):
     save(Trajectories(0 * row, row, 0.4 * row, 0.0 * row, row_rate=2.5), file)
     words = ["calibrate", "--data", str(file), "--cost", "inter-pedestrian", "--search", "random-search"]
     assert main([*words, "--budget", "5"]) == 2
-    assert "and neighbors if the cost uses distances between people" in capsys.readouterr().err
+    assert "and others nearby if the cost uses distances between people" in capsys.readouterr().err
 
 
 def test_kept_parts_belong_to_the_content_of_the_file(capsys, street, tmp_path):

@@ -59,7 +59,7 @@ def test_weights_are_learned_resumed_and_scored(
     assert "warning: street.txt has 24 s; more than 3 minutes are recommended for training" in err
     assert "update 2" in err
     status, _, err = said([*words, "--updates", "4"], capsys)
-    assert (status, "holds a training already: go on with --resume" in err) == (2, True)
+    assert (status, "already contains a training: resume it with --resume" in err) == (2, True)
     status, out, _ = said([*words, "--updates", "4", "--resume", "--json"], capsys)
     done = json.loads(out)
     assert (status, done["updates"], done["left_out"]) == (0, 4, [walks[1]])
@@ -109,10 +109,10 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
     [
         (["sociel-ways"], "unknown learned predictor 'sociel-ways', did you mean 'social-ways'"),
         (["anchor-net", "--set", "hiden=3"], "has no attribute 'hiden'"),
-        (["anchor-net", "--device", "cuda"], "is asked for, but torch sees 0 CUDA devices"),
-        (["social-ways", "--device", "cuda:99"], "is asked for, but torch sees"),
+        (["anchor-net", "--device", "cuda"], "does not exist: torch finds 0 CUDA devices"),
+        (["social-ways", "--device", "cuda:99"], "does not exist: torch finds"),
         (["social-ways", "--updates", "1", "--epochs", "1"], "either updates or epochs"),
-        (["social-ways", "--leave-out", "nowhere"], "no recording is called 'nowhere'"),
+        (["social-ways", "--leave-out", "nowhere"], "no recording matches 'nowhere'"),
         (["social-ways", "--set", "hiden=3"], "has no attribute 'hiden', did you mean 'hidden'"),
         (["social-ways", "--settings", "vareity"], "unknown preset 'vareity', did you mean 'variety'"),
     ],

@@ -124,9 +124,9 @@ def test_ghosts_hide_nobody_and_are_not_hidden():
 
 
 def test_nobody_to_look_is_one_sentence():
-    with pytest.raises(DataError, match="occlusion: row has no robot to look from; set eye to a point"):
+    with pytest.raises(DataError, match="occlusion: row has no robot as a viewpoint; set eye to a point"):
         Occlusion().apply(_row())
-    with pytest.raises(DataError, match="row has the robots 2, 9; set eye to the id of the one that looks"):
+    with pytest.raises(DataError, match="row has the robots 2, 9; set eye to the id of one of them"):
         Occlusion().apply(_row(robots=frozenset([2, 9])))
     with pytest.raises(DataError, match="eye = 77, but row has no track of this id; ids go from 1 to 9"):
         Occlusion(eye=77).apply(_row())

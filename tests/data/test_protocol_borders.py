@@ -37,9 +37,9 @@ def test_partial_needs_two_future_rows():
 
 
 def test_sgan_needs_two_people_at_the_same_window():
-    with pytest.raises(DataError, match="no window has two people at all its rows"):
+    with pytest.raises(DataError, match="no window has two people who are present at all rows"):
         tracks_of(20).windows(8, 12, "sgan")
-    with pytest.raises(DataError, match="no window has two people at all its rows"):
+    with pytest.raises(DataError, match="no window has two people who are present at all rows"):
         tracks_of(20, 20, begins=[0, 1]).windows(8, 12, "sgan")
     past, future = tracks_of(21, 20, begins=[0, 1]).windows(8, 12, "sgan")
     assert (len(past), future.scored.sum()) == (1, 2)
@@ -58,7 +58,7 @@ def test_timesplit_takes_the_last_fifth_of_the_windows(windows, late):
     assert len(every) == windows
     assert tracks.windows(8, 12, "timesplit")[0].frame.tolist() == every[windows - late :].tolist()
     if windows == late:
-        with pytest.raises(DataError, match="its one window is the last fifth"):
+        with pytest.raises(DataError, match="it has a single window, which belongs to the last fifth"):
             tracks.windows(8, 12, "timesplit-train")
     else:
         assert tracks.windows(8, 12, "timesplit-train")[0].frame.tolist() == every[: windows - late].tolist()
@@ -84,7 +84,7 @@ def test_near_is_judged_at_the_last_observed_row_to_the_nearest_robot():
         only_later.windows(8, 12, near=8.0)
     assert only_later.windows(8, 12, near=8.02)[1].scored.sum() == 1
     apart = Trajectories([1] * 20 + [9], [*range(20), 30], [0.0] * 21, [0.0] * 21, row_rate=2.5, robots=frozenset({9}))
-    with pytest.raises(DataError, match="no robot is there at the time"):
+    with pytest.raises(DataError, match="no robot is present at these times"):
         apart.windows(8, 12, near=5.0)
 
 
@@ -129,6 +129,6 @@ def test_frames_without_people_are_stepped_over_except_by_timesplit():
     gap = Trajectories([1] * 20, [10 * k for k in rows], rows, [0.0] * 20, row_rate=2.5, frame_step=10)
     past, future = gap.windows(8, 12, "all")
     assert [*past.frame[0].tolist(), *future.frame[0].tolist()] == [10 * k for k in rows]
-    with pytest.raises(DataError, match=r"the longest of 1 tracks has 10 rows without a hole \(20 with holes\)"):
+    with pytest.raises(DataError, match=r"the longest of 1 tracks has 10 rows without gaps \(20 with gaps\)"):
         gap.windows(8, 12, "timesplit")
     assert len(gap.windows(4, 6, "timesplit")[0]) == 1

@@ -215,9 +215,9 @@ def test_only_people_near_a_robot_are_scored():
     assert tracks.windows(protocol="sgan", near=2.0)[1].scored.sum() == 1
     with pytest.raises(DataError, match=r"within 0\.5 m of a robot; the nearest is 1\.00 m away"):
         tracks.windows(near=0.5)
-    with pytest.raises(DataError, match="has no robot to be near to"):
+    with pytest.raises(DataError, match="has no robot, which near requires"):
         tracks.only(ids=[1, 2]).windows(near=2.0)
-    with pytest.raises(DataError, match="has only robots, there are no people to predict"):
+    with pytest.raises(DataError, match="contains only robots, no people to predict"):
         tracks.track(9).windows()
 
 
@@ -234,7 +234,7 @@ def test_a_gap_of_the_whole_file_is_stepped_over_except_by_timesplit():
     frame = [*range(0, 100, 10), *range(200, 300, 10)]
     tracks = Trajectories([1] * 20, frame, np.arange(20.0), np.zeros(20), row_rate=2.5)
     assert len(tracks.windows()[0]) == 1
-    with pytest.raises(DataError, match=r"longest of 1 tracks has 10 rows without a hole \(20 with holes\)"):
+    with pytest.raises(DataError, match=r"longest of 1 tracks has 10 rows without gaps \(20 with gaps\)"):
         tracks.windows(protocol="timesplit")
 
 
@@ -306,9 +306,9 @@ def test_why_no_window_was_found():
     )
     with pytest.raises(DataError, match="no window of 8 observed and at least 2 predicted rows"):
         tracks.windows(protocol="partial")
-    with pytest.raises(DataError, match="no window has two people at all its rows"):
+    with pytest.raises(DataError, match="no window has two people who are present at all rows"):
         tracks.windows(2, 2, protocol="sgan")
-    with pytest.raises(DataError, match="nothing is left for training"):
+    with pytest.raises(DataError, match="no window is left for training"):
         tracks.windows(3, 4, protocol="timesplit-train")
 
 

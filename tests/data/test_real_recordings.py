@@ -90,7 +90,7 @@ def test_lost_rows_are_dropped_and_labels_filter(recordings):
     walkers = tracks.only("Pedestrian")
     assert len(walkers.ids) == 56
     assert set(walkers.labels.values()) == {"Pedestrian"}
-    assert "42557 rows marked lost left out" in tracks.note
+    assert "42557 rows marked lost are excluded" in tracks.note
     with pytest.raises(DataError, match="no track labelled 'Pedestrians', did you mean 'Pedestrian'"):
         tracks.only("Pedestrians")
 
@@ -148,8 +148,8 @@ def test_trajnetpp_keeps_its_scenes(recordings):
 def test_juelich_units_rates_and_walls(recordings):
     assert abs(load(recordings / "juelich/bidirectional/bi_corr_400_b_03.txt").position).max() < 10.0
     hermes = load(recordings / "hermes/Corridor-1D/uo-080-240-240.txt")
-    assert "taken as cm" in hermes.note
-    assert "16 frames a second are assumed" in hermes.note
+    assert "interpreted as cm" in hermes.note
+    assert "16 Hz is assumed" in hermes.note
     assert hermes.time[-1] == pytest.approx(70.9, abs=0.05)
     given = load(recordings / "hermes/Corridor-1D/uo-080-240-240.txt", fps=25.0, units="m")
     assert given.dt == 0.04
@@ -163,7 +163,7 @@ def test_juelich_units_rates_and_walls(recordings):
 
 def test_hidden_futures_are_left_out_and_counted(recordings):
     tracks = load(recordings / "sdd_trajnet/Test/stanford/gates_2.txt")
-    assert "1860 rows with '?' left out" in tracks.note
+    assert "1860 rows with '?' are excluded" in tracks.note
     with pytest.raises(DataError, match="the longest of 155 tracks has 8 rows and 20 are needed"):
         tracks.windows()
 
@@ -182,5 +182,5 @@ def test_tables_of_other_projects(recordings):
 
 @pytest.mark.parametrize("path", ["eth_biwi/seq_eth/H.txt", "ucy/zara01/destinations.txt", "sdd/estimated_scales.yaml"])
 def test_files_beside_the_recordings_are_no_recordings(recordings, path):
-    with pytest.raises(DataError, match="of no known format"):
+    with pytest.raises(DataError, match="of an unknown format"):
         load(recordings / path)

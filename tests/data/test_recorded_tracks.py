@@ -73,7 +73,7 @@ def test_a_recording_without_people_or_robots_in_it(tmp_path):
             recording.odometry(k * 10**8, k, 0)
     tracks = load(tmp_path / "alone.mcap")
     assert (tracks.ids.tolist(), tracks.robots) == ([1], frozenset({1}))
-    with pytest.raises(DataError, match="has only robots, there are no people to predict"):
+    with pytest.raises(DataError, match="contains only robots, no people to predict"):
         tracks.windows(1, 1)
 
 
@@ -108,7 +108,7 @@ def test_a_damaged_recording_says_so(tmp_path_factory, spot, byte):
     ("what", "message"),
     [
         ("foreign", r"has no topic /people of people_msgs/msg/People; it has /robot/odom"),
-        ("once", "holds 1 messages on /people, at least 2 are needed"),
+        ("once", "has 1 messages on /people, at least 2 are required"),
         ("back", "the stamp of message 6 on /people is not later than the previous one"),
         ("uneven", "the stamps on /people are not regular, some steps are far shorter than 100 ms"),
         ("twice", "frame 0, id 4 is a duplicate"),

@@ -61,9 +61,9 @@ def first_time(tracks):
 def test_hidden_rows_and_lost_rows_are_dropped(files):
     hidden = load(files["gates_2.txt"])
     assert np.unique(hidden.id, return_counts=True)[1].tolist() == [SHORT] * PEOPLE
-    assert "rows with '?' left out" in hidden.note
+    assert "rows with '?' are excluded" in hidden.note
     boxes = load(files["annotations.txt"])
-    assert f"{PEOPLE} rows marked lost left out" in boxes.note
+    assert f"{PEOPLE} rows marked lost are excluded" in boxes.note
     assert sorted(set(boxes.labels.values())) == ["Biker", "Pedestrian"]
     assert len(boxes.only("Biker").ids) == 3
 
@@ -72,8 +72,8 @@ def test_units_of_petrack_come_from_the_header_or_the_size(files):
     metres, centimetres = load(files["petrack_m.txt"]), load(files["petrack_cm.txt"])
     assert np.abs(metres.position - centimetres.position).max() < 1e-4
     hermes = load(files["uo-050.txt"])
-    assert "taken as cm" in hermes.note
-    assert "16 frames a second are assumed" in hermes.note
+    assert "interpreted as cm" in hermes.note
+    assert "16 Hz is assumed" in hermes.note
     assert load(files["uo-050.txt"], units="m").x[0] == pytest.approx(100.0 * hermes.x[0])
 
 

@@ -166,7 +166,7 @@ def test_words_as_ids_are_numbered_and_said(tmp_path):
     path.write_text("id,frame,x,y\nbob,0,0,0\nada,0,1,1\nbob,10,0,1\n")
     tracks = load(path)
     assert tracks.id.tolist() == [1, 2, 1]
-    assert "ids are words: 'bob' became 1" in tracks.note
+    assert "ids are words; they are numbered in order of appearance, 'bob' is 1" in tracks.note
 
 
 def test_exchanged_columns_are_noticed(tmp_path):
@@ -175,7 +175,7 @@ def test_exchanged_columns_are_noticed(tmp_path):
     path.write_text("".join(f"{frame} {id} {x} {y}\n" for frame, id, x, y in rows))
     assert "exchanged" not in load(path).note
     path.write_text("".join(f"{id} {frame} {x} {y}\n" for frame, id, x, y in rows))
-    assert "id and frame look exchanged" in load(path, fps=2.5).note
+    assert "id and frame seem to be swapped" in load(path, fps=2.5).note
     right = load(path, format="petrack", fps=25, units="m")
     assert (len(right.ids), right.frame_step, right.dt) == (8, 10, 0.4)
 

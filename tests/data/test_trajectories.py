@@ -174,7 +174,7 @@ def test_resample_does_not_bridge_long_holes():
         tracks.resample(0.0)
     with pytest.raises(InputError, match=r"gap -1\.0 s must be above 0"):
         tracks.resample(0.1, gap=-1.0)
-    with pytest.raises(DataError, match="make more than 20000000 rows; take a longer step"):
+    with pytest.raises(DataError, match="give more than 20000000 rows; use a longer step"):
         tracks.resample(1e-9)
 
 

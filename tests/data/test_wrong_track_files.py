@@ -23,23 +23,23 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
     [
         ("empty.txt", "", "empty.txt is empty"),
         ("blank.txt", " \n\n", "blank.txt is empty"),
-        ("prose.txt", "Dear reader,\nhello\n", r"prose.txt is text and of no known format \(it begins with 'Dear"),
+        ("prose.txt", "Dear reader,\nhello\n", r"prose.txt is text and of an unknown format \(it starts with 'Dear"),
         ("nan.txt", "0 1 2 3\n10 1 nan 3\n", "nan.txt line 2: x is nan for frame 10, id 1; coordinates must be finite"),
         ("inf.txt", "# a\n\n0 1 2 3\n10 1 2 -inf\n", "inf.txt line 4: y is -inf for frame 10, id 1"),
         ("twice.txt", "0 1 2 3\n10 1 2 3\n10 1 4 5\n10 1 6 7\n", "line 3: frame 10, id 1 is a duplicate"),
         ("half.txt", "0 1.5 2 3\n", r"half.txt line 1: id is 1\.5, it must be a whole number"),
         ("step.txt", "0 1 2 3\n1 1 2 3\n", "step.txt has no frame rate, and a step of 1 frames is not a convention"),
         ("obsmat.txt", OBSMAT + "11 1 inf 0 1 0 0 0\n", "obsmat.txt line 2: x is inf"),
-        ("cut.vsp", VSP[:-30], "cut.vsp ends inside spline 1; the file is cut short"),
+        ("cut.vsp", VSP[:-30], "cut.vsp ends inside spline 1; the file is truncated"),
         ("few.vsp", VSP.replace("1 - the", "2 - the"), "ends before the number of control points of spline 2"),
         ("bad.vsp", VSP.replace("1 1 50", "1 1 x"), "bad.vsp line 4: '1 1 x 0' is not a control point"),
-        ("none.vsp", "1 - the number of splines\n0 - Num\n1 1 1 1\n", "holds no control point of any spline"),
+        ("none.vsp", "1 - the number of splines\n0 - Num\n1 1 1 1\n", "has no control points"),
         ("lost.sdd", SDD.replace("0 0 0 0 ", "0 1 0 0 "), "all of its 2 rows are marked lost"),
-        ("a.csv", "id,frame,x\n1,0,2\n", "a.csv lacks a column for y; it has id, frame, x; y may be called y, pos_y"),
+        ("a.csv", "id,frame,x\n1,0,2\n", "a.csv has no column for y; it has id, frame, x; y may be called y, pos_y"),
         (
             "b.csv",
             "a,b,c\n1,2,3\n",
-            "b.csv lacks a column for id, x, y, frame; it has a, b, c; id may be called id, agent",
+            "b.csv has no column for id, x, y, frame; it has a, b, c; id may be called id, agent",
         ),
         ("c.csv", "id,frame,x,y\n1,0,,3\n", "c.csv line 2: x is nan for frame 0, id 1"),
         ("d.csv", "id,frame,x,y\n1,0,1,3\n1,10,left,3\n", "d.csv line 3: x is 'left', it must be a number"),
@@ -53,16 +53,20 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
             "the time step is 1e.09; times must be in s",
         ),
         ("j.csv", "id,time,x,y\n1,0,1,3\n2,1,2,3\n", "no track has rows at two times, so its frame rate is unknown"),
-        ("k.csv", "id,frame,x,y\n,0,1,3\n", "k.csv line 2: id is empty, every row needs one"),
+        ("k.csv", "id,frame,x,y\n,0,1,3\n", "k.csv line 2: id is empty, but every row needs a value"),
         ("l.csv", "id,time,x,y\n1,,1,3\n", "l.csv line 2: its time is missing"),
         (
             "m.ndjson",
             '{"track": {"f": 0, "p": 1, "x": 1, "y": null}}\n',
             "m.ndjson line 1: y is null, it must be a number",
         ),
-        ("n.ndjson", '{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n{"track": {"f"', "line 2 is not JSON: .* cut short"),
+        (
+            "n.ndjson",
+            '{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n{"track": {"f"',
+            "line 2 is not JSON: .* truncated or damaged",
+        ),
         ("o.ndjson", '{"track": {"f": 0, "p": 1, "x": NaN, "y": 2}}\n', "o.ndjson line 1: x is nan"),
-        ("p.ndjson", '{"scene": {"id": 0, "p": 1, "s": 0, "e": 1}}\n', "p.ndjson holds 1 scenes and no row"),
+        ("p.ndjson", '{"scene": {"id": 0, "p": 1, "s": 0, "e": 1}}\n', "p.ndjson has 1 scenes but no row"),
         ("q.ndjson", '{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n[1]\n', "line 2 is neither a scene nor a track"),
         ("r.ndjson", '{"track": {"f": 0, "p": 1, "x": 1, "y": 2, "prediction_number": 0}}\n', "line 1 is a prediction"),
         (
@@ -78,7 +82,7 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         ("u.ndjson", '{"track": {"f": 1e300, "p": 1, "x": 1, "y": 2}}\n', r"f is 1e\+300, it must be a whole number"),
         ("v.txt", "# PeTrack\n# framerate: fast\n1 0 1 2 3\n", "has no frame rate"),
         ("w.txt", "# framerate: 2.5.1 fps\n1 0 1 2 3\n", r"w.txt: the header's frame rate '2\.5\.1' is not a number"),
-        ("x.txt", "# PeTrack\n# framerate: 25 fps\n", "of no known format"),
+        ("x.txt", "# PeTrack\n# framerate: 25 fps\n", "of an unknown format"),
         ("y.txt", "# framerate: 0 fps\n1 0 1 2 3\n1 1 1 2 3\n", r"fps 0\.0 is not allowed"),
     ],
 )
@@ -111,10 +115,10 @@ def test_missing_files_folders_and_rubbish(tmp_path):
         load("a\x00b.txt")
     rubbish = tmp_path / "rubbish.bin"
     rubbish.write_bytes(bytes(range(256)) * 40)
-    with pytest.raises(DataError, match="is binary and of no known format.*; formats are episode, parquet"):
+    with pytest.raises(DataError, match="is binary and of an unknown format.*; formats are episode, parquet"):
         load(rubbish)
     (tmp_path / "packed.zip").write_bytes(b"PK\x03\x04" + b"\x01" * 500)
-    with pytest.raises(DataError, match="is a zip and of no known format"):
+    with pytest.raises(DataError, match="is a zip and of an unknown format"):
         load(tmp_path / "packed.zip")
 
 
@@ -207,7 +211,7 @@ def test_an_odd_name_of_an_sqlite_file(recordings, tmp_path):
 def test_wrong_parquet(tmp_path):
     path = tmp_path / "wrong.parquet"
     pq.write_table(pa.table({"id": [1], "frame": [0], "x": [1.0]}), path)
-    with pytest.raises(DataError, match="lacks a column for y; it has id, frame, x"):
+    with pytest.raises(DataError, match="has no column for y; it has id, frame, x"):
         load(path)
     table = pa.table({"id": [1, 1], "frame": [0, 10], "x": [1.0, None], "y": [1.0, 2.0]})
     pq.write_table(table, path)

@@ -139,7 +139,7 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Train
     again = trained(material, how, 200, tmp_path).numbers()
     assert whole.keys() == again.keys()
     assert all(np.array_equal(whole[name], again[name]) for name in whole)
-    with pytest.raises(InputError, match="holds a training with other settings"):
+    with pytest.raises(InputError, match="contains a training with other settings"):
         trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
 
 
@@ -171,12 +171,12 @@ def test_what_the_command_line_says_is_read(recorded: Callable[[str], Trajectori
     with pytest.raises(InputError, match="unknown settings 'shiped', did you mean"):
         learner("shiped", {}, samples, samples, 0, "cpu")
     pixels = dataclasses.replace(samples, units="px")
-    with pytest.raises(InputError, match="anchor-net learns 8 [+] 12 rows of 0.4 s in metres, hotel is cut into"):
+    with pytest.raises(InputError, match="anchor-net requires 8 [+] 12 rows of 0.4 s in metres, hotel has"):
         learner(None, {}, pixels, samples, 0, "cpu")
 
 
 def test_what_cannot_be_learned_from_is_one_sentence(recorded: Callable[[str], Trajectories]) -> None:
-    with pytest.raises(InputError, match="there is no recording to learn from"):
+    with pytest.raises(InputError, match="there is no training recording"):
         training_set([])
     fast = recorded("biwi_hotel").resample(0.2)
     with pytest.raises(InputError, match="steps of 0.2 s in m; training requires 0.4 s and metres"):

@@ -252,7 +252,7 @@ def test_wrong_sweeps_are_one_sentence():
     tracks = _line(rows=20)
     with pytest.raises(InputError, match=r"GaussianNoise: sd = -0\.1"):
         next(sweep_degradations([tracks], [GaussianNoise()], [ConstantVelocity()], [-0.1]))
-    with pytest.raises(DataError, match="line has no robot to look from"):
+    with pytest.raises(DataError, match="line has no robot as a viewpoint"):
         next(sweep_degradations([tracks], [GaussianNoise(), Occlusion()], [ConstantVelocity()]))
     with pytest.raises(InputError, match="carry = -1"):
         DegradedTask(carry=-1)

@@ -130,13 +130,15 @@ def test_a_plan_that_ends_leaves_the_robot_standing(windows: Maker) -> None:
 
 def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
     future = windows(np.zeros((1, 3, 1, 2)))
-    with pytest.raises(InputError, match="GroundTruth looks at what people will do"):
+    with pytest.raises(InputError, match="GroundTruth requires the future"):
         Live(Simulated(goal=GroundTruth(future, future)), dt=0.4)
     with pytest.raises(InputError, match=r"dt = 0\.0 s must be finite and above 0"):
         Live(ConstantVelocity(), dt=0.0)
     with pytest.raises(InputError, match="observe = 0 rows must be at least 1"):
         Live(ConstantVelocity(), dt=0.4, observe=0)
-    with pytest.raises(InputError, match="live: 'anchor-net' is no predictor; give an object, such as crowdbot.Anchor"):
+    with pytest.raises(
+        InputError, match="live: 'anchor-net' is not a predictor; pass an instance, such as crowdbot.Anchor"
+    ):
         Live("anchor-net", dt=0.4)  # type: ignore[arg-type]
     live = Live(ConstantVelocity(), dt=0.4)
     with pytest.raises(InputError, match="no row yet"):
@@ -145,7 +147,7 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
         live.update([1, 2], [[0.0, 0.0]])
     with pytest.raises(InputError, match="position of 2 is not finite"):
         live.update([1, 2], [[0.0, 0.0], [np.nan, 0.0]])
-    with pytest.raises(InputError, match=r"identities \[1, 1\] must be different"):
+    with pytest.raises(InputError, match=r"identities \[1, 1\] must be distinct"):
         live.update([1, 1], [[0.0, 0.0], [1.0, 0.0]])
     live.update([1], [[0.0, 0.0]])
     with pytest.raises(InputError, match="the plan is for robot 4, who is in no window"):

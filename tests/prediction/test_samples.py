@@ -72,9 +72,9 @@ def test_scenes_are_left_out_by_name(files: dict[str, Recording], name: str, out
 def test_folders_have_names_too_and_unknown_ones_are_said(recordings: Path, files: dict[str, Recording]) -> None:
     obsmat = [Recording(str(recordings / "eth_biwi" / f"seq_{name}" / "obsmat.txt")) for name in ("eth", "hotel")]
     assert leave_out(obsmat, "hotel")[1] == obsmat[1:]
-    with pytest.raises(InputError, match="no recording is called 'hotl', did you mean 'hotel'"):
+    with pytest.raises(InputError, match="no recording matches 'hotl', did you mean 'hotel'"):
         leave_out([*files.values()], "hotl")
-    with pytest.raises(InputError, match="leaves out all 1 recordings"):
+    with pytest.raises(InputError, match="excludes all 1 recordings"):
         leave_out([files["biwi_eth_train"]], "eth")
 
 
@@ -87,20 +87,22 @@ def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Pa
     early, late = split_in_time([Recording(str(file), fps=25)], 0.25)
     assert early.position[..., 0].max() < late.position[..., 0].min()
     assert (len(early), len(late)) == (41, 21)
-    with pytest.raises(InputError, match=r"is 1.5, it must be above 0 and below 1"):
+    with pytest.raises(InputError, match=r"share 1.5 must be above 0 and below 1"):
         split_in_time([one], 1.5)
     file = tmp_path / "short.txt"
     file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(30)))
-    with pytest.raises(DataError, match="11 windows are too few to hold back the last 25%"):
+    with pytest.raises(DataError, match="11 windows are too few for a validation share of 25%"):
         split_in_time([Recording(str(file), fps=25)], 0.25)
 
 
 def test_what_does_not_fit_together_is_said(files: dict[str, Recording], recordings: Path) -> None:
     fine = files["biwi_eth_train"]
     corridor = Recording(str(recordings / "hermes" / "Corridor-1D" / "uo-050-180-180.txt"), fps=16, units="cm")
-    with pytest.raises(InputError, match="has a row every 0.4 s, .* every 0.0625 s; bring them to one step"):
+    with pytest.raises(
+        InputError, match="has a row every 0.4 s, .* every 0.0625 s; resample them to the same time step"
+    ):
         Samples.of([fine, corridor])
-    with pytest.raises(InputError, match="there is no recording"):
+    with pytest.raises(InputError, match="there is no training recording"):
         Samples.of([])
     assert short_recordings([fine]) == []
     assert "s; more than 3 minutes are recommended for training" in short_recordings([corridor])[0]

@@ -107,9 +107,9 @@ def test_a_fit_predicts_the_same_as_its_predictor(crowd: Maker) -> None:
 def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
     with pytest.raises(InputError, match=r"unknown crowd model 'orka', did you mean 'orca'\?"):
         Simulated("orka")
-    with pytest.raises(InputError, match="ground-truth needs values of its own"):
+    with pytest.raises(InputError, match="ground-truth has no default values"):
         Simulated(goal="ground-truth")
-    with pytest.raises(InputError, match="3 is not a CrowdModel, nor the name of one"):
+    with pytest.raises(InputError, match="3 is not a CrowdModel or the name of one"):
         Simulated(3)  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"substep = 0\.0 s must be finite and above 0"):
         Simulated(substep=0.0)

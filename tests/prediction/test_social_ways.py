@@ -188,11 +188,11 @@ def test_every_setting_trains(values: dict[str, object]) -> None:
 
 def test_mixed_precision_draws_nearly_the_same_in_full_numbers() -> None:
     model = SocialWaysTraining(TINY, walks(), walks(1))
-    lesson = model._lesson(walks().batch(np.arange(4)))
+    lesson = model._to_tensors(walks().batch(np.arange(4)))
     noise = torch.rand(3, *lesson.scored.shape, TINY.inputs)
-    plain, _ = model._made(lesson, noise)
+    plain, _ = model._draw(lesson, noise)
     model.config = dataclasses.replace(TINY, mixed=True)
-    mixed, states = model._made(lesson, noise)
+    mixed, states = model._draw(lesson, noise)
     assert mixed.dtype == states.dtype == torch.float32
     assert 0.0 < (mixed - plain).abs().max() < 0.05
 
@@ -237,7 +237,7 @@ def test_it_learns_straight_walks() -> None:
 def test_scales_come_from_training_data_alone_and_rows_must_fit() -> None:
     one, other = SocialWaysTraining(TINY, walks(), walks(1)), SocialWaysTraining(TINY, walks(), walks(2))
     assert one.scales == other.scales != SocialWaysTraining(TINY, walks(2), walks(1)).scales
-    with pytest.raises(InputError, match=r"learns 8 \+ 12 rows, walks is cut into 8 \+ 10"):
+    with pytest.raises(InputError, match=r"requires 8 \+ 12 rows, walks has 8 \+ 10"):
         SocialWaysTraining(TINY, walks(0, 12, 18), walks())
 
 
@@ -270,7 +270,7 @@ def test_wrong_settings_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="unknown device 'gpu'; known are cpu, cuda"):
         torch_device("gpu")
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    with pytest.raises(InputError, match="'cuda' is asked for, but torch sees 0 CUDA devices here; use cpu"):
+    with pytest.raises(InputError, match="'cuda' does not exist: torch finds 0 CUDA devices; use cpu"):
         torch_device("cuda")
 
 

@@ -139,7 +139,7 @@ def test_more_updates_may_be_asked_for_later(tmp_path: Path) -> None:
 
 def test_folders_of_other_trainings_are_left_alone(tmp_path: Path) -> None:
     train(Mean(), PLAN, tmp_path)
-    with pytest.raises(InputError, match="holds a training already: go on with --resume"):
+    with pytest.raises(InputError, match="already contains a training: resume it with --resume"):
         train(Mean(), PLAN, tmp_path)
     with pytest.raises(InputError, match=r"other settings \(rate = 0.1, now 0.2\)"):
         train(Mean(Settings(0.2)), PLAN, tmp_path, resume=True)
@@ -167,7 +167,7 @@ def test_wrong_schedules_and_losses_are_said() -> None:
         TrainingSchedule()
     with pytest.raises(InputError, match="check every = 0 must be at least 1"):
         TrainingSchedule(updates=1, check_every=0)
-    with pytest.raises(InputError, match="speed is not measured while training; there are update"):
+    with pytest.raises(InputError, match="speed is not measured during training; known are update"):
         train(Mean(), TrainingSchedule(updates=1, watch=("speed",)))
     wild = Mean(Settings(1e200))
     with pytest.raises(InputError, match="the loss loss is .* at update"), np.errstate(over="ignore", invalid="ignore"):
@@ -183,7 +183,7 @@ def test_checkpoints_hold_trees_and_say_what_is_wrong(tmp_path: Path) -> None:
         load_checkpoint(file, "mean")
     with pytest.raises(InputError, match="there is no checkpoint"):
         load_checkpoint(tmp_path / "none.npz")
-    with pytest.raises(InputError, match="cannot hold a set"):
+    with pytest.raises(InputError, match="cannot contain a set"):
         save_checkpoint(tmp_path / "set.npz", "toy", {"a": {1}})
     whole = file.read_bytes()
     for number, spoilt in enumerate((whole[: len(whole) // 2], b"", whole[:200] + b"?" * 40 + whole[240:])):

@@ -201,7 +201,7 @@ def test_the_published_line_passes_and_a_free_file_does_not():
     assert SINGLE_FILE.judge(right) == ("0.00 m/s", True, "")
     free = SINGLE_FILE.judge({**right, "speed": [1.34, 1.34, 1.34]})
     assert not free.passed
-    assert free.words == "a file walks at 1.34 m/s even at 2 people per metre"
+    assert free.words == "people in single file walk at 1.34 m/s even at 2 people per metre"
     through = SINGLE_FILE.judge({**right, "overtakings": 3, "outside": 0.001})
     assert not through.passed
     assert "3 overtakings" in through.words
@@ -211,7 +211,7 @@ def test_the_published_line_passes_and_a_free_file_does_not():
 def test_jams_clogs_and_walls_are_said_in_words():
     jam = NARROW.judge({"density": [0.5, 1.5], "speeds": [[1.0, 1.1], [0.01, 0.5]], "outside": 0.0})
     assert (jam.value, jam.passed) == ("1 of 4 jam", False)
-    assert jam.words == "jams in a two-way corridor 2 m wide, from 1.5 people/m2 on (1 of 4 runs)"
+    assert jam.words == "jams in a two-way corridor 2 m wide, at 1.5 people/m2 or more (1 of 4 runs)"
     clog = {"width": [0.8, 1.2], "flows": [[0.1], [2.3]], "passed": [[12], [60]], "people": 60, "outside": 0.0}
     assert "clogs bottlenecks up to 0.8 m wide (1 of 2 runs)" in BOTTLENECK.judge(clog).words
     fine = {"width": [1.0], "flows": [[1.9]], "passed": [[60]], "people": 60, "outside": 0.0}

@@ -1,9 +1,10 @@
-"""Catalogue of built-in names by kind, and their papers."""
+"""Catalogue of built-in names by kind, and their references."""
 
 from __future__ import annotations
 
 import importlib
 import inspect
+import re
 from typing import Any
 
 from crowdbot.core import InputError, Paper, UnknownName, builtin_classes
@@ -45,7 +46,7 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
     >>> "robot-speed" in builtin_names("experiments")["experiments"]
     True
     """
-    words = {
+    listings = {
         "trials": _trials,
         "experiments": _experiments,
         "robots": _robots,
@@ -53,7 +54,7 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
         "protocols": _protocols,
         "formats": _formats,
     }
-    known = [*KINDS, *words]
+    known = [*KINDS, *listings]
     if kind is not None and kind not in known:
         raise UnknownName("kind", kind, known)
     found: dict[str, dict[str, str]] = {}
@@ -61,7 +62,7 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
         if name in KINDS:
             found[name] = {key: _first_line(cls) for key, cls in _classes(name).items()}
         else:
-            found[name] = words[name]()
+            found[name] = listings[name]()
     return found
 
 
@@ -108,7 +109,8 @@ def _classes(kind: str) -> dict[str, type]:
 
 
 def _first_line(thing: Any) -> str:
-    return (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ").replace("``", "")
+    line = (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ").replace("``", "")
+    return re.sub(r":\w+:`([^`]*)`", r"\1", line)
 
 
 def _trials() -> dict[str, str]:

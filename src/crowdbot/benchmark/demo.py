@@ -84,19 +84,19 @@ def run_demo(
         raise InputError(f"{page} already exists; use another path, or --force (force=True) to overwrite it")
     episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share), force=force)
     report("1 run the trial", 1.0)
-    fit = _calibrated(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
+    fit = _calibrate(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
-    predicted = _predicted(fit, past, future, episode.seed, lambda share: report("3 predict the people", share))
+    predicted = _predict(fit, past, future, episode.seed, lambda share: report("3 predict the people", share))
     report("4 write the report", 0.0)
     commands = _commands(out, episode, fit)
-    page = write_report(page, episode, past, future, predicted, commands, _seen(trial, fit))
+    page = write_report(page, episode, past, future, predicted, commands, _describe_input(trial, fit))
     report("4 write the report", 1.0)
     scores = tuple(one.score for one in predicted)
     caption = f"protocol {scores[0].protocol}; people within {NEAR:g} m of the robot; means over persons"
     return Demo(episode, scores, file, page, caption)
 
 
-def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> Fit:
+def _calibrate(trial: Trial, seed: int, progress: Callable[[float], None]) -> Fit:
     """Fit one ORCA parameter set to another crowd of the same trial, without the scored people."""
     from crowdbot.calibration import Calibrator
 
@@ -105,9 +105,7 @@ def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> F
     return calibrator.fit(past[::4], seed=seed, progress=progress)
 
 
-def _predicted(
-    fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]
-) -> list[Predicted]:
+def _predict(fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]) -> list[Predicted]:
     from crowdbot.core import stream
     from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
 
@@ -129,20 +127,20 @@ def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:
     values = " ".join(f"{name.replace('_', '-')}={value!r}" for name, (value, _) in fit.table().items())
     return {
         f"crowdbot run {TRIAL} --seed {episode.seed} --out {out}": "the trial",
-        f"crowdbot replay {file}": "the same bytes again",
+        f"crowdbot replay {file}": "repeats the trial and compares all bytes",
         f"{scored} constant-velocity": "a row of the prediction table",
-        f"{scored} constant-acceleration": "another",
-        f"{scored} kalman": "another",
+        f"{scored} constant-acceleration": "another row",
+        f"{scored} kalman": "another row",
         f"{scored} simulated --model orca --set {values}": "the calibrated crowd",
-        f"crowdbot demo --seed {episode.seed} --out {out}": "all of this page",
+        f"crowdbot demo --seed {episode.seed} --out {out}": "this page",
     }
 
 
-def _seen(trial: Trial, fit: Fit) -> str:
+def _describe_input(trial: Trial, fit: Fit) -> str:
     crowd = kebab_case(type(trial.crowd).__name__)
     return (
-        f"Predictors know the last {OBSERVE * STEP:.1f} s of everyone's true positions, without noise, and no goals."
-        f" The crowd of this trial walks by {crowd}; the simulated predictor is ORCA, calibrated in"
-        f" {fit.evaluations[0]} evaluations on a crowd with another seed. A simulated crowd is easier to predict than a"
-        " real one: for real recordings see crowdbot predict."
+        f"The input of the predictors is the last {OBSERVE * STEP:.1f} s of the true positions, without noise and"
+        f" without goals. The crowd of this trial uses the model {crowd}; the simulated predictor is ORCA, calibrated"
+        f" with {fit.evaluations[0]} evaluations on a crowd with another seed. A simulated crowd is easier to predict"
+        " than a real one; for real recordings, use crowdbot predict."
     )

@@ -58,7 +58,7 @@ def write_report(
         past, future: windows of its people at the prediction times, ``[W, T, A, ...]``.
         predicted: one entry for each predictor, over the same windows.
         commands: commands that reproduce each part.
-        seen: one sentence about the input of the predictors.
+        seen: description of the input of the predictors.
     """
     page = Template(_asset("page.html")).substitute(
         title=html.escape(f"{episode.trial.name}: {episode.outcome}"),
@@ -93,7 +93,7 @@ def _cards(episode: Episode, predicted: Sequence[Predicted]) -> str:
         (episode.outcome, "outcome", "good" if episode.outcome == "success" else "bad"),
         (f"{episode.times[-1]:.1f} s", "simulated time", ""),
         (str(people), "people", ""),
-        (f"{episode.metrics['min_clearance']:.2f} m", "nearest anyone came to the robot, surface to surface", ""),
+        (f"{episode.metrics['min_clearance']:.2f} m", "minimum clearance between the robot and people", ""),
         (
             f"{best.ade:.2f} m",
             f"mean error over {best.dt * len(best.horizon):.1f} s of the best predictor, {best.predictor}",
@@ -120,7 +120,7 @@ def _prediction_table(predicted: Sequence[Predicted], future: Windows) -> str:
         f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         f'<p class="hint">Protocol {html.escape(predicted[0].score.protocol)}, {horizon:.1f} s ahead every'
         f" {future.dt} s; means over persons. ADE: mean distance over the horizon; FDE: distance at its end;"
-        " collisions: share of people predicted to come closer than 0.2 m to another, centre to centre.</p>"
+        " collisions: share of people with a predicted distance below 0.2 m to another person, centre to centre.</p>"
     )
 
 
@@ -128,7 +128,7 @@ def _navigation_table(episode: Episode) -> str:
     from crowdbot.metrics import NAVIGATION_METRICS
 
     rows = "".join(
-        f"<tr><td>{html.escape(name.replace('_', ' '))}</td><td>{_spoken(value)}</td><td>{html.escape(unit)}</td>"
+        f"<tr><td>{html.escape(name.replace('_', ' '))}</td><td>{_format_value(value)}</td><td>{html.escape(unit)}</td>"
         f"<td>{html.escape(words)}</td></tr>"
         for name, value in episode.metrics.items()
         for unit, words in [NAVIGATION_METRICS.get(name.rpartition(".")[2], ("", ""))]
@@ -137,7 +137,7 @@ def _navigation_table(episode: Episode) -> str:
     return f'<table class="words"><thead>{head}</thead><tbody>{rows}</tbody></table>'
 
 
-def _spoken(value: Any) -> str:
+def _format_value(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.3f}" if math.isfinite(value) else ("-" if math.isnan(value) else "none")
     return html.escape(str(value))
@@ -184,8 +184,8 @@ def _data(episode: Episode, past: Windows, future: Windows, predicted: Sequence[
     spec = episode.trial.robots[0]
     page = {
         "bounds": _bounds(episode),
-        "walls": [_rounded(ring) for ring in episode.walls],
-        "times": _rounded(times),
+        "walls": [_round(ring) for ring in episode.walls],
+        "times": _round(times),
         "opening": int(np.searchsorted(times, OPENING)),
         "people": [_track(episode, a, chosen) for a in people],
         "robot": {
@@ -227,8 +227,8 @@ def _scans(episode: Episode) -> dict[str, Any]:
     if not scans:
         return {"times": [], "poses": [], "angles": [], "ranges": []}
     return {
-        "times": _rounded([scan.time for scan in scans]),
-        "poses": [_rounded(scan.pose) for scan in scans],
+        "times": _round([scan.time for scan in scans]),
+        "poses": [_round(scan.pose) for scan in scans],
         "angles": [round(float(a), 4) for a in scans[0].angles],
         "ranges": [_or_none(scan.ranges, np.isfinite(scan.ranges)) for scan in scans],
     }
@@ -238,7 +238,7 @@ def _forecasts(past: Windows, future: Windows, predicted: Sequence[Predicted], b
     observed = past.position.shape[1]
     instants = [float(begin + past.dt * (frame + observed - 1)) for frame in range(len(past))]
     return {
-        "times": _rounded(instants),
+        "times": _round(instants),
         "period": past.dt,
         "truth": _paths(past, future, future.position),
         "predictors": [
@@ -256,12 +256,12 @@ def _forecasts(past: Windows, future: Windows, predicted: Sequence[Predicted], b
 def _paths(past: Windows, future: Windows, position: np.ndarray) -> list[list[list[list[float]]]]:
     now = past.position[:, -1]
     return [
-        [_rounded(np.concatenate([now[w, a][None], position[w, :, a]])) for a in np.flatnonzero(future.scored[w])]
+        [_round(np.concatenate([now[w, a][None], position[w, :, a]])) for a in np.flatnonzero(future.scored[w])]
         for w in range(len(past))
     ]
 
 
-def _rounded(values: Any) -> Any:
+def _round(values: Any) -> Any:
     return np.round(np.asarray(values, dtype=float), 3).tolist()
 
 

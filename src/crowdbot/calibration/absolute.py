@@ -15,9 +15,9 @@ __all__ = ["Absolute"]
 
 @dataclass(frozen=True)
 class Absolute(Cost):
-    """Mean distance [m] between simulated and recorded positions, over all rows, started once at the first one.
+    """Mean distance [m] between simulated and recorded positions, simulated from the first row over all rows.
 
-    People count who are seen at the first row and at another one.
+    People count if they are observed at the first row and at another row.
 
     Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
     """

@@ -19,30 +19,30 @@ __all__ = ["Annealing"]
 COOLING = Geometric(0.1, 1e-4)
 REACH = Geometric(0.5, 0.003)
 ANYWHERE = 0.2
-"""The share of new values that are drawn from the whole side of the box."""
+"""Share of new values that are drawn uniformly between the bounds."""
 
 
 @dataclass(frozen=True)
 class Annealing(Search):
-    """Simulated annealing: several chains at once, and in each of them everyone accepts for himself.
+    """Simulated annealing with several chains; changes are accepted or rejected for each person separately.
 
-    In every step each chain gives most people a new value of one parameter: around the present one, ever nearer, or now
-    and then anywhere. Someone keeps it when he costs less than before, or, with the probability ``exp(-increase / T)``,
-    when he costs more. He decides on his own cost, not on that of the whole crowd: a crowd would hardly ever accept 30
-    changes at once. T is the temperature of ``cooling`` times the spread (of the middle half) of what he costs with the
-    first random parameters, so it needs no unit. Beside the chains, each step evaluates everyone's best parameters
-    together. Every few steps the worse half of everyone's chains goes on from where the better half is.
-    The result is the best crowd that was evaluated as a whole.
+    In each step, every chain proposes a new value of one parameter for most people: usually near the current value, at
+    distances that shrink over time, sometimes anywhere between the bounds. The value is accepted if the cost of the
+    person decreases, and otherwise with probability ``exp(-increase / T)``. The decision uses the cost of the person
+    and not of the crowd, since a crowd would rarely accept 30 simultaneous changes. T is the temperature of ``cooling``
+    times the interquartile range of the costs of the person with the initial random parameters, so ``cooling`` has no
+    unit. Each step also evaluates the crowd of the best parameters of all people. Every ``exchange`` steps, the worse
+    half of the chains of each person continues from the better half. The result is the best crowd evaluated as a whole.
 
     Fields:
-        cooling: temperature, in spreads of the costs.
-        reach: standard deviation of a change of a parameter, in sides of the box.
-        chains: how many chains.
-        exchange: after how many steps the worse half is replaced; 0: never.
-        moved: the share of people with a new value in a step at the end; at the beginning it is 1.
+        cooling: temperature, relative to the interquartile range of the costs.
+        reach: standard deviation of a change, relative to the range of the parameter.
+        chains: number of chains.
+        exchange: number of steps after which the worse half is replaced; 0: never.
+        moved: final share of people with a new value in a step; the initial share is 1.
 
     Source: Kirkpatrick, Gelatt & Vecchi (1983), doi 10.1126/science.220.4598.671; acceptance by person and the exchange
-    are ours.
+    are new here.
 
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
@@ -72,7 +72,7 @@ class Annealing(Search):
             raise InputError(f"annealing: moved = {self.moved} of the people must be above 0 and at most 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Walk all chains, see :meth:`Search.search`."""
+        """Run all chains, see :meth:`Search.search`."""
         first = state.sample_uniform(min(self.chains, state.remaining))
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
@@ -80,13 +80,13 @@ class Annealing(Search):
         here, energy, best, spread = state.prune(here, energy, here[:1], _spread(cost))
         step = 0
         while state.remaining > 1:
-            there, moved = self._moved(state, here)
+            there, moved = self._propose(state, here)
             crowds = np.concatenate([best, there])[: state.remaining - 1]
             measured = state.evaluate(crowds)
             best, _ = own_best(crowds, measured)
             if len(crowds) > self.chains:
                 step += 1
-                limit = self.cooling.at(state.progress) * spread * _tolerated(state, self.chains)
+                limit = self.cooling.at(state.progress) * spread * _draw_tolerance(state, self.chains)
                 accepted = (measured[1:] <= energy + limit) | ~moved
                 here = np.where(accepted[..., None], there, here)
                 energy = np.where(accepted, measured[1:], energy)
@@ -97,8 +97,8 @@ class Annealing(Search):
             state.evaluate(best)
             state.prune()
 
-    def _moved(self, state: SearchState, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return where the chains might go, and whose parameters ``[chains, L, N]`` change."""
+    def _propose(self, state: SearchState, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return the proposed parameters, and the mask ``[chains, L, N]`` of people whose parameters change."""
         C, _, N, D = here.shape
         chance = state.draw(lambda rng: rng.random((C, N, 4)))
         away = state.draw(lambda rng: rng.standard_normal((C, N, 1)))
@@ -111,21 +111,20 @@ class Annealing(Search):
 
 
 def _cheapest(population: Floats, cost: Floats, count: int, chains: int) -> tuple[Floats, Floats]:
-    """Return everyone's ``count`` cheapest parameters and their costs, again and again for so many chains."""
+    """Return the ``count`` best parameters of each person and their costs, repeated for ``chains`` chains."""
     row = np.argsort(cost, axis=0, kind="stable")[np.arange(chains) % count]
     return np.take_along_axis(population, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
 
 
 def _spread(cost: Floats) -> Floats:
-    """Return how far the middle half of everyone's costs spreads, ``[1, L, N]``; it adds no numbers up, so that its
-    last bit does not depend on L."""
+    """Return the interquartile range of the costs of each person ``[1, L, N]``, computed without sums over L."""
     ordered = np.sort(cost, axis=0)
     low, high = ordered[len(cost) // 4], ordered[(3 * len(cost)) // 4]
     finite = np.isfinite(high)
     return np.where(finite, high, 0.0)[None] - np.where(finite, low, 0.0)[None]
 
 
-def _tolerated(state: SearchState, chains: int) -> Floats:
-    """Return by how many temperatures everyone lets his cost grow; exponential: more than x has chance ``exp(-x)``."""
+def _draw_tolerance(state: SearchState, chains: int) -> Floats:
+    """Draw the accepted increase of the cost of each person, in temperatures: exponentially distributed, mean 1."""
     people = state.best.shape[1]
     return state.draw(lambda rng: rng.standard_exponential((chains, people)))

@@ -30,12 +30,12 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
-"""Called with the number of finished evaluations (candidates times windows)."""
+"""Callback with the number of completed evaluations (candidates times windows)."""
 
 AGENTS_AT_ONCE = 200_000
 """Approximate number of agents (candidates x windows x people) in one batch."""
 AGENTS_PER_CALL = 20_000
-"""About this many agents (candidates x windows x people x rows) are simulated per call; Ctrl-C waits for one call."""
+"""Approximate number of agents (candidates x windows x people x rows) per call; Ctrl-C waits for one call."""
 CANDIDATES = 100
 """Expected number of candidates that a search evaluates at once."""
 
@@ -44,18 +44,18 @@ CANDIDATES = 100
 class Calibrator:
     """Fits the parameters of a crowd to the observed rows of windows: a scheme is model x cost x search x goal.
 
-    Every person has parameters of their own, and every window is a problem of its own, unless they are shared. The
-    given values are tried first, so that a fit is never worse than they are.
+    Each person has individual parameters and each window is a separate problem, unless the parameters are shared. The
+    initial values are evaluated first, so a fit is never worse than they are.
 
     Fields:
-        model, cost, search, goal: values, or their names.
-        budget: number of whole-crowd evaluations, for each window or, if shared, in total.
-        shared: one set of parameters for everyone.
-        free: names of the parameters that are calibrated: of the model, ``radius``, ``preferred_speed`` (not when
+        model, cost, search, goal: instances, or their names.
+        budget: number of whole-crowd evaluations, per window or, if shared, in total.
+        shared: one set of parameters for all people.
+        free: names of the calibrated parameters: parameters of the model, ``radius``, ``preferred_speed`` (not if
             shared); empty means all.
-        prior: distribution of the parameters in a population; unusual parameters cost more.
-        radius: people's radius before the fit [m].
-        substep: longest time step of the simulation [s].
+        prior: distribution of the parameters in a population; unusual parameters have a penalty.
+        radius: initial radius of people [m].
+        substep: maximum time step of the simulation [s].
 
     Raises:
         InputError: a name is unknown, or the budget is below 1.
@@ -84,7 +84,7 @@ class Calibrator:
             raise InputError(f"calibration: budget = {self.budget} evaluations must be at least 1")
         if self.shared and self.prior is not None:
             raise InputError("calibration: a population prior requires individual parameters (shared=False)")
-        _ = self.space, self.rollout  # says what is wrong with a name or a number
+        _ = self.space, self.rollout  # raises an error for an unknown name or a wrong number
 
     @property
     def space(self) -> ParameterSpace:
@@ -109,14 +109,14 @@ class Calibrator:
         progress: Progress | None = None,
         start: Fit | None = None,
     ) -> Fit:
-        """Search the parameters with which the simulated crowd is closest to the observed rows.
+        """Fit the parameters to the observed rows.
 
         Args:
-            past: windows of at least two rows; their future is not looked at, unless the goal does. A shared fit may
-                be of several recordings.
-            seed: of the search.
-            progress: receives the finished share, 0 to 1.
-            start: an earlier fit, for example of the frame before; its values are evaluated early.
+            past: windows with at least two rows; the future is not used, unless the goal requires it. A shared fit
+                accepts windows of several recordings.
+            seed: seed of the search.
+            progress: called with the completed share, 0 to 1.
+            start: an earlier fit, for example of the previous frame; its values are evaluated early.
 
         Raises:
             InputError: there are too few rows, or nobody can be compared.
@@ -147,9 +147,9 @@ class Calibrator:
         progress: Progress | None = None,
         start: Fit | None = None,
     ) -> Fit:
-        """Fit everyone's own parameters, window by window; ``rngs`` is one generator for each.
+        """Fit individual parameters, window by window; ``rngs`` has one generator for each window.
 
-        Windows in which nobody can be compared keep the given values and have the cost NaN.
+        Windows in which nobody can be compared keep the initial values and have the cost NaN.
         """
         space, begin = self.space, time.perf_counter()
         given = space.initial_values(past, self.rollout)
@@ -209,7 +209,7 @@ class Calibrator:
         )
 
     def _starts(self, past: Windows, given: Floats, start: Fit | None) -> Floats:
-        """Return the start candidates ``[S, W, A, D]``: given values, those of the previous frame, typical ones."""
+        """Return the start candidates ``[S, W, A, D]``: initial, of the previous frame, typical."""
         starts = [given]
         if start is not None:
             starts.append(start.values_of(past))
@@ -220,9 +220,9 @@ class Calibrator:
 
 
 class _Task:
-    """What a search minimises: the cost of everyone ``[P, L, A]`` for candidates ``[P, L, A, D]`` of windows ``[L]``.
+    """Objective of a search: cost of each person ``[P, L, A]`` for candidates ``[P, L, A, D]`` in windows ``[L]``.
 
-    ``counted [W, A]`` becomes known with the first evaluation.
+    ``counted [W, A]`` is set by the first evaluation.
     """
 
     def __init__(self, calibrator: Calibrator, past: Windows, given: Floats, report: Report | None) -> None:
@@ -268,7 +268,7 @@ class _Task:
 
 
 class _SharedTask:
-    """What a search of one set for everyone minimises: the mean cost of all people ``[P, 1, 1]``."""
+    """Objective of a search for one shared set: mean cost of all people ``[P, 1, 1]``."""
 
     def __init__(self, parts: list[_Task], report: Report | None) -> None:
         self.parts = parts
@@ -289,7 +289,7 @@ class _SharedTask:
 
 
 def _part_of(progress: Progress | None, first: int, whole: int, budget: int) -> Report | None:
-    """Return what tells the share that is done, from the evaluations done in a part that begins at window ``first``."""
+    """Return a callback that reports the completed share, for a part that starts at window ``first``."""
     if progress is None:
         return None
     return lambda done: progress(min(1.0, (first + done / budget) / whole))

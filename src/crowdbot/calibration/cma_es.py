@@ -17,16 +17,16 @@ __all__ = ["CMAES"]
 
 @dataclass(frozen=True)
 class CMAES(Search):
-    """Covariance matrix adaptation (CMA-ES): one optimiser for every person, told what that person alone costs.
+    """Covariance matrix adaptation (CMA-ES) with one optimiser per person, driven by the cost of that person.
 
-    The p-th solutions of all optimisers are one candidate crowd, and beside these each generation evaluates the crowd
-    of everyone's means: the result is the best crowd that was evaluated as a whole. The optimisers begin at everyone's
-    cheapest start and begin anew anywhere in the box when they have converged. The library draws and learns person by
-    person, so that it is the slowest of the searches.
+    The p-th solutions of all optimisers form one candidate crowd. Each generation also evaluates the crowd of the means
+    of all optimisers. The result is the best crowd evaluated as a whole. Each optimiser starts at the best start of its
+    person and restarts at a random place in the box when it has converged. The library processes one person at a time,
+    which makes this the slowest search.
 
     Fields:
-        population: solutions of an optimiser in a generation.
-        width: standard deviation at the beginning, in sides of the box.
+        population: number of solutions of an optimiser in a generation.
+        width: initial standard deviation, relative to the parameter ranges.
 
     Source: Hansen (2016), doi 10.48550/arXiv.1604.00772, as in the library cmaes (Nomura & Shibata 2024, doi
     10.48550/arXiv.2402.01373).
@@ -81,7 +81,7 @@ class CMAES(Search):
             state.prune()
 
     def _optimiser(self, mean: Floats, rng: np.random.Generator) -> Any:
-        """Return an optimiser in the unit box that begins at ``mean``."""
+        """Return an optimiser in the unit box that starts at ``mean``."""
         from cmaes import CMA
 
         bounds = np.repeat([[0.0, 1.0]], len(mean), axis=0)

@@ -1,4 +1,4 @@
-"""The contract of calibration costs, as a check for your own ones."""
+"""Check that a user-defined calibration cost fulfils the contract."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .resimulation import ResimulatedTracks
 __all__ = ["check_cost"]
 
 ERROR = (0.0, 0.1, 0.5)
-"""Largest deviation [m] of the candidates from the recording."""
+"""Maximum deviation [m] of the candidates from the recording."""
 
 
 def check_cost(cost: Cost) -> None:
-    """Check that a cost keeps its contract: three candidates, of which the first reproduces the recording exactly.
+    """Check a cost with three candidates; the first one reproduces the recording exactly.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the cost violates a rule of the contract.
 
     >>> from crowdbot.calibration import Absolute
     >>> check_cost(Absolute())
@@ -39,7 +39,9 @@ def check_cost(cost: Cost) -> None:
         raise InputError(f"{name}.measure returned shape {list(value.shape)}, it must be [P, W, A] = {wanted}")
     counted = ~np.isnan(value)
     if np.any(counted != counted[:1]):
-        raise InputError(f"{name}.measure: who counts must follow from the recording, not from the candidate")
+        raise InputError(
+            f"{name}.measure: the people who count must depend on the recording only, not on the candidate"
+        )
     if np.any(counted[0] & past.robot):
         raise InputError(f"{name}.measure counts robots; their cost must be NaN")
     if not np.any(counted):

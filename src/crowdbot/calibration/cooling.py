@@ -1,4 +1,4 @@
-"""Cooling: schedules of temperature over the budget."""
+"""Cooling: temperature schedules over the budget."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ __all__ = ["Cooling", "Geometric"]
 
 @dataclass(frozen=True)
 class Cooling(ABC):
-    """A schedule: from the share of the budget that is spent to a temperature."""
+    """Temperature as a function of the spent share of the budget."""
 
     @abstractmethod
     def at(self, progress: float) -> float:
-        """Return the temperature when the share ``progress``, 0 to 1, of the budget is spent."""
+        """Return the temperature at the spent share ``progress`` of the budget, 0 to 1."""
 
 
 @dataclass(frozen=True)
 class Geometric(Cooling):
-    """Falls by the same factor with every evaluation, from ``start`` to ``end``.
+    """Geometric decrease from ``start`` to ``end``.
 
     Source: Kirkpatrick, Gelatt & Vecchi (1983), doi 10.1126/science.220.4598.671.
 

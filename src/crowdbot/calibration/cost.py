@@ -24,7 +24,7 @@ METRICS = Paper(
     "Computer Graphics Forum",
     "10.1111/cgf.12328",
 )
-"""Where the three costs of the field are from."""
+"""Source of the three costs of the literature."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Cost(ABC):
     def measure(self, tracks: ResimulatedTracks) -> Floats:
         """Return the cost ``[P, W, A]`` [m] of every candidate and person; NaN for people that do not count.
 
-        Who counts follows from the recording, not from the candidate. Robots never count.
+        The people who count depend on the recording only, not on the candidate. Robots never count.
         """
 
 

@@ -1,4 +1,4 @@
-"""Fit: the result of a calibration; it predicts."""
+"""Fit: result of a calibration, which can predict."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Fit:
-    """Calibrated parameters: of every person of W windows, or one set for everyone.
+    """Calibrated parameters: one set for each person in W windows, or one shared set.
 
     Fields:
         scheme: names of model, cost, search and goal.
-        space: which D parameters were calibrated.
+        space: the D calibrated parameters.
         base: the crowd before the calibration.
-        values: ``[W, A, D]``, or ``[1, 1, D]`` of a shared fit.
-        given: the values before the calibration, of the same shape.
-        id: ``[W, A]`` identity of the people, -1 for nobody.
-        counted: ``[W, A]``, whose cost was measured.
-        cost, given_cost: ``[W]`` mean over people with the calibrated and with the given values [m], NaN where nobody
-            counted; of a shared fit ``[1]``, the mean over all people.
+        values: calibrated values ``[W, A, D]``, or ``[1, 1, D]`` for a shared fit.
+        given: initial values, with the same shape.
+        id: ``[W, A]`` identities of the people, -1 for padding.
+        counted: ``[W, A]`` mask of people with a cost.
+        cost, given_cost: mean cost over people [m] with the calibrated and the initial values: ``[W]``, NaN if nobody
+            counts, or ``[1]`` for a shared fit.
         evaluations: ``[W]``, number of whole-crowd evaluations.
-        history: ``[W, evaluations]``, the smallest cost so far after each of them.
-        seconds: time of the search.
+        history: ``[W, evaluations]``, lowest cost after each evaluation.
+        seconds: duration of the search [s].
         windows: number of windows.
     """
 
@@ -57,37 +57,37 @@ class Fit:
 
     @property
     def shared(self) -> bool:
-        """Whether everyone has the same parameters."""
+        """Whether all people have the same parameters."""
         return self.space.shared
 
     @property
     def persons(self) -> int:
-        """How many people's costs were measured, each once a window."""
+        """Number of people with a cost, summed over windows."""
         return int(self.counted.sum())
 
     @property
     def model(self) -> CrowdModel:
-        """The crowd model with the calibrated parameters: numbers of a shared fit, else ``[W, A]``."""
+        """The crowd model with the calibrated parameters: scalars for a shared fit, otherwise ``[W, A]``."""
         return self.rollout.model
 
     @property
     def rollout(self) -> Rollout:
-        """The calibrated crowd of the windows that it was calibrated on."""
+        """The calibrated crowd for the windows of the calibration."""
         return self.space.apply(self.base, self.values[0, 0] if self.shared else self.values)
 
     @property
     def shared_rollout(self) -> Rollout:
-        """The calibrated crowd of any windows.
+        """The calibrated crowd for any windows.
 
         Raises:
-            InputError: everyone has parameters of their own.
+            InputError: the parameters are individual.
         """
         if not self.shared:
-            raise InputError("this fit has parameters of each person; it predicts the windows with these people")
+            raise InputError("this fit has individual parameters; it can predict only windows with the same people")
         return self.rollout
 
     def table(self) -> dict[str, tuple[float, float]]:
-        """Return median and standard deviation over people of every calibrated parameter; 0 for a shared one."""
+        """Return median and standard deviation of each calibrated parameter over people; 0 for a shared fit."""
         people = self.values[0] if self.shared else self.values[self.counted]
         if len(people) == 0:
             return {}
@@ -97,10 +97,10 @@ class Fit:
         }
 
     def values_of(self, past: Windows) -> Floats:
-        """Return the parameters of the people of windows ``[W, A, D]``.
+        """Return the parameters ``[W, A, D]`` of the people in windows.
 
-        Who was calibrated has the values of the latest window with them; everyone else the median of all, and the
-        observed preferred speed.
+        Calibrated people have the values of their latest window. Other people have the median values and their observed
+        preferred speed.
         """
         given = self.space.initial_values(past, self.base)
         if self.shared:
@@ -119,13 +119,13 @@ class Fit:
         return given
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where the calibrated crowd goes after the last observed row.
+        """Return the forecast of the calibrated crowd after the last observed row.
 
         Args:
-            past: the windows it was calibrated on, or others; see :meth:`values_of`.
-            steps: rows ahead.
-            samples: futures, when the goal knows several destinations; otherwise there is one.
-            rng: draws them.
+            past: windows of the calibration or others, see :meth:`values_of`.
+            steps: number of predicted rows.
+            samples: number of futures if the goal has several destinations per person; otherwise there is one.
+            rng: random generator.
 
         Raises:
             InputError: steps or samples are below 1.
@@ -138,7 +138,7 @@ class Fit:
     def forecast(
         self, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator], name: str
     ) -> Forecast:
-        """Return the forecast under a name; ``rngs`` is one generator for every window."""
+        """Return the forecast with a predictor name; ``rngs`` has one generator for each window."""
         rollout = self.space.apply(self.base, self.values[0, 0] if self.shared else self.values_of(past))
         place, weight = futures(rollout, past, steps, samples, rngs)
         made = Forecast.of(place, past.present[:, -1], past.dt, name)
@@ -158,7 +158,7 @@ class Fit:
         )
 
     def _people(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return who was calibrated, sorted, and where their latest values are among the ``W * A`` ones."""
+        """Return the sorted ids of calibrated people, and the indices of their latest values among ``W * A``."""
         place = np.flatnonzero(self.counted.ravel())[::-1]
         known, first = np.unique(self.id.ravel()[place], return_index=True)
         return known, place[first]

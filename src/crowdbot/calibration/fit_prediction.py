@@ -1,4 +1,4 @@
-"""Futures: samples of a prediction, each with one destination drawn for each person."""
+"""Futures: samples of a prediction, each with one random destination per person."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ def futures(
 ) -> tuple[Floats, Floats]:
     """Return up to ``samples`` futures ``[W, K, steps, A, 2]`` [m] and their weights ``[W, K]``.
 
-    With one sample, or when nobody has more than one destination, K is 1: everybody goes to the most probable one.
-    Otherwise everybody's destinations are drawn in proportion to their probabilities (systematic resampling, people
-    independent of each other); futures that are the same are one, which has their weight, and the places they leave
-    have weight 0.
+    With one sample, or if nobody has more than one destination, K is 1 and all people go to their most probable
+    destination. Otherwise destinations are drawn by their probabilities, independently for each person (systematic
+    resampling). Identical futures are merged: the first one has their total weight, the others have weight 0.
     """
     choices = rollout.goal.choices(past) if samples > 1 else None
     if choices is None or choices.weight.shape[-1] < 2 or not np.any(past.present[:, -1:]):
@@ -58,7 +57,7 @@ def _draw_destinations(weight: Floats, samples: int, rng: np.random.Generator) -
 
 
 def _merge_weights(chosen: NDArray[np.int64]) -> Floats:
-    """Return the weight of each future ``[K]``: equal ones count at the first of them."""
+    """Return the weight of each future ``[K]``; the first of identical futures has their total weight."""
     _, first, count = np.unique(chosen, axis=0, return_index=True, return_counts=True)
     weight = np.zeros(len(chosen))
     weight[first] = count / len(chosen)
@@ -66,10 +65,10 @@ def _merge_weights(chosen: NDArray[np.int64]) -> Floats:
 
 
 def _repeat(rollout: Rollout, copies: int) -> Rollout:
-    """Return the rollout of ``copies`` of the windows: what is ``[W, A]`` is repeated along E."""
+    """Return the rollout of ``copies`` of the windows; values ``[W, A]`` are repeated along E."""
 
-    def repeated(value: object) -> object:
+    def repeat(value: object) -> object:
         return np.tile(value, (copies, 1)) if isinstance(value, np.ndarray) and value.ndim == 2 else value
 
-    changed = {row.name: repeated(getattr(rollout.model, row.name)) for row in parameters(rollout.model)}
+    changed = {row.name: repeat(getattr(rollout.model, row.name)) for row in parameters(rollout.model)}
     return dataclasses.replace(rollout, model=dataclasses.replace(rollout.model, **changed))

@@ -15,35 +15,35 @@ from .search_state import Floats, SearchState
 __all__ = ["Genetic"]
 
 PRESSURE = 3.0
-"""Parents are ranks ``M u^PRESSURE`` of a sorted pool of M, u uniform in 0 to 1: the best of about so many drawn."""
+"""Selection pressure: parents have rank ``M u^PRESSURE`` in a sorted pool of M, with u uniform in 0 to 1."""
 OVERSHOOT = 0.5
-"""How far, in distances between the parents, a blend may lie beyond either of them (BLX-0.5)."""
+"""Extension of the blend beyond both parents, relative to their distance (BLX-0.5)."""
 NEAR = 0.1
-"""Half of the first pool lies around the starts, with this standard deviation [sides of the box]."""
+"""Standard deviation of the half of the initial pool around the starts, relative to the parameter ranges."""
 MUTATION = 0.3
-"""Standard deviation of a mutation at the beginning [sides of the box]; it falls to ``FINEST`` at the end."""
+"""Initial standard deviation of a mutation, relative to the parameter ranges; it decreases to ``FINEST``."""
 FINEST = 1e-3
 
 
 @dataclass(frozen=True)
 class Genetic(Search):
-    """A genetic algorithm in which a candidate is a crowd and everyone in it has his own pool of genes.
+    """Genetic algorithm; a candidate is a crowd, and each person has a separate pool of parameters.
 
-    What someone costs depends mostly on his own parameters. So each person has his own pool, sorted by what he alone
-    cost when he had these genes; a child crowd takes two parents for every person, blends their genes or swaps them one
-    by one, and mutates about one. Costs also depend on the others, whose genes differ from crowd to crowd: a cheap one
-    may have been luck. Three rules keep the search honest. Costs are forgotten after ``memory`` generations. One child
-    of every generation is everyone's own best, unchanged and together, which evaluates them anew. And towards the end
-    most people in a child keep the genes that they have in the best crowd, so that the others are measured there.
-    The result is the best crowd that was evaluated as a whole.
+    The cost of a person depends mostly on the parameters of this person. Each person therefore has a separate pool,
+    sorted by the cost of the person. A child crowd selects two parents per person, blends or exchanges their
+    parameters, and mutates about one of them. Costs also depend on the other people, whose parameters differ between
+    crowds, so a low cost may be due to chance. Three rules reduce this effect. Costs expire after ``memory``
+    generations. One child of each generation is the crowd of the best parameters of all people, which evaluates them
+    again. Towards the end, most people in a child have their parameters of the best crowd, so the new parameters of the
+    others are evaluated in this crowd. The result is the best crowd evaluated as a whole.
 
     Fields:
-        population: crowds in a pool and children of a generation.
-        memory: after how many generations a cost is forgotten.
-        bred: the share of people with new genes in a child at the end; at the beginning it is 1.
+        population: size of the pools, and number of children in a generation.
+        memory: number of generations after which a cost expires.
+        bred: final share of people with new parameters in a child; the initial share is 1.
 
-    Source: the idea of a pool is Wolinski et al. (2014), doi 10.1111/cgf.12328; blends are those of Eshelman & Schaffer
-    (1993), doi 10.1016/B978-0-08-094832-4.50018-0. Pools by person and the three rules are ours.
+    Source: pool, Wolinski et al. (2014), doi 10.1111/cgf.12328; blend, Eshelman & Schaffer (1993), doi
+    10.1016/B978-0-08-094832-4.50018-0. The pools by person and the three rules are new here.
 
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
@@ -75,7 +75,7 @@ class Genetic(Search):
             raise InputError(f"genetic: bred = {self.bred} of the people must be above 0 and at most 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Breed generation after generation, see :meth:`Search.search`."""
+        """Run the generations, see :meth:`Search.search`."""
         first = self._first(state, population)
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
@@ -91,7 +91,7 @@ class Genetic(Search):
             population, cost, age = state.prune(population, cost, age)
 
     def _first(self, state: SearchState, start: Floats) -> Floats:
-        """Return a first pool: half around the starts, half anywhere."""
+        """Return an initial pool: half around the starts, half uniform."""
         first = state.sample_uniform(min(self.population, state.remaining))
         near = len(first) // 2
         shape = (near, *first.shape[2:])
@@ -100,14 +100,14 @@ class Genetic(Search):
         return first
 
     def _fittest(self, population: Floats, cost: Floats, age: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return everyone's best genes, the best first, but those whose costs are too old."""
+        """Return the best parameters of each person, best first, without those with expired costs."""
         cost = np.where(age < self.memory, cost, np.inf)
         row = np.argsort(cost, axis=0, kind="stable")[: self.population]
         genes = np.take_along_axis(population, row[..., None], axis=0)
         return genes, np.take_along_axis(cost, row, axis=0), np.take_along_axis(age, row, axis=0)
 
     def _children(self, state: SearchState, population: Floats) -> Floats:
-        # The last evaluation is one child, everyone's own best; so the one before leaves it.
+        # Leaves one evaluation for the last child, the crowd of the best parameters of all people.
         count = max(1, min(self.population, state.remaining - 1))
         M, _, N, D = population.shape
         chance = state.draw(lambda rng: rng.random((count, N, 4)))

@@ -15,24 +15,24 @@ from .search_state import Floats, Integers, SearchState
 __all__ = ["Greedy"]
 
 NARROWEST = 1e-3
-"""Standard deviation of the nearest new values [sides of the box]; the widest is 1."""
+"""Minimum standard deviation of new values, relative to the parameter range; the maximum is 1."""
 
 
 @dataclass(frozen=True)
 class Greedy(Search):
-    """Replaces one parameter of one person at a time and keeps what lowers the cost of the whole crowd.
+    """Changes one parameter of one person at a time, and keeps changes that lower the cost of the whole crowd.
 
-    It begins with the best start. All parameters of all people who count are visited in an order that is drawn once
-    and then repeated. At a visit ``trials`` new values are evaluated as one batch: every second one lies anywhere in
-    the side of the box, the others lie around the present value, at distances whose scale is drawn, in its logarithm,
-    between 1/1000 and the whole of the side. The best of them replaces the value when the mean over the people is
-    lower with it than without; else the value stays. So it cannot leave a minimum from which no single parameter
-    leads down, and a crowd of 30 people with 7 parameters needs 210 visits to try each once.
+    The search starts at the best start and visits all parameters of all people who count, in a random order that is
+    then repeated. Each visit evaluates ``trials`` new values as one batch. Half of them are uniform between the bounds;
+    the others are normal around the current value, with standard deviations that are log-uniform between 1/1000 and 1
+    of the range of the parameter. The best one replaces the current value if it lowers the mean cost of the people. The
+    search cannot leave a minimum where no single change lowers the cost. A crowd of 30 people with 7 parameters needs
+    210 visits to try each parameter once.
 
     Fields:
-        trials: new values at a visit.
+        trials: number of new values per visit.
 
-    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328 (the law that draws new values is ours).
+    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328 (the distribution of new values is new here).
 
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
@@ -57,7 +57,7 @@ class Greedy(Search):
             raise InputError(f"greedy: trials = {self.trials} new values must be at least 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Visit parameter after parameter, see :meth:`Search.search`."""
+        """Visit the parameters one by one, see :meth:`Search.search`."""
         order = self._order(state)
         visit = 0
         while state.remaining:
@@ -74,7 +74,7 @@ class Greedy(Search):
             visit += 1
 
     def _order(self, state: SearchState) -> Floats:
-        """Return in which order parameters are visited, ``[1, L, N * D]`` numbers ``person * D + parameter``."""
+        """Return the order of visits, ``[1, L, N * D]`` numbers ``person * D + parameter``."""
         _, N, D = state.best.shape
         chance = state.draw(lambda rng: rng.random((1, N * D)))
         chance = np.where(np.repeat(state.counts, D, axis=1), chance, np.inf)

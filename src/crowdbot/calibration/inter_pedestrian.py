@@ -20,7 +20,7 @@ Bools = NDArray[np.bool_]
 
 @kernel(parallel=True)
 def _differ(simulated: Floats, recorded: Floats, counted: Bools, total: Floats) -> None:
-    """Sum for every person, over rows and others, how much the distance to the other differs from the recorded one."""
+    """Sum the differences between simulated and recorded distances of each person to all others, over all rows."""
     P, W, T, A = simulated.shape[:4]
     for pw in prange(P * W):
         p, w = pw // W, pw % W
@@ -44,8 +44,8 @@ def _differ(simulated: Floats, recorded: Floats, counted: Bools, total: Floats) 
 class InterPedestrian(Cost):
     """Mean difference [m] between simulated and recorded distances of each person to all others, over all rows.
 
-    The simulation begins once, at the first row. Pairs count at the rows where both are seen and both were there at the
-    first row; somebody alone does not count.
+    The simulation starts at the first row. A pair counts at the rows where both are observed, if both are present at
+    the first row. People without a pair do not count.
 
     Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
     """

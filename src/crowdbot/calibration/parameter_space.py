@@ -20,19 +20,19 @@ __all__ = ["PREFERRED_SPEED", "RADIUS", "ParameterSpace"]
 Floats = NDArray[np.float64]
 
 RADIUS = Parameter("radius", "m", 0.25, 0.1, 0.4, "half the width of shoulders", 0.01)
-"""People's radius: it belongs to the scene and not to a model, and is calibrated with the model's parameters."""
+"""Radius of people. It belongs to the scene, and is calibrated together with the model parameters."""
 PREFERRED_SPEED = Parameter("preferred_speed", "m/s", 1.34, 0.0, 2.5, "Weidmann 1993")
-"""The speed of undisturbed walking (comfort speed); without calibration it is the observed one of each person."""
+"""Preferred walking speed; without calibration, the observed speed of each person."""
 
 
 @dataclass(frozen=True)
 class ParameterSpace:
-    """D parameters of each person: those of a model, then radius and preferred speed.
+    """D parameters of each person: those of the model, then radius and preferred speed.
 
     Fields:
         model: the crowd model; parameters that are not free keep their values.
-        free: names of the parameters that are calibrated; empty means all.
-        shared: one set for everyone; then the preferred speed stays the observed one of each person.
+        free: names of the calibrated parameters; empty means all.
+        shared: one set for all people; the preferred speed is then the observed speed of each person.
 
     Raises:
         InputError: a name is not a parameter.
@@ -62,30 +62,30 @@ class ParameterSpace:
 
     @property
     def table(self) -> tuple[Parameter, ...]:
-        """The rows of the parameter table that are calibrated."""
+        """Rows of the parameter table for the calibrated parameters."""
         chosen = {name.replace("-", "_") for name in self.free}
         return tuple(row for row in self._all if not chosen or row.name in chosen)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the D numbers."""
+        """Names of the D parameters."""
         return tuple(row.name for row in self.table)
 
     @property
     def low(self) -> Floats:
-        """Lower end of the box ``[D]``."""
+        """Lower bounds ``[D]``."""
         return np.array([row.low for row in self.table])
 
     @property
     def high(self) -> Floats:
-        """Upper end of the box ``[D]``."""
+        """Upper bounds ``[D]``."""
         return np.array([row.high for row in self.table])
 
     def initial_values(self, past: Windows, rollout: Rollout) -> Floats:
-        """Return the values before a calibration, ``[W, A, D]``; speeds are the observed ones.
+        """Return the initial values ``[W, A, D]``; speeds are the observed speeds.
 
         Raises:
-            InputError: a free parameter of the model has one value for each agent already.
+            InputError: a free parameter of the model already has one value per agent.
         """
         velocity = rollout.goal.velocity(fill_gaps(past))
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
@@ -102,7 +102,7 @@ class ParameterSpace:
         return values
 
     def with_mean_speed(self, past: Windows, values: Floats) -> Floats:
-        """Return the values ``[W, A, D]`` with everyone's mean speed over all rows, less noisy than that at the end."""
+        """Return the values ``[W, A, D]`` with the mean speed over all rows, which is less noisy."""
         values = values.copy()
         velocity = observed_velocity(past, past.position.shape[1])
         for column, name in enumerate(self.names):
@@ -111,7 +111,7 @@ class ParameterSpace:
         return values
 
     def apply(self, rollout: Rollout, values: Floats) -> Rollout:
-        """Return the rollout of people with these numbers, ``[W, A, D]`` or ``[D]`` for everyone."""
+        """Return the rollout with these values, ``[W, A, D]``, or ``[D]`` for all people."""
         one = values.ndim == 1
         columns = {name: (float(values[k]) if one else values[..., k]) for k, name in enumerate(self.names)}
         radius: Any = columns.pop(RADIUS.name, rollout.radius)
@@ -120,7 +120,7 @@ class ParameterSpace:
         return dataclasses.replace(rollout, model=model, radius=radius, preferred_speed=speed)
 
     def apply_to_scene(self, rollout: Rollout, scene: Scene, values: Floats) -> tuple[Rollout, Scene]:
-        """Return rollout and scene in which agents have their numbers ``[E, A, D]``."""
+        """Return rollout and scene with the values ``[E, A, D]`` of each agent."""
         taken = self.apply(rollout, values)
         if RADIUS.name in self.names:
             scene = scene.replace(radius=np.ascontiguousarray(taken.radius))

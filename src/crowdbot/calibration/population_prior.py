@@ -23,23 +23,24 @@ __all__ = ["PopulationPrior"]
 Floats = NDArray[np.float64]
 
 EDGE = 0.01
-"""Values at the edge of the box count as this share of its width away from it."""
+"""Minimum distance of a value from its bounds, relative to the range, before the transformation."""
 SHRINKAGE = 0.1
-"""Share of the covariance that is taken as independent, so that it can always be inverted."""
+"""Shrinkage of the covariance towards its diagonal, which makes it invertible."""
 
 
 @dataclass(frozen=True, eq=False)
 class PopulationPrior:
     """A joint normal distribution over people of the (transformed) parameters of a model.
 
-    Parameters go through the logit of their place in the box; the preferred speed counts as its difference [m/s] from
-    the observed one. Fitted on a few seconds, parameters of one person are hardly determined and not independent
-    (time horizon and radius do the same work): the distribution over many people says which combinations are likely.
+    Parameters are transformed by the logit of their position between the bounds; the preferred speed is represented by
+    its difference [m/s] from the observed speed. A few seconds of one track hardly determine the parameters of a
+    person, and parameters are correlated (for example time horizon and radius). The distribution over many people
+    describes which combinations are likely.
 
     Fields:
-        names: of the D parameters.
+        names: names of the D parameters.
         mean, covariance: ``[D]`` and ``[D, D]`` of the transformed parameters.
-        strength: twice the penalty [m] of a person whose parameters are one standard deviation away in one direction.
+        strength: twice the penalty [m] of a deviation by one standard deviation.
 
     >>> from crowdbot.models import ORCA
     >>> prior = PopulationPrior(("radius",), np.zeros(1), np.eye(1))
@@ -67,14 +68,14 @@ class PopulationPrior:
 
     @classmethod
     def from_fits(cls, fits: Fit | Sequence[Fit], strength: float = 0.1) -> PopulationPrior:
-        """Return the distribution of the parameters of everyone who was calibrated alone.
+        """Return the distribution of individually calibrated parameters.
 
         Raises:
-            InputError: the fits are shared ones or of different parameters, or they hold fewer than D + 2 people.
+            InputError: a fit is shared, the fits have different parameters, or they have fewer than D + 2 people.
         """
         many = [fits] if not isinstance(fits, Sequence) else list(fits)
         if not many or any(fit.space.shared or fit.space.names != many[0].space.names for fit in many):
-            raise InputError("population prior: it is learned from fits of each person, all of the same parameters")
+            raise InputError("population prior: the fits must have individual parameters, and all the same ones")
         space = many[0].space
         rows = np.concatenate(
             [_transform(space, fit.values, fit.given)[fit.counted] for fit in many if np.any(fit.counted)]
@@ -90,9 +91,9 @@ class PopulationPrior:
         return cls(space.names, rows.mean(axis=0), (1.0 - SHRINKAGE) * covariance + SHRINKAGE * own, strength)
 
     def penalty(self, space: ParameterSpace, values: Floats, given: Floats) -> Floats:
-        """Return what people's values ``[..., A, D]`` cost more [m] for being unusual: ``[..., A]``.
+        """Return the penalty ``[..., A]`` [m] for unusual values ``[..., A, D]``.
 
-        ``given`` holds the values before the calibration; its preferred speed is the observed one.
+        ``given`` are the initial values; their preferred speed is the observed speed.
 
         Raises:
             InputError: the space has other parameters.
@@ -103,7 +104,7 @@ class PopulationPrior:
         return np.asarray(0.5 * self.strength * square)
 
     def typical(self, space: ParameterSpace, given: Floats) -> Floats:
-        """Return the values ``[..., A, D]`` of the average person, with everyone's own observed speed."""
+        """Return the values ``[..., A, D]`` of the average person, with the observed speed of each person."""
         self._check(space)
         share = 1.0 / (1.0 + np.exp(-self.mean))
         values = np.broadcast_to(space.low + share * (space.high - space.low), given.shape).copy()
@@ -126,7 +127,7 @@ class PopulationPrior:
         """Read a prior from a JSON file.
 
         Raises:
-            InputError: the file is not one.
+            InputError: the file is not a population prior.
         """
         try:
             text = json.loads(Path(path).read_text(encoding="utf-8"))

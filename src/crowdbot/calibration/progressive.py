@@ -15,10 +15,10 @@ __all__ = ["Progressive"]
 
 @dataclass(frozen=True)
 class Progressive(Cost):
-    """Mean distance [m] one row ahead, when the simulation begins anew at every observed row.
+    """Mean distance [m] between simulated and recorded positions one row ahead of every observed row.
 
-    Rows from the second on begin a simulation: there the velocity is known from the rows before. People count who are
-    seen at a row that begins one and at the row after it, so at least three rows are needed.
+    A simulation of one row starts at each row from the second on, where the velocity is known from the previous row.
+    People count if they are observed at such a row and at the next one, so at least three rows are needed.
 
     Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
     """

@@ -1,4 +1,4 @@
-"""RandomSearch: uniformly random candidates, the baseline of the other searches."""
+"""RandomSearch: uniformly random candidates."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ __all__ = ["RandomSearch"]
 
 @dataclass(frozen=True)
 class RandomSearch(Search):
-    """Parameters uniformly at random in the box, the same number of times for everyone.
+    """Uniformly random parameters for all people, the baseline of the other searches.
 
-    The last evaluation of the budget is everyone's own best parameters, together.
+    The last evaluation of the budget is the crowd of the best parameters of all people.
 
     Fields:
-        batch: how many candidates are evaluated at once.
+        batch: number of candidates evaluated at once.
 
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)

@@ -1,4 +1,4 @@
-"""RecordingCalibration: calibrate a whole recording in chunks on several workers; finished chunks are kept."""
+"""RecordingCalibration: calibration of a whole recording, in chunks on several workers; finished chunks are stored."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ AGENTS = 2_000
 
 @dataclass(frozen=True)
 class CalibrationChunk:
-    """The windows ``first`` to ``last`` (not included) of a recording, calibrated.
+    """Calibration of the windows ``first`` to ``last`` (not included) of a recording.
 
     Fields:
-        frame, people: ``[W]``, the last observed frame of each window, and how many were there.
-        arrays: those of :class:`Fit` by name.
+        frame, people: ``[W]``, last observed frame of each window, and number of people present.
+        arrays: arrays of :class:`Fit` by name.
     """
 
     first: int
@@ -49,10 +49,10 @@ class RecordingCalibration:
     """The calibration of a recording with a scheme.
 
     Fields:
-        recording: its windows; only their past is looked at, unless the goal knows the future.
-        calibrator: with parameters of each person; its goal is replaced by ``goal`` when that is given.
-        goal: name of a goal that needs the recording, see :func:`goal_for`.
-        seed: of the search; every window has its own stream.
+        recording: the recording; only observed rows are used, unless the goal requires the future.
+        calibrator: calibrator with individual parameters; ``goal`` replaces its goal, if given.
+        goal: name of a goal that depends on the recording, see :func:`goal_for`.
+        seed: seed of the search; each window has its own random stream.
     """
 
     recording: Recording
@@ -79,7 +79,7 @@ class RecordingCalibration:
         return self.recording.windows[0]
 
     def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[CalibrationChunk]:
-        """Yield chunks as they finish; chunks kept in the folder ``keep`` come first."""
+        """Yield finished chunks; chunks stored in the folder ``keep`` come first."""
         past = self.past
         people = int(past.present[:, -1].sum())
         size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))

@@ -19,14 +19,14 @@ __all__ = ["ResimulatedTracks", "Resimulation"]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
-"""Gives every copy of a scene the parameters of its candidate; the number is how often each window comes in a row."""
+"""Assigns the parameters of candidates to copies of a scene, in which each window is repeated ``copies`` times."""
 
 
 class ResimulatedTracks:
     """Tracks of P candidates over the observed rows of W windows; simulated on first access.
 
     Fields:
-        past: the windows that were simulated again.
+        past: the simulated windows.
     """
 
     def __init__(self, past: Windows, once: Callable[[], Floats], stepwise: Callable[[], Floats]) -> None:
@@ -36,20 +36,20 @@ class ResimulatedTracks:
 
     @functools.cached_property
     def once(self) -> Floats:
-        """Rows 1 to T - 1 when the simulation begins once, at the first row: ``[P, W, T - 1, A, 2]`` [m]."""
+        """Rows 1 to T - 1, simulated from the first row: ``[P, W, T - 1, A, 2]`` [m]."""
         return self._once()
 
     @functools.cached_property
     def stepwise(self) -> Floats:
-        """Rows 2 to T - 1, each simulated from the recorded row before it: ``[P, W, T - 2, A, 2]`` [m]."""
+        """Rows 2 to T - 1, each simulated from the previous recorded row: ``[P, W, T - 2, A, 2]`` [m]."""
         return self._stepwise()
 
 
 class Resimulation:
     """Repeated simulation of observed windows with different parameters.
 
-    Everyone present at the row where a simulation begins but the robots is simulated until their last observed row;
-    robots and people who come later move as they were recorded. Scenes are built once and then copied.
+    People who are present at the first row of a simulation are simulated until their last observed row. Robots and
+    people who appear later follow their recorded tracks. Scenes are created once and then copied.
     """
 
     def __init__(self, rollout: Rollout, past: Windows) -> None:
@@ -72,15 +72,15 @@ class Resimulation:
 
     @functools.cached_property
     def _each(self) -> Scene:
-        """The scenes at rows 1 to T - 2, window by window along E: ``E = W * (T - 2)``."""
+        """Scenes at rows 1 to T - 2, ordered by window: ``E = W * (T - 2)``."""
         rows = range(1, self.past.position.shape[1] - 1)
         scenes = [self.rollout.scene(slice_rows(self.past, 0, row + 1), row) for row in rows]
         order = np.arange(len(rows) * len(self.past)).reshape(len(rows), -1).T.ravel()
         return _concatenate(scenes).environments(order)
 
     @functools.cached_property
-    def _recorded(self) -> _Recorded:
-        return _recorded(self.whole)
+    def _tracks(self) -> _RecordedTracks:
+        return _recorded_tracks(self.whole)
 
     def _from_first_row(self, candidate: Candidate, copies: int, which: Integers) -> Floats:
         T, A = self.past.position.shape[1:3]
@@ -88,7 +88,7 @@ class Resimulation:
         place = np.zeros((len(index), T - 1, A, 2))
         rollout, scene = candidate(self.rollout, self._first.environments(index), 1)
         for row in range(T - 1):
-            scene = self._recorded.with_recorded(scene, row, index)
+            scene = self._tracks.apply(scene, row, index)
             scene = rollout.advance(scene, self.past.dt)
             place[:, row] = scene.position
         return place.reshape(copies, len(which), T - 1, A, 2)
@@ -104,10 +104,10 @@ class Resimulation:
 
 
 @dataclass(frozen=True)
-class _Recorded:
-    """What was recorded: where everyone is, ``[W, T, A]`` who is there, and until which row ``[W, A]``.
+class _RecordedTracks:
+    """Recorded positions and velocities, presence ``[W, T, A]``, and last observed row ``[W, A]``.
 
-    ``changes``: whether anybody comes, is moved or leaves at all.
+    ``changes``: whether any agent appears, disappears or follows a recorded track.
     """
 
     position: Floats
@@ -116,8 +116,8 @@ class _Recorded:
     last: Integers
     changes: bool
 
-    def with_recorded(self, scene: Scene, row: int, index: Integers) -> Scene:
-        """Return the scene with external agents as recorded at ``row``, and without people who have left."""
+    def apply(self, scene: Scene, row: int, index: Integers) -> Scene:
+        """Return the scene with external agents at their recorded states of ``row``, without people who have left."""
         if not self.changes:
             return scene
         here, stays = self.present[index, row], self.last[index] >= row
@@ -129,18 +129,18 @@ class _Recorded:
         return scene.replace(position=place, velocity=velocity, heading=heading, active=active)
 
 
-def _recorded(past: Windows) -> _Recorded:
+def _recorded_tracks(past: Windows) -> _RecordedTracks:
     T = past.position.shape[1]
     both = past.present[:, :-1] & past.present[:, 1:]
     velocity = np.zeros_like(past.position)
     velocity[:, :-1] = np.where(both[..., None], np.diff(past.position, axis=1) / past.dt, 0.0)
     last = T - 1 - np.argmax(past.present[:, ::-1], axis=1)
     changes = bool(np.any(past.robot) or np.any(past.present != past.present[:, :1]))
-    return _Recorded(past.position, velocity, past.present, last, changes)
+    return _RecordedTracks(past.position, velocity, past.present, last, changes)
 
 
 def _concatenate(scenes: list[Scene]) -> Scene:
-    """Return the environments of several scenes with the same people and walls, one scene after the other."""
+    """Concatenate the environments of scenes with the same people and walls."""
     first = scenes[0]
     names = [name for name, value in vars(first).items() if isinstance(value, np.ndarray)]
     return first.replace(**{name: np.concatenate([getattr(scene, name) for scene in scenes]) for name in names})

@@ -1,4 +1,4 @@
-"""Rollout: simulate the people of windows with a crowd model, for costs and for predictions."""
+"""Rollout: simulation of the people in windows with a crowd model, for costs and predictions."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ class Rollout:
     """Simulates observed people; the W windows are the environments of one scene.
 
     Fields:
-        model: how they walk; its parameters are numbers or ``[W, A]``.
-        goal: where they want to go; it is resolved from what is known at the start of the simulation.
-        radius: a number or ``[W, A]`` [m].
-        preferred_speed: ``[W, A]`` [m/s], or None for the observed speed: that of the goal's velocity.
-        substep: longest time step of the simulation [s]; a row of the recording is cut into equal steps.
+        model: crowd model; its parameters are scalars or ``[W, A]``.
+        goal: goals of people, resolved from the data at the start of the simulation.
+        radius: scalar or ``[W, A]`` [m].
+        preferred_speed: ``[W, A]`` [m/s]; None for the observed speed, the magnitude of the velocity of the goal.
+        substep: maximum time step of the simulation [s]; a row of the recording has equal steps.
 
-    People start with their observed velocity. Robots are external: the others avoid them; they follow their plan when
-    it is known, otherwise they keep their velocity.
+    People start with their observed velocity. Robots are external: people avoid them, and they follow their plan if it
+    is known, otherwise they keep their velocity.
     """
 
     model: CrowdModel
@@ -53,8 +53,8 @@ class Rollout:
     def scene(self, past: Windows, row: int) -> Scene:
         """Return the scene at a row of the windows, E = W; people who are not simulated afterwards are external.
 
-        The velocity is the one on which the goal is based, at row 0 that towards the next row. Holes in the observed
-        tracks are bridged.
+        The velocity is the one that the goal is based on; at row 0, it is the velocity to the next row. Gaps in the
+        observed tracks are interpolated.
 
         Raises:
             InputError: the windows are in pixels.

@@ -33,10 +33,10 @@ def goal_class(name: str) -> type[Goal]:
 
 
 def goal_for(name: str, recording: Recording) -> Goal:
-    """Return a goal for a recording: one that knows the future is given it, one that learns learns from it.
+    """Return a goal for a recording: with its true future, or fitted to its learning part, if the goal requires it.
 
     Raises:
-        InputError: the name is unknown, or the goal learns and no part of the recording was kept for it.
+        InputError: the name is unknown, or the goal is learned and the recording has no learning part.
     """
     kind = goal_class(name)
     if issubclass(kind, GroundTruth):
@@ -57,10 +57,10 @@ def resolve_search(value: Search | str) -> Search:
 
 
 def _resolve(value: object, room: ModuleType, contract: type) -> object:
-    """Return a value as it is, or an instance of the class that a name means.
+    """Return the value itself, or an instance of the class with this name.
 
     Raises:
-        InputError: no class has this name, it cannot be made without arguments, or the value is not of the contract.
+        InputError: the name is unknown, the class has no default values, or the value does not fulfil the contract.
     """
     if isinstance(value, str):
         kind = find_class(value, room, contract)
@@ -68,8 +68,8 @@ def _resolve(value: object, room: ModuleType, contract: type) -> object:
             return kind()
         except TypeError:
             raise InputError(
-                f"{kebab_case(kind.__name__)} needs values of its own: pass an instance, not its name"
+                f"{kebab_case(kind.__name__)} has no default values; pass an instance instead of the name"
             ) from None
     if not isinstance(value, contract):
-        raise InputError(f"{value!r} is not a {contract.__name__}, nor the name of one")
+        raise InputError(f"{value!r} is not a {contract.__name__} or the name of one")
     return value

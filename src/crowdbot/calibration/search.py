@@ -80,7 +80,7 @@ class Search(ABC):
             function: cost of each person. People whose cost is NaN in all starts are ignored and keep the parameters of
                 the first start. A cost of another person that is not finite counts as infinite.
             low, high: ``[D]``, the box.
-            rngs: one source of randomness for each of W problems.
+            rngs: one random generator for each of W problems.
             budget: maximum number of whole-crowd candidates evaluated in each problem.
             start: ``[S, W, N, D]``, S >= 1, evaluated first, even outside the box; candidates derived from them lie in
                 the box.
@@ -104,9 +104,9 @@ class Search(ABC):
         """Evaluate candidates until the budget is spent; the state keeps the best.
 
         Args:
-            state: evaluates candidates and knows the box, the random generators and the remaining budget.
-            population: ``[S, L, N, D]``, the starts of the L problems that are not done yet.
-            cost: ``[S, L, N]``, their costs, for each person.
+            state: state of the search: evaluation, bounds, random generators and remaining budget.
+            population: ``[S, L, N, D]``, starts of the L unfinished problems.
+            cost: ``[S, L, N]``, costs of each person in the starts.
         """
 
 

@@ -19,11 +19,11 @@ Integers = NDArray[np.int64]
 class SearchState:
     """State of one run of a search: evaluates whole-crowd candidates of W problems and keeps the best of each.
 
-    A search holds its state in arrays whose axis 1 is L, the problems that are not done yet: ``live [L]`` are their
-    numbers. After each :meth:`evaluate`, :meth:`settle` takes out of the arrays those that are done.
+    Arrays of a search have the unfinished problems L on axis 1; ``live [L]`` are their numbers. After each
+    :meth:`evaluate`, :meth:`prune` removes finished problems from the arrays.
 
     Fields:
-        low, high, span: ``[D]``, the box and its sides.
+        low, high, span: ``[D]``, the bounds and their differences.
         best, cost, evaluations, history: as in :class:`~crowdbot.calibration.SearchResult`.
     """
 
@@ -134,7 +134,7 @@ class SearchState:
         return np.clip(self.best[self.live], self.low, self.high)[None]
 
     def scale_to_box(self, place: Floats) -> Floats:
-        """Return values from places ``[..., D]`` in the box, 0 at its lower and 1 at its upper end, never beyond."""
+        """Return values for relative positions ``[..., D]`` in the box, 0 to 1, clipped to the bounds."""
         return np.clip(self.low + self.span * place, self.low, self.high)
 
     def fold(self, values: Floats) -> Floats:
@@ -151,8 +151,8 @@ class SearchState:
 def own_best(population: Floats, cost: Floats) -> tuple[Floats, Floats]:
     """Return the best parameters of each person in a population, as one candidate ``[1, L, N, D]``.
 
-    Nobody's cost is his own alone: what the candidate costs is known when it has been evaluated. Also returned are the
-    costs ``[1, L, N]`` that everyone had in his own best candidate.
+    The costs of people depend on each other: the cost of this candidate is known only after its evaluation. Also
+    returns the cost ``[1, L, N]`` of each person in the best candidate of that person.
     """
     row = np.argmin(cost, axis=0)[None]
     return np.take_along_axis(population, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)

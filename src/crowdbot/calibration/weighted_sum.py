@@ -19,11 +19,11 @@ __all__ = ["WeightedSum"]
 
 @dataclass(frozen=True)
 class WeightedSum(Cost):
-    """Several costs at once, each with a weight; people count who count in all of them.
+    """Weighted sum of several costs; people count if they count in all of them.
 
     Fields:
         parts: the costs.
-        weights: one each, not below 0 and not all 0.
+        weights: one weight per cost, at least 0 and not all 0.
 
     Raises:
         InputError: there is no cost, or the weights do not fit.
@@ -42,7 +42,7 @@ class WeightedSum(Cost):
                 f"weighted-sum: {len(self.parts)} costs and {len(self.weights)} weights; each cost needs one weight"
             )
         if not all(0.0 <= weight < math.inf for weight in self.weights) or sum(self.weights) == 0.0:
-            raise InputError(f"weighted-sum: weights {self.weights} must be finite, not below 0 and not all 0")
+            raise InputError(f"weighted-sum: weights {self.weights} must be finite, at least 0 and not all 0")
 
     def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
         """Return the weighted sum for every candidate and person, see :meth:`Cost.measure`."""

@@ -21,21 +21,21 @@ COMMANDS = {
     "run": "run one trial and record it",
     "render": "render a trial as an image or a video",
     "replay": "run a recorded episode again and check its digest",
-    "branch": "continue a recorded episode from a given time with other values",
-    "repair": "repair the episode file of a run that was killed",
+    "branch": "continue a recorded episode from a given time with other settings",
+    "repair": "repair the episode file of a killed run",
     "export": "write an episode as a table, Parquet or CSV",
-    "experiment": "run trials with participants, with screens and questionnaires",
+    "experiment": "run trials with participants, instructions and questionnaires",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "train": "train a predictor on recordings of people",
     "study": "compare GANs on a toy dataset with several modes",
     "degrade": "score predictors on degraded tracks, or write a degraded recording",
-    "list": "list built-in models, predictors, trials, ...",
-    "new": "write a new trial, create one from a recording, or import one",
-    "check": "report all errors in a trial or robot file",
-    "cite": "print the papers behind a name",
+    "list": "list built-in names: models, predictors, trials and others",
+    "new": "create a trial, robot, crowd model or another extension, with its test",
+    "check": "report all errors in trials, experiments and robots",
+    "cite": "print the references of built-in names",
     "bench": "measure speed on this machine",
-    "validate": "compare the crowd models with experiments with people",
+    "validate": "compare crowd models with experiments",
 }
 
 
@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             status: int = options.main(options)
         sys.stdout.flush()
         return status
-    except SystemExit as end:  # of --help, --version and wrong options
+    except SystemExit as end:  # from --help, --version and wrong options
         try:
             sys.stdout.flush()
         except OSError:
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(end.__context__, BrokenPipeError):  # rich ends with this exception
             return 0
         raise
-    except BrokenPipeError:  # the reader of the output has ended, as in `| head`
+    except BrokenPipeError:  # the output is closed, as in `| head`
         _discard_output()
         return 0
     except KeyboardInterrupt:
@@ -87,7 +87,7 @@ def _open_standard_streams() -> None:
 
 
 class _CodeNotices(logging.Handler):
-    """Prints which files code is loaded from, on stderr."""
+    """Prints on stderr the files that code is loaded from."""
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print one line."""

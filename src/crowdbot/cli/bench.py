@@ -15,7 +15,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--data", type=Path, metavar="PATH", help="recording for scheme-frame (default: a simulated crowd)"
     )
-    parser.add_argument("--out", type=Path, metavar="FILE.json", help="output file for the rows (default: none)")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE.json", help="output file for the measurements (default: none)"
+    )
     add_json(parser)
 
 

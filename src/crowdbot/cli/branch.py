@@ -1,4 +1,4 @@
-"""``crowdbot branch EPISODE.mcap --at T``: continue a recorded episode from a given time with other values."""
+"""``crowdbot branch EPISODE.mcap --at T``: continue a recorded episode from a given time with other settings."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from .output import add_json, progress, spoken_warnings
+from .output import add_json, print_warnings, progress
 from .replay import add_places
 from .run import print_run
 from .schemes import assignments
@@ -15,16 +15,16 @@ from .schemes import assignments
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     add = parser.add_argument
-    add("episode", metavar="EPISODE.mcap", type=Path)
-    add("--at", type=float, required=True, metavar="T", help="recorded time to continue from [s]")
+    add("episode", metavar="EPISODE.mcap", type=Path, help="recorded episode")
+    add("--at", type=float, required=True, metavar="T", help="time to continue from, in s")
     add(
         "--set",
         nargs="+",
         default=[],
         metavar="PATH=VALUE",
-        help="values by path in the XML of the trial: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
+        help="values by path in the trial file: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
     )
-    add("--seed", type=int, help="seed of new random streams from then on (default: continue the old ones)")
+    add("--seed", type=int, help="seed of new random streams (default: continue the recorded streams)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     add("--force", action="store_true", help="overwrite an existing file")
     add_places(parser)
@@ -36,7 +36,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.recording import branch
 
     begin = time.perf_counter()
-    with spoken_warnings(), progress(options.json) as report:
+    with print_warnings(), progress(options.json) as report:
         done = branch(
             options.episode,
             options.at,

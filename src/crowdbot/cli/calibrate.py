@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, number, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, print_notes, recordings
 from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
 
 if TYPE_CHECKING:
@@ -45,11 +45,11 @@ def main(options: argparse.Namespace) -> int:
         else:
             fits = {one.path: _each(calibrator, goal, one, options, report) for one in found}
     if options.out is not None:
-        _written(options.out, fits, options.shared)
+        _write_results(options.out, fits, options.shared)
     if options.json:
         print_json({name: as_json(fit) for name, fit in fits.items()})
         return 0
-    tell_notes(found)
+    print_notes(found)
     for name, fit in fits.items():
         _table(Path(name).name, fit)
     return 0
@@ -92,13 +92,13 @@ def _each(
         pieces.append(piece)
         done += piece.last - piece.first
         if not options.json:
-            _tell(piece)
+            _print_frames(piece)
         report(recording.name, done / whole)
     fit = campaign.merge(pieces)
     if fit.persons == 0:
         raise InputError(
             f"{recording.path}: nobody in {fit.windows} windows can be scored by {fit.scheme.split(', ')[1]};"
-            " people need enough observed rows, and neighbors if the cost uses distances between people"
+            " people need enough observed rows, and others nearby if the cost uses distances between people"
         )
     return fit
 
@@ -125,7 +125,7 @@ def _shared(
     return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
 
 
-def _tell(piece: CalibrationChunk) -> None:
+def _print_frames(piece: CalibrationChunk) -> None:
     arrays = piece.arrays
     seconds = float(arrays["seconds"].sum()) / max(1, piece.last - piece.first)
     for frame, people, cost, count in zip(
@@ -168,7 +168,7 @@ def as_json(fit: Fit) -> dict[str, Any]:
     }
 
 
-def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
+def _write_results(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     """Write the summary and, for individual parameters, the table of parameters and the population prior."""
     from crowdbot.calibration import PopulationPrior
     from crowdbot.core import explain_write_errors

@@ -18,7 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "names",
         metavar="FILE|NAME",
         nargs="+",
-        help="trials, experiments, URDF files, folders of robots, or built-in names",
+        help="trials, experiments, URDF files, robot folders or built-in names",
     )
     parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of each file")
     parser.add_argument(
@@ -26,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=FOLDER",
         action="append",
         default=[],
-        help="folder of package://NAME/ of a URDF",
+        help="folder for package://NAME/ in URDF files",
     )
     add_settings(parser)
     add_json(parser)

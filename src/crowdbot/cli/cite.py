@@ -1,4 +1,4 @@
-"""``crowdbot cite NAME``: the papers behind what you used."""
+"""``crowdbot cite NAME``: print the references of built-in names."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Print the papers."""
+    """Print the references."""
     from crowdbot.benchmark import papers
 
     found = {name: papers(name) for name in options.names or ["crowdbot"]}

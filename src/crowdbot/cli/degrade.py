@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
-from .recordings import add_recordings, horizon, recordings, tell_notes
+from .recordings import add_recordings, horizon, print_notes, recordings
 from .schemes import add_scheme, assignments, predictor_specs
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--predictor",
         nargs="+",
         metavar="NAME",
-        help="predictors, by name or file.py:Name (default: all that require no PyTorch)",
+        help="predictors, by name or file.py:Name (default: all that do not require PyTorch)",
     )
     add_scheme(parser, many=True)
     add(
@@ -91,7 +91,7 @@ def main(options: argparse.Namespace) -> int:
     if options.json:
         print_json({**_page(options, done, task, not interrupted), "files": [str(file) for file in files]})
     else:
-        tell_notes(found)
+        print_notes(found)
         _tables(done, tracks, task, files)
     if interrupted:
         kept = f" and stored in {options.out}" if files else ""
@@ -327,14 +327,14 @@ def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Cha
     degradation = degradations[0].at(options.levels[0]) if options.levels else degradations[0]
     clean = recordings(options)[0].tracks
     seen = degradation.apply(clean, stream(options.seed, "degrade", 0))
-    told = f"degraded by {degradation}, seed {options.seed}"
-    save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, told)))), options.write)
+    description = f"degraded by {degradation}, seed {options.seed}"
+    save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, description)))), options.write)
     counts = {"rows": (len(clean), len(seen.tracks)), "tracks": (len(clean.ids), len(seen.tracks.ids))}
     if options.json:
         parameters = {"name": degradation.name, "parameters": degradation.describe(), "seed": options.seed}
         print_json({"file": str(options.write), "degradation": parameters, **counts})
         return 0
-    print(told)
+    print(description)
     print(", ".join(f"{what} {before} -> {after}" for what, (before, after) in counts.items()))
     print(f"written   {options.write}")
     return 0

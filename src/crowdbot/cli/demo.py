@@ -11,9 +11,7 @@ from .output import add_json, print_json, print_metrics, print_table, progress
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument(
-        "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder of the results (default: demo)"
-    )
+    parser.add_argument("--out", type=Path, default=Path("demo"), metavar="DIR", help="output folder (default: demo)")
     parser.add_argument("--seed", type=int, help="random seed (default: from the trial)")
     parser.add_argument("--force", action="store_true", help="overwrite the results of an earlier run")
     add_json(parser)

@@ -1,4 +1,4 @@
-"""``crowdbot experiment``: run trials with participants, print their orders, and summarise the results."""
+"""``crowdbot experiment``: run sessions of participants, print trial orders, and summarise results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .output import add_json, note, number, print_json, print_table, spoken_warnings
+from .output import add_json, note, number, print_json, print_table, print_warnings
 
 if TYPE_CHECKING:
     from crowdbot.experiments import Experiment, Respondent, SessionRunner
@@ -18,20 +18,22 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    verbs = parser.add_subparsers(metavar="VERB", required=True, dest="verb")
+    verbs = parser.add_subparsers(metavar="COMMAND", required=True, dest="verb")
     _run_arguments(_verb(verbs, "run", "run the session of one participant"))
     order = _verb(verbs, "order", "print the order of trials for each participant")
     _add_experiment(order)
     order.add_argument(
-        "--participants", type=int, metavar="N", help="number of participants (default: as planned, or 12)"
+        "--participants", type=int, metavar="N", help="number of participants (default: from the experiment, or 12)"
     )
-    summary = _verb(verbs, "summary", "summarise sessions: one row for each trial of each participant")
+    summary = _verb(verbs, "summary", "summarise sessions in a table, with one row for each trial of each participant")
     summary.add_argument("folder", metavar="DIR", type=Path, help="output folder of the sessions (--out)")
     summary.add_argument("--out", type=Path, metavar="FILE", help="write all columns to a .csv, .parquet or .json file")
-    new = _verb(verbs, "new", "create a small experiment to start from")
+    new = _verb(verbs, "new", "create an experiment from a built-in one, or import one")
     new.add_argument("folder", metavar="DIR", type=Path, help="new folder")
     begin = new.add_mutually_exclusive_group()
-    begin.add_argument("--like", default="robot-speed", metavar="NAME", help="a built-in experiment")
+    begin.add_argument(
+        "--like", default="robot-speed", metavar="NAME", help="built-in experiment to copy (default: robot-speed)"
+    )
     begin.add_argument(
         "--import",
         dest="original",
@@ -40,13 +42,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="configuration or order file of the CrowdBot simulator (2021)",
     )
     new.add_argument(
-        "--participant", type=int, metavar="N", help="participant whose order is imported (default: as configured)"
+        "--participant",
+        type=int,
+        metavar="N",
+        help="participant whose trial order is imported (default: from the file)",
     )
     new.add_argument(
         "--root",
         type=Path,
         metavar="DIR",
-        help="project folder of that simulator, for files that an imported file refers to (default: its folder)",
+        help="project folder of the CrowdBot simulator, for files that FILE refers to (default: folder of FILE)",
     )
     for command in (order, summary, new):
         add_json(command)
@@ -65,7 +70,7 @@ def _verb(verbs: Any, name: str, line: str) -> argparse.ArgumentParser:
 
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("experiment", metavar="FILE", help="an experiment file, its folder, or a built-in name")
+    parser.add_argument("experiment", metavar="FILE", help="experiment file, its folder, or built-in name")
     parser.add_argument(
         "--trust", action="store_true", help="allow trials and code outside the folder of the experiment"
     )
@@ -73,17 +78,19 @@ def _add_experiment(parser: argparse.ArgumentParser) -> None:
 
 def _run_arguments(parser: argparse.ArgumentParser) -> None:
     _add_experiment(parser)
-    parser.add_argument("--participant", type=int, required=True, metavar="N", help="number of the participant, from 1")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of all participants")
+    parser.add_argument("--participant", type=int, required=True, metavar="N", help="participant number, from 1")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="output folder, shared by all participants"
+    )
     parser.add_argument("--resume", action="store_true", help="continue an existing session")
     parser.add_argument(
-        "--answers", type=Path, metavar="FILE", help="JSON file with answers by question, for a run without input"
+        "--answers", type=Path, metavar="FILE", help="JSON file with answers by question, instead of input"
     )
     add_json(parser)
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Run a session and return the status: 0 when done, 1 when aborted, 130 when closed."""
+    """Run a session and return the exit status: 0 if it is done, 1 if aborted, 130 if the input is closed."""
     from crowdbot.experiments import (
         Console,
         ConsoleClosed,
@@ -100,37 +107,37 @@ def _run(options: argparse.Namespace) -> int:
         stream.write(text)
         stream.flush()
 
-    person: Respondent = ConsoleRespondent(sys.stdin, write, patient=sys.stdin.isatty())
+    respondent: Respondent = ConsoleRespondent(sys.stdin, write, patient=sys.stdin.isatty())
     if options.answers is not None:
-        person = ScriptedRespondent.load(options.answers, experiment)
-    sitting = SessionRunner(
+        respondent = ScriptedRespondent.load(options.answers, experiment)
+    runner = SessionRunner(
         experiment, options.participant, options.out, time.time, resume=options.resume, trust=options.trust
     )
     try:
-        with spoken_warnings():
-            Console(sitting, person, write, _tell).run()
-    except ConsoleClosed as left:
+        with print_warnings():
+            Console(runner, respondent, write, _print_progress).run()
+    except ConsoleClosed as closed:
         note(
-            f"crowdbot: the session is stored in {sitting.folder}{f' ({left})' if str(left) else ''}; continue "
+            f"crowdbot: the session is stored in {runner.folder}{f' ({closed})' if str(closed) else ''}; continue "
             f"with --resume"
         )
         return 130
     finally:
-        sitting.close()
-    return _ended(sitting, options.json)
+        runner.close()
+    return _print_session(runner, options.json)
 
 
-def _tell(what: str, share: float) -> None:
+def _print_progress(what: str, share: float) -> None:
     """Print the progress of a trial on stderr: in place on a terminal, otherwise at its start and end."""
     if sys.stderr.isatty():
         sys.stderr.write(f"\r{what}  {100.0 * share:3.0f} %" + ("\n" if share == 1.0 else ""))
         sys.stderr.flush()
     elif share in (0.0, 1.0):
-        note(f"{what} {'...' if share == 0.0 else 'over'}")
+        note(f"{what} {'...' if share == 0.0 else 'done'}")
 
 
-def _ended(sitting: SessionRunner, as_json: bool) -> int:
-    session = sitting.session
+def _print_session(runner: SessionRunner, as_json: bool) -> int:
+    session = runner.session
     outcomes = Counter(result.outcome for result in session.results.values())
     if as_json:
         answers = [
@@ -139,17 +146,17 @@ def _ended(sitting: SessionRunner, as_json: bool) -> int:
         ]
         print_json(
             {
-                "experiment": sitting.experiment.name,
-                "participant": sitting.participant,
+                "experiment": runner.experiment.name,
+                "participant": runner.participant,
                 "session": session.phase,
                 "outcomes": dict(outcomes),
                 "answers": answers,
-                "folder": str(sitting.folder),
+                "folder": str(runner.folder),
             }
         )
     else:
-        said = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()) or "none"
-        print(f"\nsession   {session.phase}\ntrials    {said}\nfolder    {sitting.folder}")
+        outcome_counts = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()) or "none"
+        print(f"\nsession   {session.phase}\ntrials    {outcome_counts}\nfolder    {runner.folder}")
     return 0 if session.phase == "done" else 1
 
 
@@ -182,13 +189,15 @@ def _balance(experiment: Experiment, count: int) -> list[str]:
     """Return for each Latin square whether it is balanced for this number of participants."""
     from crowdbot.experiments import rows_of
 
-    said = []
+    sentences = []
     for block in experiment.blocks:
         every = rows_of(block)
         if block.order == "latin-square":
-            right = "balanced" if count % every == 0 else "not balanced"
-            said.append(f"block {block.name}: {right} over {count} participants; balanced over multiples of {every}")
-    return said
+            verdict = "balanced" if count % every == 0 else "not balanced"
+            sentences.append(
+                f"block {block.name}: {verdict} over {count} participants; balanced over multiples of {every}"
+            )
+    return sentences
 
 
 def _summary(options: argparse.Namespace) -> int:
@@ -222,7 +231,7 @@ def _new(options: argparse.Namespace) -> int:
     left_out: tuple[str, ...] = ()
     try:
         if options.original is not None:
-            left_out = _imported(options)
+            left_out = _import(options)
         else:
             shutil.copytree(known[options.like], options.folder)
     except OSError as error:
@@ -239,8 +248,8 @@ def _new(options: argparse.Namespace) -> int:
     return 0
 
 
-def _imported(options: argparse.Namespace) -> tuple[str, ...]:
-    """Write an imported experiment with its trials, and return what was not imported and what is to be corrected."""
+def _import(options: argparse.Namespace) -> tuple[str, ...]:
+    """Write an imported experiment with its trials, and return the skipped parts and the errors to correct."""
     from crowdbot.core import TrialError
     from crowdbot.experiments import FILE, experiment_xml, import_experiment
     from crowdbot.trials import check_trial, trial_xml
@@ -250,10 +259,10 @@ def _imported(options: argparse.Namespace) -> tuple[str, ...]:
     options.folder.mkdir(parents=True)
     for name, text in texts.items():
         (options.folder / name).write_text(text, encoding="utf-8")
-    mend: list[str] = []
+    problems: list[str] = []
     for name, trial in done.trials:
         try:
             check_trial(trial)
         except TrialError as error:
-            mend += [f"to correct in {name}: {sentence}" for sentence in error.problems]
-    return (*done.left_out, *mend)
+            problems += [f"to correct in {name}: {sentence}" for sentence in error.problems]
+    return (*done.left_out, *problems)

@@ -1,4 +1,4 @@
-"""``crowdbot list KIND``: list what is built in."""
+"""``crowdbot list KIND``: list built-in names."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .output import add_json, print_json, print_table
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument(
-        "kind", metavar="KIND", nargs="?", help="models, predictors, trials, ... (default: list all kinds)"
+        "kind", metavar="KIND", nargs="?", help="kind, such as models, predictors or trials (default: all kinds)"
     )
     parser.add_argument("name", metavar="NAME", nargs="?", help="built-in trial whose parameters are listed")
     add_json(parser)

@@ -25,28 +25,28 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of the trial")
-    group = parser.add_argument_group("a trial")
+    group = parser.add_argument_group("trial")
     begin = group.add_mutually_exclusive_group()
     begin.add_argument(
-        "--from", dest="source", metavar="TRIAL", help="built-in name or file to start from (default: frontal)"
+        "--from", dest="source", metavar="TRIAL", help="built-in name or file to copy (default: frontal)"
     )
     begin.add_argument(
         "--import", dest="original", type=Path, metavar="FILE", help="file of the CrowdBot simulator (2021)"
     )
-    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording with the people of the trial")
+    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
     group.add_argument(
         "--root",
         type=Path,
         metavar="DIR",
-        help="project folder of that simulator, for files that an imported file refers to (default: its folder)",
+        help="project folder of the CrowdBot simulator, for files that FILE refers to (default: folder of FILE)",
     )
     add_settings(group)
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
-    group.add_argument("--seed", type=int, help="seed of the trial (default: from --from)")
-    group = parser.add_argument_group("a trial of recorded people")
-    group.add_argument("--fps", type=float, help="frames per second of the recording (default: from the file)")
-    group.add_argument("--reactive", action="store_true", help="crowd model for people near the robot")
-    group.add_argument("--replace", type=int, metavar="ID", help="person that the robot replaces")
+    group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
+    group = parser.add_argument_group("trial from a recording")
+    group.add_argument("--fps", type=float, help="frame rate of the recording in Hz (default: from the file)")
+    group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
+    group.add_argument("--replace", type=int, metavar="ID", help="id of the person that the robot replaces")
 
 
 def main(options: argparse.Namespace) -> int:

@@ -20,8 +20,8 @@ __all__ = [
     "print_json",
     "print_metrics",
     "print_table",
+    "print_warnings",
     "progress",
-    "spoken_warnings",
 ]
 
 Progress = Callable[[str, float], None]
@@ -84,7 +84,7 @@ def print_metrics(title: str, metrics: Mapping[str, float]) -> None:
 
 
 def number(value: Any, digits: int = 3) -> str:
-    """Return a number for a table; missing and infinite values are written as words."""
+    """Return a number for a table: ``-`` for a missing value, ``none`` for infinity."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
     if isinstance(value, float) and math.isinf(value):
@@ -100,7 +100,7 @@ def note(sentence: str) -> None:
 
 
 @contextmanager
-def spoken_warnings() -> Iterator[None]:
+def print_warnings() -> Iterator[None]:
     """Print warnings of crowdbot as plain sentences on stderr."""
     from crowdbot.simulation import RunFailureWarning
 
@@ -129,19 +129,19 @@ def progress(quiet: bool = False) -> Iterator[Progress]:
         with _bars() as report:
             yield report
     else:
-        with _compiling_told(note):
+        with _report_compilation(note):
             yield _lines()
 
 
 @contextmanager
-def _compiling_told(say: Callable[[str], None]) -> Iterator[None]:
+def _report_compilation(say: Callable[[str], None]) -> Iterator[None]:
     from crowdbot.core import cache_folder, is_cold, notify_compiling
 
-    def tell() -> None:
+    def report() -> None:
         first = "first run: " if is_cold() else ""
         say(f"{first}compiling kernels once, into {cache_folder()}; this takes one to two minutes")
 
-    with notify_compiling(tell):
+    with notify_compiling(report):
         yield
 
 
@@ -160,17 +160,17 @@ def _bars() -> Iterator[Progress]:
                 known[what] = bars.add_task(what, total=1.0)
             bars.update(known[what], completed=share)
 
-        with _compiling_told(lambda sentence: bars.console.print(sentence, highlight=False, markup=False)):
+        with _report_compilation(lambda sentence: bars.console.print(sentence, highlight=False, markup=False)):
             yield report
 
 
 def _lines() -> Progress:
-    said: dict[str, int] = {}
+    quarters: dict[str, int] = {}
 
     def report(what: str, share: float) -> None:
         quarter = min(4, int(share * 4.0 + 1e-9))
-        if said.get(what, -1) < quarter:
-            said[what] = quarter
+        if quarters.get(what, -1) < quarter:
+            quarters[what] = quarter
             if quarter in (0, 4):
                 note(f"{what} ..." if quarter == 0 else f"{what} done")
 

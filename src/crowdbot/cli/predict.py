@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
-from .recordings import add_recordings, horizon, recordings, tell_notes
+from .recordings import add_recordings, horizon, print_notes, recordings
 from .schemes import add_scheme, frame_line, predictor_specs
 
 if TYPE_CHECKING:
@@ -69,18 +69,18 @@ def main(options: argparse.Namespace) -> int:
     with progress(options.json) as report, warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".* is used instead$")  # reported once as a note
         try:
-            done = _done(evaluation, options, keep, report)
+            done = _run_jobs(evaluation, options, keep, report)
         except KeyboardInterrupt:
             note(_resume_hint(evaluation, keep))
             raise
     results = evaluation.results(done)
     if options.out is not None:
         with explain_write_errors(options.out):
-            _written(options, evaluation, results)
+            _write_results(options, evaluation, results)
     if options.json:
         print_json(as_json(evaluation, results))
         return 0
-    tell_notes(found)
+    print_notes(found)
     for sentence in _notes(results):
         note(sentence)
     _tables(options, evaluation, results)
@@ -97,11 +97,11 @@ def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
 
 def _notes(results: list[PredictorResult]) -> list[str]:
     """Return the notes of the predictors about the recordings, without duplicates."""
-    said = (one.spec.predictor.note(one.recording.windows[0]) for one in results)
-    return [sentence for sentence in dict.fromkeys(said) if sentence]
+    notes = (one.spec.predictor.note(one.recording.windows[0]) for one in results)
+    return [sentence for sentence in dict.fromkeys(notes) if sentence]
 
 
-def _done(
+def _run_jobs(
     evaluation: Evaluation, options: argparse.Namespace, keep: Path | None, report: Progress
 ) -> list[tuple[EvaluationJob, JobResult]]:
     """Run the evaluation; print one line per frame of a calibrated crowd."""
@@ -111,15 +111,15 @@ def _done(
         whole[job.label] = whole.get(job.label, 0) + job.last - job.first
     done: list[tuple[EvaluationJob, JobResult]] = []
     share: dict[tuple[str, str], int] = {}
-    said = False
+    has_header = False
     for job, part in evaluation.run(options.workers, options.cluster, keep):
         done.append((job, part))
         share[job.label] = share.get(job.label, 0) + job.last - job.first
         report(" ".join(job.label), share[job.label] / whole[job.label])
         if not options.json and part.frames.calibrated:
-            if not said:
+            if not has_header:
                 note(frame_line())
-                said = True
+                has_header = True
             _frame_lines(part)
     return done
 
@@ -182,7 +182,7 @@ def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str,
     }
 
 
-def _written(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
+def _write_results(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
     """Write the scores, the results by frame, the plots and the animation, if requested."""
     from crowdbot.benchmark import animate_window, plot_errors, plot_frames
 

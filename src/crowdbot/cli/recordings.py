@@ -1,4 +1,4 @@
-"""Options for recordings, shared by several commands; rows, frames and seconds are distinguished."""
+"""Options for recordings, shared by several commands. Options state whether they count rows, frames or seconds."""
 
 from __future__ import annotations
 
@@ -12,33 +12,53 @@ from .output import note
 if TYPE_CHECKING:
     from crowdbot.data import Recording
 
-__all__ = ["add_recordings", "horizon", "recordings", "tell_notes"]
+__all__ = ["add_recordings", "horizon", "print_notes", "recordings"]
 
 
 def add_recordings(parser: argparse.ArgumentParser, predict: int = 12) -> None:
-    """Add the options that choose files, their time base, and the windows cut from them."""
+    """Add the options for files, their time base and their windows."""
     add = parser.add_argument
-    add("--data", nargs="+", type=Path, required=True, metavar="PATH", help="recordings, scored separately and jointly")
-    add("--observe", type=int, default=8, metavar="ROWS", help="observed rows of a window (default 8)")
-    add("--predict", type=int, default=predict, metavar="ROWS", help=f"predicted rows of a window (default {predict})")
-    add("--protocol", default="all", metavar="NAME", help="all, sgan, partial or timesplit (default all)")
-    add("--near", type=float, metavar="METRES", help="score only people within this distance of a recorded robot")
+    add("--data", nargs="+", type=Path, required=True, metavar="PATH", help="recordings")
+    add("--observe", type=int, default=8, metavar="ROWS", help="observed rows of a window (default: 8)")
+    add("--predict", type=int, default=predict, metavar="ROWS", help=f"predicted rows of a window (default: {predict})")
+    add(
+        "--protocol",
+        default="all",
+        metavar="NAME",
+        help="evaluation protocol, see `crowdbot list protocols` (default: all)",
+    )
+    add(
+        "--near",
+        type=float,
+        metavar="METRES",
+        help="maximum distance of scored people from a recorded robot (default: none)",
+    )
     add(
         "--fps",
         type=float,
         metavar="FRAMES",
-        help="frames per second of the frame column (default: from the file); rows 10 frames apart at 25 are 0.4 s",
+        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s",
     )
-    add("--step", type=float, metavar="SECONDS", help="resample rows to this time step (default: that of the file)")
-    add("--format", metavar="NAME", help="file format, see crowdbot list formats (default: detected)")
-    add("--time-base", default="true", metavar="NAME", help="true or published, for the ETH file with two time bases")
+    add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
+    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
+    add(
+        "--time-base",
+        default="true",
+        metavar="NAME",
+        help="time base of the ETH recording: true or published (default: true)",
+    )
     add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm or px (default: from the file)")
-    add("--late", default="skip", metavar="NAME", help="people who appear during the observation: skip or extrapolate")
+    add(
+        "--late",
+        default="skip",
+        metavar="NAME",
+        help="people who appear during the observation: skip or extrapolate (default: skip)",
+    )
     add(
         "--learn", type=float, default=0.0, metavar="SHARE",
-        help="first share of each recording, used to learn goals; only the rest is predicted (default 0)",
+        help="initial share of each recording for learning goals; only the rest is predicted (default: 0)",
     )  # fmt: skip
-    add("--every", type=int, default=1, metavar="N", help="only every N-th window of each recording (default 1)")
+    add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
 def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
@@ -54,7 +74,7 @@ def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
     )  # fmt: skip
 
 
-def tell_notes(found: tuple[Recording, ...]) -> None:
+def print_notes(found: tuple[Recording, ...]) -> None:
     """Print the notes of the recordings, without duplicates."""
     for sentence in dict.fromkeys(f"{one.name}: {one.tracks.note}" for one in found if one.tracks.note):
         note(sentence)

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
+    parser.add_argument("trial", metavar="TRIAL", help="trial file or built-in name, such as crossing-flows")
     parser.add_argument(
         "--camera",
         metavar="NAME",
-        help="a camera of the trial, robot/sensor, or overview (default: the first of the trial, or overview)",
+        help="camera of the trial, robot/sensor, or overview (default: first camera of the trial, or overview)",
     )
     parser.add_argument(
         "--out",
@@ -30,15 +30,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a video, or a folder for numbered images",
     )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
-    parser.add_argument("--at", type=float, metavar="T", help="one image at time T in s (default: 0)")
+    parser.add_argument("--at", type=float, metavar="T", help="time of an image in s (default: 0)")
     parser.add_argument("--from", dest="begin", type=float, metavar="T", help="start of a video in s (default: 0)")
-    parser.add_argument("--to", dest="end", type=float, metavar="T", help="a film until T s")
-    parser.add_argument("--fps", type=float, metavar="F", help="images per second (default: about 25)")
+    parser.add_argument("--to", dest="end", type=float, metavar="T", help="end of a video in s")
+    parser.add_argument("--fps", type=float, metavar="F", help="frame rate of a video in Hz (default: about 25)")
     parser.add_argument(
-        "--depth", action="store_true", help="also write the depth: PNG in millimetres, or grey in a video"
+        "--depth", action="store_true", help="also write depth images: PNG in millimetres, or grey levels in a video"
     )
     parser.add_argument(
-        "--segmentation", action="store_true", help="also write a segmentation image, one colour per object"
+        "--segmentation", action="store_true", help="also write segmentation images, with one colour per object"
     )
     parser.add_argument("--list", action="store_true", help="list the cameras of the trial and exit")
     parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
@@ -56,11 +56,13 @@ def main(options: argparse.Namespace) -> int:
 
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     if options.list:
-        return _listed(trial, options.json)
+        return _list_cameras(trial, options.json)
     take = _take(options, trial.duration)
     camera = options.camera or camera_names(trial)[0]
-    film = take.end is not None
-    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step), options.force)
+    video = take.end is not None
+    album = ImageWriter(
+        options.out or _default(trial.name, camera, video), video, _rate(take, trial.step), options.force
+    )
     with progress(options.json) as report:
         found = render_images(
             trial,
@@ -78,7 +80,7 @@ def main(options: argparse.Namespace) -> int:
         "world": trial.world,
         "camera": camera,
         "images": count,
-        "rate": album.rate if film else None,
+        "rate": album.rate if video else None,
     }
     if options.json:
         print_json({**summary, "files": [str(path) for path in files]})
@@ -113,12 +115,12 @@ def _rate(take: RenderRequest, step: float) -> float:
     return take.rate or 1.0 / (step * max(1, math.ceil(SMOOTH / step - 1e-9)))
 
 
-def _default(trial: str, camera: str, film: bool) -> Path:
+def _default(trial: str, camera: str, video: bool) -> Path:
     name = re.sub(r"[^A-Za-z0-9]+", "-", f"{trial}-{camera}").strip("-").lower() or "trial"
-    return Path(f"{name}{'.mp4' if film else '.png'}")
+    return Path(f"{name}{'.mp4' if video else '.png'}")
 
 
-def _listed(trial: Trial, as_json: bool) -> int:
+def _list_cameras(trial: Trial, as_json: bool) -> int:
     from crowdbot.rendering import camera_names
 
     names = camera_names(trial)

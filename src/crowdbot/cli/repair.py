@@ -1,4 +1,4 @@
-"""``crowdbot repair EPISODE.mcap``: complete the episode file of a run that was killed."""
+"""``crowdbot repair EPISODE.mcap``: repair the episode file of a killed run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .output import add_json, print_json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("episodes", metavar="EPISODE.mcap", type=Path, nargs="+")
+    parser.add_argument("episodes", metavar="EPISODE.mcap", type=Path, nargs="+", help="episode files")
     add_json(parser)
 
 
@@ -23,5 +23,5 @@ def main(options: argparse.Namespace) -> int:
         print_json(found)
         return 0
     for path, end in found.items():
-        print(f"{path}: {'is whole, nothing to do' if end is None else f'has its end now, at {end:g} s'}")
+        print(f"{path}: {'complete, nothing to repair' if end is None else f'repaired, ends at {end:g} s'}")
     return 0

@@ -10,7 +10,7 @@ from .output import add_json, print_json, progress
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
+    parser.add_argument("episode", metavar="EPISODE.mcap", type=Path, help="recorded episode")
     add_places(parser)
     add_json(parser)
 
@@ -26,7 +26,7 @@ def add_places(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--trust",
         action="store_true",
-        help="run code from the episode or that differs from the recorded code; use files outside the folder",
+        help="allow code from the episode, code that differs from the recorded code, and files outside the folder",
     )
 
 

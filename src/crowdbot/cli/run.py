@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .output import add_json, note, number, print_json, print_metrics, print_table, progress, spoken_warnings
+from .output import add_json, note, number, print_json, print_metrics, print_table, print_warnings, progress
 from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
+    parser.add_argument("trial", metavar="TRIAL", help="trial file or built-in name, such as crossing-flows")
     parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
-    parser.add_argument("--pace", type=float, metavar="X", help="speed in multiples of real time (default: unlimited)")
+    parser.add_argument("--pace", type=float, metavar="X", help="speed relative to real time (default: unlimited)")
     parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
     add_world(parser)
     add_settings(parser)
@@ -38,7 +38,7 @@ def main(options: argparse.Namespace) -> int:
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
-    with spoken_warnings(), progress(options.json) as report:
+    with print_warnings(), progress(options.json) as report:
         done = record(
             trial,
             options.seed,

@@ -1,4 +1,4 @@
-"""``crowdbot study gan``: compare GANs against mode collapse on the toy data of the report."""
+"""``crowdbot study gan``: compare GANs on the toy data of the report, with respect to mode collapse."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         required=True,
         metavar="DIR",
-        help="folder for trainings, tables and plots; resumes if it exists",
+        help="output folder for trainings, tables and plots; an existing study is resumed",
     )
     add_json(parser)
 
@@ -62,10 +62,10 @@ def main(options: argparse.Namespace) -> int:
         for run in study.run(options.out / "trainings", options.workers):
             runs.append(run)
             report(run.method, sum(one.method == run.method for one in runs) / len(seeds))
-    return _said(options, study, runs)
+    return _write_and_print(options, study, runs)
 
 
-def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun]) -> int:
+def _write_and_print(options: argparse.Namespace, study: GanComparison, runs: list[GanRun]) -> int:
     from crowdbot.benchmark import plot_measures, plot_samples
     from crowdbot.core import explain_write_errors
 
@@ -90,11 +90,11 @@ def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun])
     rows = [("real against real", *(number(ideal[name]) for name in names))]
     rows += [(row["method"], *(number(row[name]) for name in names)) for row in found["methods"]]
     caption = (
-        f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths of each group, and 20"
+        f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths per group, and 20"
         " against 20 as in the report; means over the last quarter of the measurements"
     )
     print_table(
-        "GANs on the toy set",
+        "GANs on the toy data",
         ("method", "1-NN", "EMD [m]", "modes", "groups with all", "1-NN of 20", "EMD of 20"),
         rows,
         caption,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import add_json, note, number, print_json, print_table
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, print_notes, recordings
 from .schemes import assignments
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.2,
         metavar="SHARE",
-        help="validation share at the end of each recording, without --check (default: 0.2)",
+        help="final share of each recording for validation, without --check (default: 0.2)",
     )
     add(
         "--leave-out",
@@ -39,7 +39,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="excluded test set: eth, hotel, univ, zara1, zara2 or a file name (default: none)",
     )
     add("--out", type=Path, required=True, metavar="DIR", help="folder for weights, log and training state")
-    add("--resume", action="store_true", help="continue the training in DIR")
+    add("--resume", action="store_true", help="resume the training in DIR")
     add("--epochs", type=int, metavar="N", help=f"number of epochs (default: {EPOCHS})")
     add("--updates", type=int, metavar="N", help="number of updates, instead of --epochs")
     add("--check-every", type=int, default=200, metavar="N", help="updates between validations (default: 200)")
@@ -50,10 +50,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="validations without improvement before early stopping (default: none)",
     )
     add("--settings", metavar="NAME", help="preset (social-ways: report, variety or modes; default: report)")
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings (default: none)")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="settings that differ from the preset (default: none)",
+    )
     add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default: cpu)")
     add(
-        "--threads", type=int, default=1, metavar="N", help="PyTorch threads; results depend on it bitwise (default: 1)"
+        "--threads",
+        type=int,
+        default=1,
+        metavar="N",
+        help="number of PyTorch threads; it affects the last bits of results (default: 1)",
     )
     add("--tensorboard", action="store_true", help="write TensorBoard events to DIR")
     add("--seed", type=int, default=0, help="random seed (default: 0)")
@@ -86,22 +96,23 @@ def main(options: argparse.Namespace) -> int:
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
-    learned, watched, left = _samples(options)
+    training_set, data, excluded = _samples(options)
     if not options.json:
-        tell_notes(learned)
-        for sentence in short_recordings(learned):
+        print_notes(training_set)
+        for sentence in short_recordings(training_set):
             note(f"warning: {sentence}")
-    samples, check = watched
+    samples, check = data
     model = make_learner(
         options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device
     )
     if not options.json:
         note(
-            f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(learned)} recordings"
+            f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(training_set)}"
+            " recordings"
         )
-    with torch_threads(options.threads), explain_write_errors(options.out), _events(options) as written:
-        done = train(model, schedule, options.out, options.resume, _told(options.json, written))
-    _said(options, done, options.out / BEST, left)
+    with torch_threads(options.threads), explain_write_errors(options.out), _events(options) as events:
+        done = train(model, schedule, options.out, options.resume, _log_callback(options.json, events))
+    _print_result(options, done, options.out / BEST, excluded)
     return 0
 
 
@@ -155,17 +166,17 @@ def _events(options: argparse.Namespace) -> _Events:
     return _Events(SummaryWriter(str(options.out)))
 
 
-def _told(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
-    def told(row: LogRow) -> None:
+def _log_callback(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
+    def log(row: LogRow) -> None:
         events.add(row)
         if not quiet:
             words = [f"{name} {value:.4f}" for name, value in row.items() if name not in ("update", "epoch", "seconds")]
             note(f"update {row['update']:.0f}  epoch {row['epoch']:.0f}  {'  '.join(words)}  {row['seconds']:.0f} s")
 
-    return told
+    return log
 
 
-def _said(options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str]) -> None:
+def _print_result(options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str]) -> None:
     best = done.rows[done.best] if done.best is not None else {}
     if options.json:
         print_json(
@@ -177,12 +188,13 @@ def _said(options: argparse.Namespace, done: TrainingResult, file: Path, left: l
         ("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))),
     ]
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
-    caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
+    ending = ", stopped early" if done.stopped else ""
+    caption = f"{done.updates} updates in {done.seconds:.0f} s{ending}; weights in {file}"
     print_table(
         f"{options.what}, best of 20 on the validation data", ("", "update", "ADE [m]", "FDE [m]"), rows, caption
     )
     from crowdbot.prediction import WEIGHTS_FIELDS
 
     data = " ".join(left) or "PATH"
-    said = f"--predictor {options.what} --set {WEIGHTS_FIELDS[options.what]}={file}"
-    note(f"evaluate with: crowdbot predict {said} --samples 20 --data {data}")
+    flags = f"--predictor {options.what} --set {WEIGHTS_FIELDS[options.what]}={file}"
+    note(f"evaluate with: crowdbot predict {flags} --samples 20 --data {data}")

@@ -10,14 +10,14 @@ from .output import add_json, note, print_json, print_table, progress
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("--models", metavar="A,B", help="models, by name or address (default: all)")
+    parser.add_argument("--models", metavar="A,B", help="crowd models, by name or file.py:Name (default: all)")
     parser.add_argument(
         "--data", type=Path, metavar="DIR", help="folder of reference recordings (default: published curves only)"
     )
     parser.add_argument(
         "--out", type=Path, default=Path("validate"), metavar="DIR", help="output folder (default: validate)"
     )
-    parser.add_argument("--quick", action="store_true", help="small and short runs, for a test of the installation")
+    parser.add_argument("--quick", action="store_true", help="short runs with few people, to test the installation")
     add_json(parser)
 
 

@@ -1,4 +1,4 @@
-"""Floor 1: recordings of people, read, cut into windows and written; and forecasts of where they go."""
+"""Recordings of people: readers, writers and windows; and forecasts."""
 
 from .example import example_windows
 from .file_formats import FORMATS, load

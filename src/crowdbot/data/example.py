@@ -1,4 +1,4 @@
-"""A small set of windows, for checks and examples."""
+"""Small example windows, for checks and examples."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STEP = 0.4
 
 
 def example_windows(rows: int = 8, seed: int = 0) -> Windows:
-    """Return 3 windows of 6 people with all that happens in recordings.
+    """Return 3 windows of 6 people with typical features of recordings.
 
     Person 3 appears at the last row, person 4 is missing at some rows, person 5 is a robot, and the last person of the
     second window is padding.

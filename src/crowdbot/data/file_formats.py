@@ -87,5 +87,5 @@ def _detect(source: Source) -> Reader:
         if reader.sniff(source):
             return reader
     kind = {"binary": "is binary and", "zip": "is a zip and"}.get(source.kind, "is text and")
-    first = f" (it begins with {source.lines[0].strip()[:40]!r})" if source.lines else ""
-    raise DataError(f"{source.path} {kind} of no known format{first}; formats are {', '.join(FORMATS)}")
+    first = f" (it starts with {source.lines[0].strip()[:40]!r})" if source.lines else ""
+    raise DataError(f"{source.path} {kind} of an unknown format{first}; formats are {', '.join(FORMATS)}")

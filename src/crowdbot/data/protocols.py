@@ -21,21 +21,22 @@ from .windows import Windows
 __all__ = ["LATE", "PROTOCOLS", "cut_past", "cut_windows"]
 
 PROTOCOLS = {
-    "all": "every window with a person at all rows; frames without people are skipped",
-    "sgan": "as all, but windows with at least two such persons, as the loader of SGAN does (Gupta et al. 2018)",
-    "partial": "futures that end early count from 2 rows on, at the rows there are (Schöller et al. 2020)",
-    "timesplit": "windows of exact time steps, the last fifth in time (the split of Social Ways, Amirian et al. 2019)",
-    "timesplit-train": "the first four fifths that timesplit leaves for training",
+    "all": "all windows with a person who is present at all rows; frames without people are skipped",
+    "sgan": "as all, but only windows with at least two such persons, as in SGAN (Gupta et al. 2018)",
+    "partial": "as all, but futures need only 2 rows, and existing rows are scored (Schöller et al. 2020)",
+    "timesplit": "windows with exact time steps from the last fifth of the recording (Social Ways, Amirian et al."
+    " 2019)",
+    "timesplit-train": "the training part of timesplit, the first four fifths of the recording",
 }
 LATE = {
-    "skip": "people who appear during the observed part are left out",
-    "extrapolate": "they are extrapolated backwards with their first velocity; they are not scored",
+    "skip": "people who appear during the observed part are excluded",
+    "extrapolate": "they are extrapolated backwards with their first velocity, and not scored",
 }
 
 SHORTEST_FUTURE = 2
-"""Fewest future rows of a scored person in protocol ``partial``."""
+"""Minimum number of future rows of a scored person in protocol ``partial``."""
 MAX_BYTES = 4 * 1024**3
-"""Largest memory of windows [bytes]."""
+"""Maximum memory of windows [bytes]."""
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -107,9 +108,9 @@ def _check(tracks: TrackTable, observe: int, predict: int, protocol: str, near: 
     if not near > 0.0:
         raise InputError(f"windows: near is {near} m, it must be above 0")
     if not tracks.robots:
-        raise DataError(f"{tracks.name} has no robot to be near to; near works on recorded trials, or set robots")
+        raise DataError(f"{tracks.name} has no robot, which near requires; use a recorded trial, or set robots")
     if tracks.units != "m":
-        raise DataError(f"{tracks.name} is in pixels, near is in metres; turn it into metres first")
+        raise DataError(f"{tracks.name} is in pixels, but near is in metres; convert the recording to metres first")
 
 
 def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: str) -> Bools:
@@ -118,13 +119,13 @@ def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: st
     if protocol == "sgan":
         crowd = np.bincount(instants[scored], minlength=len(rows.runs.frames))
         scored = scored & (crowd[instants] >= 2)
-        why = "no window has two people at all its rows, as protocol sgan asks; protocol all takes one"
+        why = "no window has two people who are present at all rows; protocol sgan requires two, protocol all one"
     elif protocol.startswith("timesplit"):
         every = np.unique(instants[scored])
         border = len(every) * 4 // 5
         late = instants >= every[border]
         scored = scored & (late if protocol == "timesplit" else ~late)
-        why = "its one window is the last fifth, so nothing is left for training"
+        why = "it has a single window, which belongs to the last fifth; no window is left for training"
     else:
         return scored
     if not np.any(scored):
@@ -144,8 +145,8 @@ def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> 
     close = scored & (distance <= near)
     if not np.any(close):
         nearest = distance[scored].min()
-        how = f"the nearest is {nearest:.2f} m away" if np.isfinite(nearest) else "no robot is there at the time"
-        raise DataError(f"{tracks.name}: nobody who could be scored comes within {near} m of a robot; {how}")
+        how = f"the nearest is {nearest:.2f} m away" if np.isfinite(nearest) else "no robot is present at these times"
+        raise DataError(f"{tracks.name}: no scored person comes within {near} m of a robot; {how}")
     return close
 
 
@@ -172,16 +173,16 @@ def _fill_windows(
     shape = len(chosen), int(slot.max()) + 1
     _check_size(tracks.name, shape, observe, predict)
 
-    def placed(values: NDArray[Any], empty: int = 0) -> NDArray[Any]:
+    def place(values: NDArray[Any], empty: int = 0) -> NDArray[Any]:
         table = np.full(shape, empty, dtype=values.dtype)
         table[window, slot] = values[members]
         return table
 
     frames = _frames(tracks, rows, chosen, observe, predict, protocol)
-    counted = placed(scored)
+    counted = place(scored)
     common: dict[str, Any] = {
-        "robot": placed(rows.robot),
-        "id": placed(rows.id, -1),
+        "robot": place(rows.robot),
+        "id": place(rows.id, -1),
         "dt": tracks.dt,
         "protocol": protocol,
         "source": tracks.name,
@@ -254,11 +255,11 @@ def _why_none(tracks: TrackTable, rows: _Rows, observe: int, need: int, protocol
     """Return the reason why no person can be scored, with the lengths of the tracks."""
     people = ~rows.robot
     if not np.any(people):
-        return f"{tracks.name} has only robots, there are no people to predict"
+        return f"{tracks.name} contains only robots, no people to predict"
     longest = int(rows.runs.behind[people].max())
     lengths = np.unique(rows.id[people], return_counts=True)[1]
     crowd = np.unique(rows.runs.instant, return_counts=True)[1]
-    holes = f" without a hole ({int(lengths.max())} with holes)" if lengths.max() > longest else ""
+    holes = f" without gaps ({int(lengths.max())} with gaps)" if lengths.max() > longest else ""
     future = f"at least {need}" if protocol == "partial" else str(need)
     return (
         f"{tracks.name}: no window of {observe} observed and {future} predicted rows was found (protocol {protocol}),"

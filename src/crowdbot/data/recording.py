@@ -1,4 +1,4 @@
-"""Recording: a file with its loading and window options, as one value for worker processes."""
+"""Recording: a file with its loading and window options."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Recording:
     """A file of tracks and the windows that are predicted.
 
     Fields:
-        path, fps, format, units, time_base: as of :func:`crowdbot.load`.
-        step: time step after resampling [s]; None keeps that of the file, and takes 0.4 for recorded trials.
-        observe, predict, protocol, near, late: as of :meth:`Trajectories.windows`.
-        learn: first share of the recording, for learning goals; it is not predicted.
+        path, fps, format, units, time_base: see :func:`crowdbot.load`.
+        step: time step after resampling [s]; None means the time step of the file, or 0.4 s for recorded trials.
+        observe, predict, protocol, near, late: see :meth:`Trajectories.windows`.
+        learn: initial share of the recording for learning goals; it is not predicted.
         every: only every n-th window is predicted.
 
     Raises:
@@ -50,9 +50,9 @@ class Recording:
 
     def __post_init__(self) -> None:
         if self.every < 1:
-            raise InputError(f"every = {self.every} must be at least 1: each, every 2nd, every 3rd window")
+            raise InputError(f"every = {self.every} must be at least 1")
         if not 0.0 <= self.learn < 1.0:
-            raise InputError(f"the share of a recording to learn from is {self.learn}, it must be from 0 to below 1")
+            raise InputError(f"learn = {self.learn} must be at least 0 and below 1")
 
     @property
     def tracks(self) -> Trajectories:
@@ -64,7 +64,7 @@ class Recording:
         """The part for learning."""
         if self.learn == 0.0:
             raise InputError(
-                f"{self.path}: there is no part to learn from; reserve the first part of the recording with --learn 0.5"
+                f"{self.path}: the recording has no learning part; reserve one with --learn, for example --learn 0.5"
             )
         return self.tracks.split(self.learn)[0]
 

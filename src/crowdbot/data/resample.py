@@ -1,4 +1,4 @@
-"""Tracks at another time step: linear interpolation inside a track, never beyond its ends."""
+"""Resampling of tracks to another time step: linear interpolation inside a track, no extrapolation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["resample"]
 Tracks = TypeVar("Tracks", bound=TrackTable)
 
 WHOLE = 1e-6
-"""A new step this near to a whole number of frames [frames] is one."""
+"""Tolerance for a new step that is a whole number of frames [frames]."""
 
 
 def resample(tracks: Tracks, dt: float, gap: float | None) -> Tracks:
@@ -38,7 +38,7 @@ def resample(tracks: Tracks, dt: float, gap: float | None) -> Tracks:
     begins = np.flatnonzero(np.concatenate([[True], np.diff(id) != 0]))
     ends = np.concatenate([begins[1:], [len(id)]])
     if np.sum(since[ends - 1] - since[begins]) / step > MAX_ROWS:
-        raise DataError(f"{tracks.name}: steps of {dt} s make more than {MAX_ROWS} rows; take a longer step")
+        raise DataError(f"{tracks.name}: steps of {dt} s give more than {MAX_ROWS} rows; use a longer step")
     parts: list[tuple[NDArray[Any], ...]] = []
     for begin, end in zip(begins, ends, strict=True):
         own = since[begin:end]
@@ -62,7 +62,7 @@ def resample(tracks: Tracks, dt: float, gap: float | None) -> Tracks:
 
 
 def _steps_inside(own: NDArray[np.float64], step: float, bridge: float) -> NDArray[np.int64]:
-    """Return the multiples of ``step`` [frames] inside one track, but not inside a hole longer than ``bridge``."""
+    """Return the multiples of ``step`` [frames] inside one track, but not inside a gap longer than ``bridge``."""
     tiny = 1e-9 * max(step, 1.0)
     count = np.arange(math.ceil((own[0] - tiny) / step), math.floor((own[-1] + tiny) / step) + 1, dtype=np.int64)
     holes = np.flatnonzero(np.diff(own) > bridge)

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 LARGEST = 2.0**53
-"""Above this a float64 cannot hold every integer."""
+"""Largest range of integers that float64 represents exactly."""
 
 
 def where(name: str, index: int, line: Integers | None) -> str:
@@ -48,7 +48,7 @@ def floats(values: ArrayLike, what: str, name: str) -> Floats:
     """Return ``values`` as float64.
 
     Raises:
-        DataError: one is no number.
+        DataError: a value is not a number.
     """
     try:
         return np.asarray(values, dtype=np.float64)

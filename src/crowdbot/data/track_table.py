@@ -1,4 +1,4 @@
-"""TrackTable: the rows of a recording with their units and time base, before anything is cut out of them."""
+"""TrackTable: the rows of a recording with their units and time base."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class PrimaryScene(NamedTuple):
 class TrackTable:
     """Rows of tracks with their units and time base: the fields of :class:`crowdbot.data.Trajectories`.
 
-    What cuts windows or resamples depends on this table only.
+    Functions that cut windows or resample depend on this table only.
     """
 
     id: Integers

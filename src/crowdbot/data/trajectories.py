@@ -1,4 +1,4 @@
-"""Trajectories: the rows of a recording, with everything that can be cut out of them or computed from them."""
+"""Trajectories: the rows of a recording, with methods to select, resample and cut windows."""
 
 from __future__ import annotations
 
@@ -188,12 +188,12 @@ class Trajectories(TrackTable):
             observe, predict: rows of the two parts.
             protocol: ``all``, ``sgan``, ``partial``, ``timesplit`` or ``timesplit-train``: see ``PROTOCOLS``.
             near: score only people within this distance of a robot at the last observed row [m].
-            late: people who appear during the observed part are left out (``skip``) or, from two rows on,
+            late: people who appear during the observed part are excluded (``skip``) or, with at least two rows,
                 extrapolated backwards with their first velocity (``extrapolate``); they are never scored.
 
         Raises:
             InputError: an argument is not allowed.
-            DataError: there is no window; the message has the reason.
+            DataError: there is no window; the message states the reason.
         """
         return cut_windows(self, observe, predict, protocol, near, late)
 

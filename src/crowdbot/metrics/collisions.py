@@ -40,7 +40,7 @@ def collision_mask(forecast: Forecast, future: Windows, limit: float = CONTACT, 
         InputError: forecast and future do not match, or ``neighbors`` is unknown.
     """
     check(forecast, future)
-    _known(neighbors)
+    _check_neighbors(neighbors)
     W, K, _, A, _ = forecast.position.shape
     hit = np.zeros((W, K, A), dtype=np.bool_)
     for window in np.flatnonzero(
@@ -79,7 +79,7 @@ def neighbor_mask(future: Windows, neighbors: str = "predicted") -> Bools:
     With ``predicted``, these are the people in windows with at least two scored people; with ``true``, people who share
     at least one step with anyone else in the ground truth.
     """
-    if _known(neighbors) == "predicted":
+    if _check_neighbors(neighbors) == "predicted":
         return np.asarray(future.scored & (future.scored.sum(axis=1) > 1)[:, None])
     crowd = future.present.sum(axis=2, keepdims=True) > 1
     return np.asarray(future.scored & np.any(future.present & crowd, axis=1))
@@ -90,7 +90,7 @@ def mean_over_samples(forecast: Forecast, value: Bools) -> Floats:
     return np.asarray(np.sum(value * forecast.weight[:, :, None], axis=1))
 
 
-def _known(neighbors: str) -> str:
+def _check_neighbors(neighbors: str) -> str:
     if neighbors not in NEIGHBORS:
         allowed = " or ".join(NEIGHBORS)
         raise InputError(f"collisions: neighbors {neighbors!r}{did_you_mean(neighbors, NEIGHBORS)} must be {allowed}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .nearest_neighbor import _checked, path_distances
+from .nearest_neighbor import _check, path_distances
 
 __all__ = ["earth_mover_distance"]
 
@@ -31,7 +31,7 @@ def earth_mover_distance(real: ArrayLike, drawn: ArrayLike) -> NDArray[np.float6
     """
     from scipy.optimize import linear_sum_assignment
 
-    one, other = _checked(real, drawn)
+    one, other = _check(real, drawn)
     cost = path_distances(one, other)
     found = np.zeros(cost.shape[:-2])
     for index in np.ndindex(found.shape):

@@ -78,7 +78,7 @@ class PersonValues:
 
     def intervals(self) -> Intervals:
         """Return the intervals of all means."""
-        return Intervals(*_percentiles(_resampled(self.total, self.count, RESAMPLES, 0), self.count, LEVEL))
+        return Intervals(*_percentiles(_resample(self.total, self.count, RESAMPLES, 0), self.count, LEVEL))
 
     def minus(self, other: PersonValues, name: str) -> tuple[float, Interval]:
         """Return the difference of a mean to that of another predictor on the same people, and its interval.
@@ -96,7 +96,7 @@ class PersonValues:
         total = np.stack([self.total[:, column], other.total[:, column]], axis=1)
         count = np.stack([self.count[:, column]] * 2, axis=1)
         whole = _ratio(total.sum(axis=0), count.sum(axis=0))
-        drawn = _resampled(total, count, RESAMPLES, 0)
+        drawn = _resample(total, count, RESAMPLES, 0)
         return float(whole[0] - whole[1]), _percentiles(drawn[:, :1] - drawn[:, 1:], count[:, :1], LEVEL)[0]
 
 
@@ -129,10 +129,10 @@ def bootstrap_interval(
     if resamples < 1 or not 0.0 < level < 1.0:
         raise InputError(f"an interval needs at least 1 resample and a level in 0..1, not {resamples} and {level}")
     people = PersonValues.of(person, [values])
-    return _percentiles(_resampled(people.total, people.count, resamples, seed), people.count, level)[0]
+    return _percentiles(_resample(people.total, people.count, resamples, seed), people.count, level)[0]
 
 
-def _resampled(total: Floats, count: Floats, resamples: int, seed: int) -> Floats:
+def _resample(total: Floats, count: Floats, resamples: int, seed: int) -> Floats:
     """Return the means ``[R, C]`` of R resamples of people with sums ``[M, C]``; NaN where no value was drawn."""
     M = len(total)
     rng = stream(seed, "bootstrap")

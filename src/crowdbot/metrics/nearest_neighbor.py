@@ -35,7 +35,7 @@ def nearest_neighbor_accuracy(real: ArrayLike, drawn: ArrayLike) -> Floats:
     >>> nearest_neighbor_accuracy([[[0.0, 0.0]], [[1.0, 0.0]]], [[[0.0, 5.0]], [[1.0, 5.0]]]).item()
     1.0
     """
-    one, other = _checked(real, drawn)
+    one, other = _check(real, drawn)
     both = np.concatenate([one, other], axis=-3)
     away = path_distances(both, both)
     count = both.shape[-3]
@@ -57,7 +57,7 @@ def path_distances(one: Floats, other: Floats) -> Floats:
     return np.asarray(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2).mean(axis=-1))
 
 
-def _checked(real: ArrayLike, drawn: ArrayLike) -> tuple[Floats, Floats]:
+def _check(real: ArrayLike, drawn: ArrayLike) -> tuple[Floats, Floats]:
     one, other = np.asarray(real, dtype=np.float64), np.asarray(drawn, dtype=np.float64)
     if one.shape != other.shape or one.ndim < 3 or one.shape[-1] != 2 or 0 in one.shape[-3:]:
         raise InputError(

@@ -70,7 +70,7 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
     ade, fde = mean_and_final(forecast, distance, counted)
     best = best_of(ade, fde, rule)
     who = future.scored
-    kept = np.swapaxes(_followed(distance, ade, rule), 1, 2)
+    kept = np.swapaxes(_best_sample(distance, ade, rule), 1, 2)
     hit = [
         mean_over_samples(forecast, collision_mask(forecast, future, neighbors=word)) for word in ("predicted", "true")
     ]
@@ -96,12 +96,12 @@ def error_over_horizon(forecast: Forecast, future: Windows, rule: str = "person"
     Of K samples, the one with the best ADE is used, by person or by scene according to ``rule``.
     """
     distance, counted = distances(forecast, future)
-    kept = _followed(distance, mean_and_final(forecast, distance, counted)[0], rule)
+    kept = _best_sample(distance, mean_and_final(forecast, distance, counted)[0], rule)
     count = counted.sum(axis=(0, 2))
     return np.where(count > 0, kept.sum(axis=(0, 2)) / np.maximum(count, 1), np.nan)
 
 
-def _followed(distance: Floats, ade: Floats, rule: str) -> Floats:
+def _best_sample(distance: Floats, ade: Floats, rule: str) -> Floats:
     """Return the distance ``[W, T, A]`` of the sample with the best ADE."""
     W, _, _, A = distance.shape
     index = np.broadcast_to(chosen_sample(ade, rule), (W, 1, A))[:, :, None]

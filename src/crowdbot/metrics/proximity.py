@@ -1,6 +1,6 @@
 """Proximity metrics of a logged robot: clearance, proxemic zones, time to collision, local density.
 
-All distances are surface to surface unless said otherwise: between centres, less both radii. Arrays of a log are
+All distances are surface to surface unless stated otherwise: between centres, less both radii. Arrays of a log are
 ``times [T]``, ``position [T, A, 2]``, ``radius [A]``, ``active [T, A]``; ``robot`` is the index of the robot in A. The
 metrics and their usual thresholds are collected in Francis et al. 2025 (ACM THRI), arXiv 2306.16740.
 """

@@ -207,12 +207,14 @@ class Score:
 
     @staticmethod
     def heads(scores: Sequence[Score]) -> tuple[str, ...]:
-        """Return the heads of the columns that at least one score has something to say in, for one table of all.
+        """Return the heads of the columns with at least one value, for a table of several scores.
 
-        Hand them to :meth:`cells` of each.
+        Pass them to :meth:`cells` of each score.
         """
-        told = {name: None for one in scores for name, word in one._words().items() if word != "-"}
-        kept = {"collisions", "ms/window", *told} - (set(SAMPLED) if all(one.samples == 1 for one in scores) else set())
+        measured = {name: None for one in scores for name, word in one._words().items() if word != "-"}
+        kept = {"collisions", "ms/window", *measured} - (
+            set(SAMPLED) if all(one.samples == 1 for one in scores) else set()
+        )
         order = dict.fromkeys(name for one in scores for name in one._words())
         return tuple(name for name in order if name in kept)
 

@@ -27,7 +27,7 @@ SCHOLLER = Paper(
 
 @dataclass(frozen=True)
 class ConstantVelocity(Predictor):
-    """Constant velocity: the mean of the last ``displacements`` displacements.
+    """Constant velocity: the mean of the last displacements.
 
     One displacement is the strongest simple baseline on smooth tracks; more of them reduce noise. Values above the
     number of observed rows use the whole track. Missing rows are interpolated linearly. The velocity of people who are

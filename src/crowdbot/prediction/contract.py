@@ -1,4 +1,4 @@
-"""The contract of predictors, as a check for your own ones."""
+"""Check that a user-defined predictor fulfils the contract."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ STEPS = 12
 
 
 def check_predictor(predictor: Predictor) -> None:
-    """Check that a predictor keeps its contract on small windows.
+    """Check that a predictor fulfils the contract on small windows.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the predictor violates a rule of the contract.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> check_predictor(ConstantVelocity())
@@ -54,7 +54,7 @@ def _check_windows(predictor: Predictor, past: Windows) -> None:
         if not np.array_equal(forecast.valid, past.present[:, -1]):
             raise InputError(f"{name}.predict must predict everyone who is present at the last row, and nobody else")
         if not _same(_predict(predictor, past, samples), forecast):
-            raise InputError(f"{name}.predict is not deterministic: the same generator gave another forecast")
+            raise InputError(f"{name}.predict is not deterministic: the same generator returned another forecast")
         unscored = dataclasses.replace(past, scored=~past.scored)
         if not _same(_predict(predictor, unscored, samples), forecast):
             raise InputError(f"{name}.predict uses past.scored; it must not")

@@ -59,7 +59,7 @@ def degraded_windows(past: Windows, future: Windows, degraded: DegradedTracks, c
     ([[False, True]], 1, 1)
     """
     table = _Table.of(past, degraded)
-    window, row, clean = table.chosen(carry)
+    window, row, clean = table.tracks_at_last_row(carry)
     order = np.lexsort((degraded.tracks.id[row], window))
     window, row, clean = window[order], row[order], clean[order]
     slot = np.arange(len(window)) - np.searchsorted(window, window)
@@ -106,7 +106,7 @@ class _Table:
         key = place * len(ids) + number  # ascending: rows are sorted by frame, then id
         return cls(degraded, past, frames, np.append(first, len(tracks)), ids, key)
 
-    def chosen(self, carry: int) -> tuple[Integers, Integers, Integers]:
+    def tracks_at_last_row(self, carry: int) -> tuple[Integers, Integers, Integers]:
         """Return window, last observed row and clean slot (-1 for a false track) of all tracks in the windows."""
         window, row, clean = self._at(0)
         for back in range(1, min(carry, self.past.position.shape[1] - 1) + 1):

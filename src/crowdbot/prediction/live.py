@@ -51,12 +51,12 @@ class Live:
         if observe < 1:
             raise InputError(f"live: observe = {observe} rows must be at least 1")
         if not isinstance(predictor, Predictor):
-            raise InputError(f"live: {predictor!r} is no predictor; give an object, such as crowdbot.AnchorNet()")
+            raise InputError(f"live: {predictor!r} is not a predictor; pass an instance, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
         if getattr(goal, "knows_future", False):
             raise InputError(
-                f"live: {type(goal).__name__} looks at what people will do, which nobody knows while predicting live;"
-                " take current-direction"
+                f"live: {type(goal).__name__} requires the future, which is unknown in live prediction; use"
+                " current-direction"
             )
         self.predictor = predictor
         self.dt = dt
@@ -81,11 +81,11 @@ class Live:
         who = np.asarray(ids, dtype=np.int64).reshape(-1)
         place = np.asarray(position, dtype=float).reshape(-1, 2)
         if len(who) != len(place):
-            raise InputError(f"live: {len(who)} identities and {len(place)} positions; each needs the other")
+            raise InputError(f"live: {len(who)} identities and {len(place)} positions; the numbers must be equal")
         if not np.all(np.isfinite(place)):
             raise InputError(f"live: the position of {who[~np.isfinite(place).all(axis=1)][0]} is not finite")
         if len(np.unique(who)) != len(who) or np.any(who < 0):
-            raise InputError(f"live: identities {who.tolist()} must be different and not below 0")
+            raise InputError(f"live: identities {who.tolist()} must be distinct and at least 0")
         order = np.argsort(who)
         self._rows = [*self._rows[1 - self.observe :], (who[order], place[order], frozenset(robots))][-self.observe :]
         self._count += 1

@@ -30,7 +30,7 @@ class Predictor(ABC):
     @property
     def name(self) -> str:
         """Name on the command line, followed by the parameters that differ from their defaults."""
-        return _spoken(self)
+        return _format_value(self)
 
     @abstractmethod
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
@@ -118,10 +118,10 @@ def _same(one: object, other: object) -> bool:
     return one == other
 
 
-def _spoken(value: object) -> str:
+def _format_value(value: object) -> str:
     if dataclasses.is_dataclass(value):
         own = [
-            f"{field.name}={_spoken(getattr(value, field.name))}"
+            f"{field.name}={_format_value(getattr(value, field.name))}"
             for field in dataclasses.fields(value)
             if field.repr and not _same(getattr(value, field.name), _default(field))
         ]

@@ -48,13 +48,13 @@ class PredictorSpec:
         if self.goal is not None:
             if not isinstance(crowd, Simulated):
                 name = kebab_case(type(crowd).__name__)
-                raise InputError(f"goals are for predictors that simulate a crowd; {name} has none")
+                raise InputError(f"a goal requires a predictor that simulates a crowd, not {name}")
             goal_class(self.goal)
         for word in ("prior", "shared"):
             if getattr(self, word) and (not isinstance(crowd, Simulated) or crowd.calibrator is None):
-                raise InputError(f"{word} parameters belong to a calibration: name a cost and a search")
+                raise InputError(f"{word} parameters require a calibration: set a cost or a search")
         if self.prior and self.shared:
-            raise InputError("a population prior is about each person's own parameters, not about shared ones")
+            raise InputError("a population prior requires individual parameters, not shared ones")
 
     @property
     def name(self) -> str:
@@ -93,13 +93,12 @@ class PredictorSpec:
             return
         if crowd.calibrator is not None and recording.observe < 2:
             raise InputError(
-                f"calibration needs at least 2 observed rows, and 3 with the progressive cost; {recording.observe} is"
-                " observed: a track of one point shows no motion"
+                f"calibration needs at least 2 observed rows (3 with the progressive cost), not {recording.observe}"
             )
         if live and self.knows_future:
             raise InputError(
-                f"the goal {self.label.rpartition(', ')[2]} looks at what people will do, which nobody knows while"
-                " predicting live; take current-direction, or leave out --live"
+                f"the goal {self.label.rpartition(', ')[2]} requires the future, which is unknown in live prediction;"
+                " use current-direction, or omit --live"
             )
 
     def build(self, recording: Recording) -> Predictor:
@@ -108,11 +107,11 @@ class PredictorSpec:
         Raises:
             InputError: a part is learned, and the recording has no known part (``learn`` is 0).
         """
-        return _prepared(self, recording)
+        return _prepare(self, recording)
 
 
 @functools.lru_cache(maxsize=16)
-def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
+def _prepare(spec: PredictorSpec, recording: Recording) -> Predictor:
     crowd = spec.predictor
     if not isinstance(crowd, Simulated):
         return crowd
@@ -122,8 +121,8 @@ def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
         return crowd
     calibrator = cast(Calibrator, crowd.calibrator)
     if goal_class(spec.goal or "current-direction").knows_future:
-        raise InputError(f"{spec.goal} knows the future of what is predicted only: nothing can be learned with it")
-    past = _known(recording)
+        raise InputError(f"{spec.goal} requires the true future and cannot be used to fit a prior or shared parameters")
+    past = _learning_windows(recording)
     if spec.shared:
         fit = dataclasses.replace(calibrator, shared=True, free=_shareable(calibrator)).fit(past)
         return Simulated.of(fit)
@@ -131,7 +130,7 @@ def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
     return dataclasses.replace(crowd, prior=PopulationPrior.from_fits(fit))
 
 
-def _known(recording: Recording) -> Windows:
+def _learning_windows(recording: Recording) -> Windows:
     past, _ = recording.learning_part.windows(recording.observe, 1, "all", None, recording.late)
     chosen = np.unique(np.linspace(0, len(past) - 1, LEARNING_WINDOWS).astype(np.int64))
     return past[chosen]

@@ -50,10 +50,10 @@ def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     flows, passed, outside, overlap = [], [], [], []
     for k, width in enumerate(widths):
 
-        def reported(part: float, done: int = k) -> None:
+        def report_part(part: float, done: int = k) -> None:
             report((done + part) / len(widths))
 
-        walk = _leave(model, width, people, seeds, seconds, reported)
+        walk = _leave(model, width, people, seeds, seconds, report_part)
         flow = [_flow(crossings(walk, 0.5 * LENGTH, e), people, seconds) for e in range(seeds)]
         flows.append([f for f, _ in flow])
         passed.append([count for _, count in flow])
@@ -83,10 +83,10 @@ def judge(result: dict[str, Any]) -> Verdict:
             f" ({int(stuck.sum())} of {stuck.size} runs)"
         )
     if distance > TOLERANCE and not np.all(np.any(stuck, axis=1)):
-        kind = "too much" if specific.mean() > SPECIFIC_FLOW else "too little"
-        words.append(f"{kind} flow through a bottleneck, {specific.mean():.1f} persons per second and metre")
+        kind = "too high" if specific.mean() > SPECIFIC_FLOW else "too low"
+        words.append(f"the flow through bottlenecks is {kind}, {specific.mean():.1f} persons per second and metre")
     if result["outside"] > 0.0:
-        words.append(f"up to {share(result['outside'])} are pushed through the walls at a bottleneck")
+        words.append(f"up to {share(result['outside'])} of people are pushed through the walls of a bottleneck")
     passed = distance <= TOLERANCE and not np.any(stuck) and result["outside"] == 0.0
     return Verdict(f"{specific.mean():.2f} /(m s)", passed, "; ".join(words))
 
@@ -94,8 +94,8 @@ def judge(result: dict[str, Any]) -> Verdict:
 BOTTLENECK = Check(
     "bottleneck",
     "bottleneck",
-    f"the flows through all widths are within {TOLERANCE:.0%} (mean) of {SPECIFIC_FLOW} persons per second and metre,"
-    " all people get out and nobody's centre enters a wall",
+    f"the mean relative deviation of the flow from {SPECIFIC_FLOW} persons per second and metre is at most"
+    f" {TOLERANCE:.0%}, all people leave the room, and nobody's centre enters a wall",
     run,
     judge,
 )

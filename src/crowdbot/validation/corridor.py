@@ -42,9 +42,9 @@ SPREAD = 0.05
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     """Measure the mean forward speed at each density; densities are environments."""
     densities = QUICK if quick else DENSITIES
-    warm, measure_recordings = (4.0, 2.0) if quick else (WARM, MEASURED)
+    warm, measured = (4.0, 2.0) if quick else (WARM, MEASURED)
     crowd = corridor_crowd([("one-way", d, 0) for d in densities], LENGTH, WIDTH, two_way=False, spread=SPREAD)
-    walk = simulate_periodic(model, crowd, LENGTH, warm + measure_recordings, stream_of("corridor", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, warm + measured, stream_of("corridor", "model"), report)
     first = round(warm / (4.0 * STEP))
     moved = (walk.position[-1, ..., 0] - walk.position[first, ..., 0]) / (walk.times[-1] - walk.times[first])
     y, here = walk.position[..., 1], crowd.active
@@ -66,7 +66,7 @@ def judge(result: dict[str, Any]) -> Verdict:
     if speed[dense] > 0.7 * FREE_SPEED:
         words.append(f"a one-way crowd of {density[dense]:g} people/m2 still walks at {speed[dense]:.2f} m/s")
     elif np.any(speed[density <= 1.0] < 0.5 * curve[density <= 1.0]):
-        words.append("a one-way crowd is far too slow already at 1 person/m2")
+        words.append("a one-way crowd is far too slow even at 1 person/m2")
     elif distance > LIMIT:
         words.append("one-way crowds are " + ("too fast" if np.mean(speed - curve) > 0.0 else "too slow"))
     if result["outside"] > 0.0:
@@ -78,8 +78,8 @@ def judge(result: dict[str, Any]) -> Verdict:
 CORRIDOR = Check(
     "corridor",
     "corridor",
-    f"root mean square distance of the speeds to Weidmann's curve is at most {LIMIT:.2f} m/s and nobody's centre leaves"
-    " the corridor (with the file above this is RiMEA test 4)",
+    f"the root mean square deviation of the speeds from Weidmann's curve is at most {LIMIT:.2f} m/s, and nobody's"
+    " centre leaves the corridor (together with single file, this is RiMEA test 4)",
     run,
     judge,
 )

@@ -40,7 +40,7 @@ LIMIT = 240.0
 HALL, DEPTH = 15.0, 10.0
 DOOR = 1.0
 DOOR_PEOPLE = 250
-"""A quarter of the people of the guideline in a quarter of its hall of 30 x 20 m, with doors of the same width."""
+"""A quarter of the people in a quarter of the hall of the guideline (30 x 20 m), with doors of the same width."""
 LEAST, MOST = 1.6, 2.4
 """Range of time ratios that count as doubling, as in the system test of JuPedSim."""
 
@@ -51,10 +51,10 @@ def run_doors(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     seconds, out, outside, overlap = [], [], [], []
     for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
 
-        def reported(part: float, done: int = k) -> None:
+        def report_part(part: float, done: int = k) -> None:
             report(0.5 * (done + part))
 
-        walk = _hall(model, people, sides, limit, reported)
+        walk = _hall(model, people, sides, limit, report_part)
         y = walk.position[..., 1]
         seconds.append(float(walk.times[-1]))
         out.append(int(np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0).sum()))
@@ -75,24 +75,24 @@ def judge_doors(result: dict[str, Any]) -> Verdict:
     words, people = [], result["people"]
     if min(result["out"]) < people:
         stuck = people - min(result["out"])
-        words.append(f"{stuck} of {people} people do not find out of a hall in {result['limit']:g} s")
+        words.append(f"{stuck} of {people} people do not leave a hall within {result['limit']:g} s")
         value = f"{min(result['out'])} of {people}"
         ratio = 0.0
     else:
         ratio = result["seconds"][1] / result["seconds"][0]
         value = f"{ratio:.2f} ({result['seconds'][0]:.0f}, {result['seconds'][1]:.0f} s)"
         if not LEAST <= ratio <= MOST:
-            words.append(f"half of the doors of a hall take {ratio:.1f} times as long")
+            words.append(f"a hall takes {ratio:.1f} times as long to empty with half of its doors")
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} leave a hall through its walls")
+        words.append(f"{share(result['outside'])} of people leave a hall through its walls")
     return Verdict(value, not words, "; ".join(words))
 
 
 DOORS = Check(
     "rimea-9",
     "RiMEA 9",
-    f"{DOOR_PEOPLE} people leave a hall of {HALL:g} x {DEPTH:g} m by four doors of {DOOR:g} m, then by the two of one"
-    f" side, which takes {LEAST} to {MOST} times as long; nobody's centre enters a wall",
+    f"{DOOR_PEOPLE} people leave a hall of {HALL:g} x {DEPTH:g} m through four doors of {DOOR:g} m, and then through"
+    f" the two doors of one side, which takes {LEAST} to {MOST} times as long; nobody's centre enters a wall",
     run_doors,
     judge_doors,
 )
@@ -139,22 +139,25 @@ def judge_rooms(result: dict[str, Any]) -> Verdict:
     first, second = result["queues"]
     words = []
     if result["out"] < result["people"]:
-        words.append(f"{result['people'] - result['out']} of {result['people']} people do not get through two rooms")
+        words.append(
+            f"{result['people'] - result['out']} of {result['people']} people do not get through two rooms in time"
+        )
     if first < QUEUE:
-        words.append("no queue forms in front of a corridor of 1 m")
+        words.append("no queue forms in front of a corridor 1 m wide")
     if second >= QUEUE:
-        words.append(f"a queue of {second:.0f} forms at an exit behind a corridor as wide as the exit")
+        words.append(f"a queue of {second:.0f} forms at an exit, although the corridor before it has the same width")
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} go through the walls between two rooms")
+        words.append(f"{share(result['outside'])} of people walk through the walls between two rooms")
     return Verdict(f"{first:.0f} | {second:.0f}", not words, "; ".join(words))
 
 
 TWO_ROOMS = Check(
     "rimea-12",
     "RiMEA 12",
-    f"{ROOM_PEOPLE} people walk from a room of 10 x 10 m through a corridor of 5 x 1 m, a second room and an exit of 1"
-    f" m: a queue (95th percentile over time of the people within 2 m who are slower than {SLOW} m/s) of at least"
-    f" {QUEUE:g} in front of the corridor, of fewer at the exit; all get out, none through a wall",
+    f"{ROOM_PEOPLE} people walk from a room of 10 x 10 m through a corridor of 5 x 1 m into a second room, and leave it"
+    f" through an exit of 1 m. The queue has at least {QUEUE:g} people in front of the corridor and fewer at the exit;"
+    f" it is the 95th percentile over time of the number of people within 2 m who are slower than {SLOW} m/s. All"
+    " people leave, and nobody's centre enters a wall",
     run_rooms,
     judge_rooms,
 )
@@ -169,10 +172,10 @@ def run_long_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str,
     seconds, out, outside = [], [], []
     for k, name in enumerate(("short", "corner", "long")):
 
-        def reported(part: float, done: int = k) -> None:
+        def report_part(part: float, done: int = k) -> None:
             report((done + part) / 3.0)
 
-        walk, gone = _corner(model, name, people, limit, reported)
+        walk, gone = _corner(model, name, people, limit, report_part)
         seconds.append(float(walk.times[-1]))
         out.append(gone)
         outside.append(inside_solids(walk, _corner_solids(name)))
@@ -187,19 +190,20 @@ def judge_long_corner(result: dict[str, Any]) -> Verdict:
         words.append("not everyone gets through a wide corridor with a corner in time")
     elif not short <= corner <= long:
         words.append(
-            f"a crowd takes {corner:.0f} s around a wide corner, straight on {short:.0f} s (inside) and {long:.0f} s"
-            " (outside)"
+            f"a crowd needs {corner:.0f} s around a wide corner, but {short:.0f} s and {long:.0f} s in straight"
+            " corridors as long as its inner and outer walls"
         )
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} go through the walls of a wide corner")
+        words.append(f"{share(result['outside'])} of people walk through the walls of a wide corner")
     return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s", not words, "; ".join(words))
 
 
 LONG_CORNER = Check(
     "rimea-15",
     "RiMEA 15",
-    f"{CORNER_CROWD} people in a corridor 10 m wide with a corner (lengths are half of the guideline's, the people a"
-    f" quarter) need longer than for the straight {SHORT:g} m of its inner wall and less long than for {LONG:g} m",
+    f"{CORNER_CROWD} people in a corridor 10 m wide with a corner need more time than in a straight corridor of"
+    f" {SHORT:g} m, the length of its inner wall, and less than in one of {LONG:g} m, the length of its outer wall; the"
+    " guideline has twice the lengths and four times the people",
     run_long_corner,
     judge_long_corner,
 )

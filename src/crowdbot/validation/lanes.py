@@ -25,7 +25,7 @@ BAND = 0.3
 SECONDS, LAST = 60.0, 20.0
 NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
 ORDER = 0.5
-"""Minimum order of lanes; recordings reach about 0.5 to 1."""
+"""Minimum lane order; recordings have about 0.5 to 1."""
 JAM = 0.1
 """Speeds below this fraction of the free speed are a jam."""
 
@@ -97,8 +97,8 @@ def judge_lanes(result: dict[str, Any]) -> Verdict:
 LANES = Check(
     "lanes",
     "lanes",
-    f"in a corridor 4 m wide, 1 person/m2, the order of the last {LAST:g} s is at least {ORDER} and people get on with"
-    " at least half of the free speed",
+    f"in a corridor 4 m wide with 1 person/m2, the mean lane order of the last {LAST:g} s is at least {ORDER}, and the"
+    " mean forward speed is at least half of the free speed",
     run_lanes,
     judge_lanes,
 )
@@ -132,19 +132,20 @@ def judge_narrow(result: dict[str, Any]) -> Verdict:
     if np.any(jams):
         first = density[np.any(jams, axis=1)][0]
         words.append(
-            f"jams in a two-way corridor 2 m wide, from {first:g} people/m2 on ({int(jams.sum())} of {jams.size} runs)"
+            f"jams in a two-way corridor 2 m wide, at {first:g} people/m2 or more ({int(jams.sum())} of"
+            f" {jams.size} runs)"
         )
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} are pushed through the walls of a narrow two-way corridor")
+        words.append(f"{share(result['outside'])} of people are pushed through the walls of a narrow two-way corridor")
     return Verdict(f"{int(jams.sum())} of {jams.size} jam", not words, "; ".join(words))
 
 
 NARROW = Check(
     "narrow",
     "narrow two-way",
-    "in a corridor 2 m wide no run at 0.5 to 2 people/m2 jams (mean forward speed of the last"
-    f" {NARROW_LAST:g} of {NARROW_SECONDS:g} s below {JAM:.0%} of 1.34 m/s; people in experiments do not: Zhang et al."
-    " 2012), and nobody's centre leaves the corridor",
+    "in a corridor 2 m wide, no run at 0.5 to 2 people/m2 jams, and nobody's centre leaves the corridor. A jam is a"
+    f" mean forward speed below {JAM:.0%} of 1.34 m/s in the last {NARROW_LAST:g} of {NARROW_SECONDS:g} s; people in"
+    " experiments do not jam at these densities (Zhang et al. 2012)",
     run_narrow,
     judge_narrow,
 )

@@ -21,29 +21,30 @@ from .scenario import RADIUS, STEP
 __all__ = ["write_page"]
 
 DEFINITIONS = {
-    "single-file": f"People of radius {RADIUS} m, all of free speed 1.34 m/s (RiMEA test 4 asks for equal ones), walk"
-    f" round a straight track of {single_file.LENGTH:g} m between walls {single_file.WIDTH} m apart; its"
-    " end is its beginning. Density: people per metre of track. Speed: mean over people of the way forward in"
-    f" {single_file.MEASURED:g} s, after {single_file.WARM:g} s from standing.",
-    "corridor": f"A closed track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide. Density: people per square metre"
-    f" of the whole floor. Speed: mean over people of the way forward in {corridor.MEASURED:g} s, after"
+    "single-file": f"People of radius {RADIUS} m, all with a free speed of 1.34 m/s (RiMEA test 4 requires equal"
+    f" speeds), walk along a periodic track of {single_file.LENGTH:g} m between walls {single_file.WIDTH} m apart."
+    f" Density: people per metre of track. Speed: mean forward speed over {single_file.MEASURED:g} s, after a warm-up"
+    f" of {single_file.WARM:g} s from rest.",
+    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide. Density: people per square"
+    f" metre of the whole floor. Speed: mean forward speed over {corridor.MEASURED:g} s, after a warm-up of"
     f" {corridor.WARM:g} s.",
-    "lanes": f"A closed track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, 1 person/m2, half of them each way, free"
-    f" speeds 1.34 +- 0.26 m/s, mean of {lanes.SEEDS} starts. Order: for each person i with m others whose lateral"
-    f" distance is below {lanes.BAND} m, phi_i = (like - unlike)^2 / m^2; the mean of phi, less what dealing out the"
-    " same directions at random would give, over one less the same: 0 is chance, 1 is pure lanes.",
-    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, {lanes.NARROW_SEEDS} starts at each density. Speed: mean over"
-    f" people of the way in their own direction in the last {lanes.NARROW_LAST:g} of {lanes.NARROW_SECONDS:g} s.",
+    "lanes": f"A periodic track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, with 1 person/m2, half of them in each"
+    f" direction; free speeds are 1.34 +- 0.26 m/s; mean over {lanes.SEEDS} initial states. Lane order: for each person"
+    f" i with m others at a lateral distance below {lanes.BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
+    " phi and its expectation for randomly permuted directions, the lane order is (mean - expectation) / (1 -"
+    " expectation): 0 for random directions, 1 for perfect lanes.",
+    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, with {lanes.NARROW_SEEDS} initial states per density. Speed:"
+    f" mean speed in the walking direction over the last {lanes.NARROW_LAST:g} of {lanes.NARROW_SECONDS:g} s.",
     "bottleneck": f"{bottleneck.PEOPLE} people in a room {2 * bottleneck.HALF:g} m wide walk through an opening that is"
-    f" {bottleneck.LENGTH} m long; everyone heads for the nearest point of it where a body fits. Flow: (n - 1) / (t_n -"
-    " t_1) of the crossings of its middle line, n who passed; t_n is the time limit of"
-    f" {bottleneck.SECONDS:g} s when somebody is left behind. Specific flow: flow / width (in the table: mean over"
+    f" {bottleneck.LENGTH} m long. The goal of each person is the nearest point of the opening where a body fits. Flow:"
+    " (n - 1) / (t_n - t_1) for the n crossings of the middle line of the opening; t_n is the time limit of"
+    f" {bottleneck.SECONDS:g} s if somebody does not pass. Specific flow: flow / width (in the table: mean over"
     " widths).",
 }
 
 
 def write_page(done: Validation, out: Path, command: str) -> Path:
-    """Write ``validation.md`` and, in the folder ``validation`` beside it, its plots; return the page.
+    """Write ``validation.md`` and its plots in the folder ``validation`` beside it; return the page.
 
     Args:
         done: results.
@@ -57,7 +58,7 @@ def write_page(done: Validation, out: Path, command: str) -> Path:
         [
             *_head(done, command),
             *_table(done),
-            *_words(done),
+            *_deficiencies(done),
             *_jams(done),
             *_sections(done),
             *_rimea(),
@@ -83,10 +84,9 @@ def _head(done: Validation, command: str) -> list[str]:
         command,
         "```",
         "",
-        *(["**Quick runs: few people, short times. The verdicts mean little.**", ""] if done.quick else []),
+        *(["**Quick runs with few people and short times. The verdicts mean little.**", ""] if done.quick else []),
         f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s. All models start from the same initial"
-        " states, and results are reproducible. Closed tracks have periodic boundary conditions. The results of each"
-        " model are in a JSON file beside the plots.",
+        " states, and results are reproducible. The results of each model are in a JSON file beside the plots.",
         "",
         "Crowds are chaotic: rounding errors can decide whether a single run jams. Two implementations of ORCA that"
         " agree to 1e-16 m/s per step had 4 and 5 jams of 12, and 1.8 and 1.5 in RiMEA 9. Differences of this size"
@@ -153,7 +153,7 @@ def _people(people: dict[str, Any], name: str) -> str:
     return ""
 
 
-def _words(done: Validation) -> list[str]:
+def _deficiencies(done: Validation) -> list[str]:
     lines = ["## Deficiencies of each model", ""]
     for model, checks in done.outcomes.items():
         words = [one.verdict.words for one in checks.values() if one.verdict.words]
@@ -162,7 +162,7 @@ def _words(done: Validation) -> list[str]:
             words.append(f"bodies overlap by {overlap:.2f} m")
         same = _same(done, model)
         if same:
-            words.append(f"results identical to {same} in all tests, whose goals are far away")
+            words.append(f"results are identical to those of {same}, since goals are far away in all tests")
         lines.append(f"* **{model}**: {'; '.join(words) or 'none found by these tests'}.")
     return [*lines, ""]
 
@@ -177,7 +177,7 @@ def _same(done: Validation, model: str) -> str:
 
 
 def _jams(done: Validation) -> list[str]:
-    def named(name: str, wrong: Any) -> str:
+    def models_with(name: str, wrong: Any) -> str:
         models = [m for m, c in done.outcomes.items() if "failed" not in c[name].result and wrong(c[name].result)]
         return ", ".join(models) or "none"
 
@@ -197,12 +197,12 @@ def _jams(done: Validation) -> list[str]:
     return [
         "## Jams and fundamental diagrams",
         "",
-        f"* Jams in a two-way corridor 2 m wide at up to 2 people/m2: {named('narrow', jam)}.",
-        f"* Of these, at 1 person/m2 or less: {named('narrow', low)}.",
-        f"* A crowd of {bottleneck.PEOPLE} clogs at least one bottleneck: {named('bottleneck', clogs)}.",
-        "* No fundamental diagram: a one-way crowd of 3 people/m2 has more than 70 % of its free speed (no"
-        " collision courses, and forces from front and back cancel):"
-        f" {named('corridor', careless)}.",
+        f"* Jams in a two-way corridor 2 m wide at up to 2 people/m2: {models_with('narrow', jam)}.",
+        f"* Of these, at 1 person/m2 or less: {models_with('narrow', low)}.",
+        f"* A crowd of {bottleneck.PEOPLE} clogs at least one bottleneck: {models_with('bottleneck', clogs)}.",
+        "* No fundamental diagram: a one-way crowd of 3 people/m2 walks at more than 70 % of its free speed, since"
+        " nobody is on a collision course, or forces from the front and the back cancel:"
+        f" {models_with('corridor', careless)}.",
         "",
     ]
 
@@ -213,11 +213,11 @@ def _sections(done: Validation) -> list[str]:
         lines += [f"## {title}", "", DEFINITIONS[name], ""]
         if done.people and name in METHODS:
             lines += [f"People: {METHODS[name]}.", ""]
-        lines += [*_recorded(done.people, name), f"![{title}](validation/{name}.png)", ""]
+        lines += [*_recording_table(done.people, name), f"![{title}](validation/{name}.png)", ""]
     return lines
 
 
-def _recorded(people: dict[str, Any] | None, name: str) -> Iterable[str]:
+def _recording_table(people: dict[str, Any] | None, name: str) -> Iterable[str]:
     found = (people or {}).get(name)
     if name == "lanes" and found:
         yield from ("| recording | order | people/m2 | median speed [m/s] |", "|---|---|---|---|")
@@ -235,7 +235,7 @@ def _recorded(people: dict[str, Any] | None, name: str) -> Iterable[str]:
                 f" {d['flow'] / d['width']:.2f} |"
             )
         yield ""
-        yield f"Seyfried et al. 2009 give {SPECIFIC_FLOW} /(m s). Pupils are smaller and have a higher flow."
+        yield f"Seyfried et al. 2009 report {SPECIFIC_FLOW} /(m s). Pupils are smaller and have a higher flow."
         yield ""
 
 
@@ -243,9 +243,9 @@ def _rimea() -> list[str]:
     return [
         "## RiMEA tests that do not apply",
         "",
-        "Tests 1, 6, 7, 9, 12 and 15 are run; test 4 corresponds to the two fundamental diagrams. According to"
-        " the guideline, tests 9 and 12 document the behavior of a model without a criterion. Waypoints around"
-        " corners and to doors are given as goals. The other tests:",
+        "Tests 1, 6, 7, 9, 12 and 15 are run; test 4 corresponds to the two fundamental diagrams. In the guideline,"
+        " tests 9 and 12 document the behavior of a model and have no criterion. Goals are waypoints around corners"
+        " and at doors. The other tests:",
         "",
         *(f"* {number}: {why}." for number, why in NOT_APPLICABLE.items()),
         "",

@@ -25,15 +25,15 @@ LEAST = 20
 """Minimum number of values of a mean."""
 
 METHODS = {
-    "single-file": "n56_cam1.csv, a ring of 56 people seen on 3 m of it: density of a person is 2 / (distance from the"
-    " one ahead to the one behind) [1/m], speed is along the track over 0.8 s; means in bins of 0.2 /m. 25 frames a"
-    " second follow from the velocities that the file holds",
-    "corridor": "four one-way runs of HERMES in corridors of 1.8 and 2.4 m: density of a person is 1 / (area of its"
-    " Voronoi cell, cut at the corridor) [1/m2], speed is along the corridor over 1 s, of people within 1 m of the"
-    " middle of the section, every 0.5 s; means in bins of 0.5 /m2",
-    "lanes": "two-way runs in corridors of 3.6 and 4 m: order as for the models, over all people of the section, once"
-    " a second while at least five walk each way",
-    "bottleneck": "(n - 1) / (t_n - t_1) of the first crossings of a line in the bottleneck, n people",
+    "single-file": "n56_cam1.csv, 3 m of a ring with 56 people. Density: 2 / (distance between the person ahead and the"
+    " person behind) [1/m]. Speed: along the track over 0.8 s. Means are in bins of 0.2 /m. The frame rate of 25 Hz is"
+    " inferred from the velocities in the file",
+    "corridor": "four one-way runs of HERMES in corridors of 1.8 and 2.4 m. Density: 1 / (area of the Voronoi cell of"
+    " the person inside the corridor) [1/m2]. Speed: along the corridor over 1 s. Both are measured every 0.5 s for"
+    " people within 1 m of the middle of the section. Means are in bins of 0.5 /m2",
+    "lanes": "two-way runs in corridors of 3.6 and 4 m. Lane order: as for the models, for all people in the section,"
+    " once per second while at least five people walk in each direction",
+    "bottleneck": "flow (n - 1) / (t_n - t_1) for the first crossings of a line in the bottleneck by n people",
 }
 """Measured quantities and methods."""
 
@@ -210,7 +210,7 @@ def _doors(found: Callable[[str], Trajectories | None]) -> list[dict[str, Any]]:
 
 
 def _crossing(tracks: Trajectories, id: int, line: float) -> list[float]:
-    """Return the first time [s] at which a person passes ``line`` [m], or None."""
+    """Return the first time [s] at which a person passes ``line`` [m], as a list that is empty if there is none."""
     mine = tracks.id == id
     y: NDArray[np.float64] = tracks.y[mine]
     over = np.flatnonzero((y[:-1] > line) & (y[1:] <= line))

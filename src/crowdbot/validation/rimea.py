@@ -32,15 +32,15 @@ from .scenario import (
 __all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "NOT_APPLICABLE"]
 
 NOT_APPLICABLE = {
-    2: "stairs up: there are no stairs, people walk in a plane",
-    3: "stairs down: as test 2",
-    4: "fundamental diagram: done above as single file and corridor",
-    5: "reaction times: when somebody sets off is the business of a trial, not of a model",
-    8: "parameter study in a building of three storeys: there are no storeys",
-    10: "routes to given exits: routes are given to models as goals",
-    11: "choice of an exit: as test 10",
-    13: "jam in front of stairs: as test 2",
-    14: "choice of a long or a short route: as test 10",
+    2: "stairs up: not supported, people walk in a plane",
+    3: "stairs down: see test 2",
+    4: "fundamental diagram: see single file and corridor",
+    5: "reaction times: set by the trial, not by the crowd model",
+    8: "parameter study in a building with three storeys: storeys are not supported",
+    10: "routes to given exits: crowd models receive goals, not routes",
+    11: "choice of an exit: see test 10",
+    13: "jam in front of stairs: see test 2",
+    14: "choice of a long or a short route: see test 10",
 }
 """Tests of the guideline that are not run, with reasons."""
 
@@ -68,17 +68,18 @@ def judge_corridor(result: dict[str, Any]) -> Verdict:
     """Check that the time is in the range of the guideline."""
     if result["seconds"] is None:
         way = f"{result['way']:.0f} m in 60 s"
-        return Verdict(way, False, f"alone in an empty corridor, people get only {way}")
+        return Verdict(way, False, f"a person alone in an empty corridor walks only {way}")
     seconds = result["seconds"]
     passed = FASTEST <= seconds <= SLOWEST
-    words = "" if passed else f"alone in an empty corridor, people need {seconds:.0f} s for 40 m"
+    words = "" if passed else f"a person alone in an empty corridor needs {seconds:.0f} s for 40 m"
     return Verdict(f"{seconds:.1f} s", passed, words)
 
 
 CORRIDOR_TIME = Check(
     "rimea-1",
     "RiMEA 1",
-    f"one person of 1.33 m/s needs {FASTEST:g} to {SLOWEST:g} s for 40 m of a corridor 2 m wide, from standing",
+    f"one person with a free speed of 1.33 m/s needs {FASTEST:g} to {SLOWEST:g} s for 40 m in a corridor 2 m"
+    " wide, from rest",
     run_corridor,
     judge_corridor,
 )
@@ -122,10 +123,10 @@ def judge_corner(result: dict[str, Any]) -> Verdict:
     """Check that nobody passes through a wall and all arrive."""
     words = []
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} of {CORNER_PEOPLE} people cut a corner through its walls")
+        words.append(f"{share(result['outside'])} of {CORNER_PEOPLE} people walk through the walls of a corner")
     if result["out"] < CORNER_PEOPLE:
         words.append(
-            f"{CORNER_PEOPLE - result['out']} of {CORNER_PEOPLE} people do not get around a corner in"
+            f"{CORNER_PEOPLE - result['out']} of {CORNER_PEOPLE} people do not get around a corner within"
             f" {CORNER_SECONDS:g} s"
         )
     value = f"{result['seconds']:.1f} s" if result["out"] == CORNER_PEOPLE else f"{result['out']} of {CORNER_PEOPLE}"
@@ -135,7 +136,7 @@ def judge_corner(result: dict[str, Any]) -> Verdict:
 CORNER = Check(
     "rimea-6",
     "RiMEA 6",
-    f"{CORNER_PEOPLE} people walk around a corner of a corridor 2 m wide in at most {CORNER_SECONDS:g} s and nobody's"
+    f"{CORNER_PEOPLE} people walk around the corner of a corridor 2 m wide within {CORNER_SECONDS:g} s, and nobody's"
     " centre enters a wall",
     run_corner,
     judge_corner,
@@ -169,15 +170,19 @@ def judge_speeds(result: dict[str, Any]) -> Verdict:
     """Compare the speed of each person with the free speed."""
     worst = float(np.max(np.abs(np.divide(result["reached"], result["wanted"]) - 1.0)))
     passed = worst <= SPEED_TOLERANCE
-    words = "" if passed else f"who walks alone is up to {worst:.0%} off the own free speed after {WALKED:g} s"
+    words = (
+        ""
+        if passed
+        else f"the speed of a person alone deviates by up to {worst:.0%} from the free speed after {WALKED:g} s"
+    )
     return Verdict(f"{worst:.1%}", passed, words)
 
 
 FREE_SPEEDS = Check(
     "rimea-7",
     "RiMEA 7",
-    f"{WALKERS} people with speeds of 1.34 +- 0.26 m/s, each alone, walk within {SPEED_TOLERANCE:.0%} of their own"
-    f" speed in the last 5 of {WALKED:g} s, from standing",
+    f"{WALKERS} people with free speeds of 1.34 +- 0.26 m/s, each alone and initially at rest, walk within"
+    f" {SPEED_TOLERANCE:.0%} of their free speed in the last 5 of {WALKED:g} s",
     run_speeds,
     judge_speeds,
 )

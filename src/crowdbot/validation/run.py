@@ -153,11 +153,11 @@ def validate(
     key = _key(quick)
     outcomes = {}
     for name, model in models.items():
-        outcomes[name] = _checked(name, model, out / f"{name}.json", key, quick, report)
+        outcomes[name] = _check_model(name, model, out / f"{name}.json", key, quick, report)
     return Validation(outcomes, dict(skipped or {}), people, quick)
 
 
-def _checked(
+def _check_model(
     name: str, model: CrowdModel, file: Path, key: str, quick: bool, report: Progress
 ) -> dict[str, CheckOutcome]:
     settings = f"{key} {model!r}"
@@ -167,13 +167,13 @@ def _checked(
         if check.name not in done:
             begin = time.perf_counter()
             result = _run(check, model, quick, functools.partial(_part, report, name, k))
-            done[check.name] = {"seconds": round(time.perf_counter() - begin, 2), "result": _rounded(result)}
+            done[check.name] = {"seconds": round(time.perf_counter() - begin, 2), "result": _round(result)}
             _write(file, {"settings": settings, "checks": done})
         report(name, (k + 1) / len(CHECKS))
     outcomes = {}
     for check in CHECKS:
         result = done[check.name]["result"]
-        outcomes[check.name] = CheckOutcome(result, _judged(check, result), done[check.name]["seconds"])
+        outcomes[check.name] = CheckOutcome(result, _judge(check, result), done[check.name]["seconds"])
     return outcomes
 
 
@@ -188,7 +188,7 @@ def _run(check: Check, model: CrowdModel, quick: bool, report: Callable[[float],
         return {"failed": str(error)}
 
 
-def _judged(check: Check, result: dict[str, Any]) -> Verdict:
+def _judge(check: Check, result: dict[str, Any]) -> Verdict:
     if "failed" in result:
         return Verdict("error", False, f"{check.title} ends with an error: {result['failed']}")
     return check.judge(result)
@@ -198,8 +198,8 @@ def _key(quick: bool) -> str:
     """Return a hash of all code that affects results: the core, the models and the checks."""
     sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
     package = Path(__file__).parents[1]
-    telling = ("__init__", "page", "plots", "recording", "run")
-    here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in telling]
+    excluded = ("__init__", "page", "plots", "recording", "run")
+    here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in excluded]
     for path in sorted([*package.glob("core/*.py"), *package.glob("models/*.py"), *here]):
         sum_.update(path.name.encode() + b"\0" + path.read_bytes())
     return sum_.hexdigest()
@@ -215,16 +215,16 @@ def _read(file: Path) -> dict[str, Any]:
 
 def _write(file: Path, value: Any) -> None:
     draft = file.with_suffix(".part")
-    draft.write_text(json.dumps(_rounded(value)) + "\n", encoding="utf-8")
+    draft.write_text(json.dumps(_round(value)) + "\n", encoding="utf-8")
     os.replace(draft, file)
 
 
-def _rounded(value: Any) -> Any:
-    """Return numbers rounded to four decimals, for equal results of first and resumed runs."""
+def _round(value: Any) -> Any:
+    """Round all numbers to four decimals, for equal results of first and resumed runs."""
     if isinstance(value, float):
         return round(value, 4)
     if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
+        return {key: _round(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
+        return [_round(item) for item in value]
     return value

@@ -87,7 +87,7 @@ class CrowdTracks(NamedTuple):
     Fields:
         times: times ``[T]`` [s].
         position: ``[T, E, A, 2]`` [m]; on a periodic track, it increases with each round.
-        present: ``[T, E, A]``; whether the person is there.
+        present: ``[T, E, A]``; whether the person is present.
     """
 
     times: Floats
@@ -172,31 +172,31 @@ def starts(count: int, low: Sequence[float], high: Sequence[float], rng: np.rand
         columns += 1
     if min(cell) < 2.0 * RADIUS:
         raise InputError(f"{count} bodies of radius {RADIUS} m do not fit into {width:.2f} x {height:.2f} m")
-    select_models = rng.permutation(columns * rows)[:count]
-    across = low[1] + (select_models % rows) * cell[1] if rows > 1 else np.full(count, 0.5 * (low[1] + high[1]))
-    along = low[0] + (select_models // rows + 0.5) * cell[0]
+    cells = rng.permutation(columns * rows)[:count]
+    across = low[1] + (cells % rows) * cell[1] if rows > 1 else np.full(count, 0.5 * (low[1] + high[1]))
+    along = low[0] + (cells // rows + 0.5) * cell[0]
     slack = 0.45 * np.maximum(np.asarray(cell) - 2.0 * RADIUS, 0.0)
-    shaken = np.stack([along, across], axis=1) + rng.uniform(-1.0, 1.0, (count, 2)) * np.minimum(slack, 0.2)
-    return np.clip(shaken, low, high)
+    jittered = np.stack([along, across], axis=1) + rng.uniform(-1.0, 1.0, (count, 2)) * np.minimum(slack, 0.2)
+    return np.clip(jittered, low, high)
 
 
 def simulate_periodic(
     model: CrowdModel, crowd: Scene, length: float, seconds: float, rng: np.random.Generator, report: Report
 ) -> CrowdTracks:
-    """Let a crowd walk along x on a track whose end at ``length`` [m] is its beginning.
+    """Simulate a crowd that walks along x on a periodic track of ``length`` [m].
 
-    Everyone has a copy one length ahead or behind, whichever is nearer to the track, with the same velocity, heading
-    and memory. Copies are neighbours like all others, so that models that share the work of avoiding do so at the
-    seam; what they would do themselves is thrown away. Positions are kept every 0.2 s.
+    Each person has a copy one length ahead or behind, whichever is nearer to the track, with the same velocity, heading
+    and memory. Other people avoid copies like any neighbor; the motion of the copies is discarded. Positions are stored
+    every 0.2 s.
 
     Raises:
         InputError: a position is not finite.
     """
     A, steps = crowd.shape[1], round(seconds / STEP)
-    scene, rounds = _doubled(crowd), np.zeros(crowd.shape)
+    scene, rounds = _with_copies(crowd), np.zeros(crowd.shape)
     places = [crowd.position]
     for k in range(steps):
-        scene = model.step(_closed(scene, A, length), STEP, rng)
+        scene = model.step(_update_copies(scene, A, length), STEP, rng)
         place = scene.position.copy()
         _check(place[:, :A], crowd.active, scene.time)
         turn = np.floor(place[:, :A, 0] / length)
@@ -221,18 +221,19 @@ def simulate_open(
     rng: np.random.Generator,
     report: Report,
 ) -> CrowdTracks:
-    """Let a crowd walk until all have left or time is over; positions are kept at every step.
+    """Simulate a crowd until all people have left or the time limit is reached; positions are stored at every step.
 
-    Everyone wishes to walk straight to the present goal at the preferred speed.
+    The preferred velocity of each person points straight to the current goal, with the preferred speed.
 
     Args:
-        model: how they walk.
-        crowd: where they start.
-        goals: from places ``[E, A, 2]`` [m] to the goals of the next step: way points are the business of the test.
-        left: from positions ``[E, A, 2]`` to who has left ``[E, A]``; they vanish.
+        model: crowd model.
+        crowd: initial scene.
+        goals: function of positions ``[E, A, 2]`` [m] that returns the goals of the next step.
+        left: function of positions ``[E, A, 2]`` that returns a mask ``[E, A]`` of people who have left; they are
+            removed.
         seconds: time limit [s].
-        rng: of the model.
-        report: called with the share of time or of people, whichever is more.
+        rng: random generator of the model.
+        report: called with the completed share of the time, or of the people if that is larger.
 
     Raises:
         InputError: a position is not finite.
@@ -257,11 +258,11 @@ def simulate_open(
 
 
 def deepest_overlap(walk: CrowdTracks, length: float | None = None) -> float:
-    """Return how deep two bodies ever overlap [m], 0 when none do.
+    """Return the maximum overlap of two bodies [m], 0 without overlap.
 
     Args:
-        walk: looked at once a second.
-        length: of the track [m] when it is closed.
+        walk: tracks; they are sampled once per second.
+        length: length of a periodic track [m].
     """
     every = max(1, round(1.0 / float(walk.times[1] - walk.times[0])))
     nearest = 2.0 * RADIUS
@@ -275,33 +276,33 @@ def deepest_overlap(walk: CrowdTracks, length: float | None = None) -> float:
     return 2.0 * RADIUS - nearest
 
 
-def _doubled(crowd: Scene) -> Scene:
-    def twice(value: Any) -> Any:
+def _with_copies(crowd: Scene) -> Scene:
+    def repeat(value: Any) -> Any:
         return np.concatenate([value, value], axis=1)
 
     names = ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed")
     flags = ("active", "visible", "external", "group", "preferred_velocity")
-    return crowd.replace(**{name: twice(getattr(crowd, name)) for name in (*names, *flags)})
+    return crowd.replace(**{name: repeat(getattr(crowd, name)) for name in (*names, *flags)})
 
 
-def _closed(scene: Scene, A: int, length: float) -> Scene:
+def _update_copies(scene: Scene, A: int, length: float) -> Scene:
     """Return the scene with the second half of its agents as copies of the first, one length away."""
 
-    def copied(value: Any) -> Any:
+    def copy(value: Any) -> Any:
         return np.concatenate([value[:, :A], value[:, :A]], axis=1)
 
-    place, active = copied(scene.position), copied(scene.active)
+    place, active = copy(scene.position), copy(scene.active)
     place[:, A:, 0] += np.where(place[:, A:, 0] < 0.5 * length, length, -length)
     active[:, A:] &= (place[:, A:, 0] > -SEEN) & (place[:, A:, 0] < length + SEEN)
     wish = scene.preferred_velocity
     assert wish is not None
     return scene.replace(
         position=place,
-        velocity=copied(scene.velocity),
-        heading=copied(scene.heading),
+        velocity=copy(scene.velocity),
+        heading=copy(scene.heading),
         goal=place + 1000.0 * wish,
         active=active,
-        memory={name: copied(value) for name, value in scene.memory.items()},
+        memory={name: copy(value) for name, value in scene.memory.items()},
     )
 
 

@@ -1,4 +1,4 @@
-"""Single file: speed over line density on a closed track that is too narrow to overtake."""
+"""Single-file test: speed by line density on a periodic track that is too narrow to overtake."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ __all__ = ["SINGLE_FILE"]
 
 LENGTH = 20.0
 WIDTH = 0.7
-"""Two bodies of 0.4 m do not fit abreast."""
+"""Width [m]; two bodies of 0.4 m do not fit side by side."""
 DENSITIES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25)
-"""People per metre of track; 2.5 would be body to body."""
+"""People per metre of track; at 2.5, bodies touch."""
 QUICK = (0.5, 1.0, 1.5, 2.0)
 WARM, MEASURED = 30.0, 20.0
-"""Seconds that are left out, and over which speeds are measured."""
+"""Warm-up and measurement time [s]."""
 LIMIT = 0.20
-"""Allowed root mean square distance to the published line [m/s]."""
+"""Allowed root mean square deviation from the published line [m/s]."""
 
 
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the mean forward speed at every density, all at once along the axis E."""
+    """Measure the mean forward speed at each density; densities are environments."""
     densities = QUICK if quick else DENSITIES
-    warm, measure_recordings = (6.0, 4.0) if quick else (WARM, MEASURED)
+    warm, measured = (6.0, 4.0) if quick else (WARM, MEASURED)
     crowd = _file([round(density * LENGTH) for density in densities])
-    walk = simulate_periodic(model, crowd, LENGTH, warm + measure_recordings, stream_of("single-file", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, warm + measured, stream_of("single-file", "model"), report)
     x, here = walk.position[..., 0], crowd.active
     first = round(warm / (4.0 * STEP))
     moved = (x[-1] - x[first]) / (walk.times[-1] - walk.times[first])
@@ -59,23 +59,25 @@ def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge(result: dict[str, Any]) -> Verdict:
-    """Compare with the published line, and count who walked through whom."""
+    """Compare with the published line, and check for overtaking and people in walls."""
     density, speed = np.asarray(result["density"]), np.asarray(result["speed"])
     distance = float(np.sqrt(np.mean((speed - line_speed(density)) ** 2)))
     value = f"{distance:.2f} m/s"
     words = []
     if speed[-1] > 0.5 * FREE_SPEED:
-        words.append(f"a file walks at {speed[-1]:.2f} m/s even at {density[-1]:g} people per metre")
+        words.append(f"people in single file walk at {speed[-1]:.2f} m/s even at {density[-1]:g} people per metre")
     elif speed[0] < 0.5 * FREE_SPEED:
-        words.append(f"the walls of a track {WIDTH} m wide slow down even people {1.0 / density[0]:.0f} m apart")
+        words.append(f"the walls of a track {WIDTH} m wide slow down people {1.0 / density[0]:.0f} m apart")
     elif np.any(speed[density <= 1.0] < 0.2):
-        words.append(f"a file nearly stops from {density[speed < 0.2][0]:g} per metre on")
+        words.append(f"people in single file nearly stop at {density[speed < 0.2][0]:g} per metre")
     elif distance > LIMIT:
-        words.append("files are " + ("too fast" if np.mean(speed - line_speed(density)) > 0.0 else "too slow"))
+        words.append(
+            "people in single file are " + ("too fast" if np.mean(speed - line_speed(density)) > 0.0 else "too slow")
+        )
     if result["overtakings"]:
-        words.append(f"people walk through each other in a file ({result['overtakings']} overtakings)")
+        words.append(f"people in single file walk through each other ({result['overtakings']} overtakings)")
     if result["outside"] > 0.0:
-        words.append(f"{share(result['outside'])} of a file leave their track through its walls")
+        words.append(f"{share(result['outside'])} of people in single file leave the track through its walls")
     passed = distance <= LIMIT and not result["overtakings"] and result["outside"] == 0.0
     return Verdict(value, passed, "; ".join(words))
 
@@ -83,8 +85,8 @@ def judge(result: dict[str, Any]) -> Verdict:
 SINGLE_FILE = Check(
     "single-file",
     "single file",
-    f"root mean square distance of the speeds to 1 / density = 0.36 m + 1.06 s speed is at most {LIMIT:.2f} m/s, nobody"
-    " overtakes and nobody leaves the track",
+    f"the root mean square deviation of the speeds from 1 / density = 0.36 m + 1.06 s * speed is at most {LIMIT:.2f}"
+    " m/s, and nobody overtakes or leaves the track",
     run,
     judge,
 )
@@ -111,7 +113,7 @@ def _file(counts: list[int]) -> Scene:
 
 
 def _overtakings(before: Floats, after: Floats) -> int:
-    """Return how many pairs have changed their order, laps counted."""
+    """Return the number of pairs that changed their order, including lapped people."""
     order = np.argsort(before)
     last = after[order]
     swapped = last[:, None] > last[None, :]

@@ -159,12 +159,12 @@ def _level(
                 own[draw].append(score)
     asked = sum(int(future.scored.sum()) for _, future in cuts)
     return [
-        _joined(degradation, predictor.name, level, asked, own)
+        _merge_scores(degradation, predictor.name, level, asked, own)
         for predictor, own in zip(predictors, scores, strict=True)
     ]
 
 
-def _joined(
+def _merge_scores(
     degradation: Degradation | Chain, predictor: str, level: float, asked: int, draws: list[list[Score]]
 ) -> DegradedScore:
     every = [score for draw in draws for score in draw]

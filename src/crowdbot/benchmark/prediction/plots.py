@@ -43,7 +43,7 @@ def plot_errors(results: Sequence[PredictorResult], file: Path) -> None:
         axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=6)
         axis.margins(y=0.01)
         axis.invert_yaxis()
-        axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % by drawing people", fontsize=8)
+        axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % bootstrap interval", fontsize=8)
         axis.tick_params(axis="x", labelsize=8)
         left = "" if len(own) <= SHOWN_ROWS else f" (best {SHOWN_ROWS} of {len(own)})"
         axis.set_title(f"{recording.name}, {recording.predict} rows{left}", fontsize=9, loc="left")
@@ -51,7 +51,7 @@ def plot_errors(results: Sequence[PredictorResult], file: Path) -> None:
     kinds = {"calibrated": COLORS[0], "as given": PEOPLE, "knows the true destinations": ORACLE}
     handles = [Patch(color=color, label=word) for word, color in kinds.items()]
     figure.legend(handles=handles, fontsize=7, loc="outside lower center", ncols=3)
-    _written(figure, file)
+    _save(figure, file)
 
 
 def _color(result: PredictorResult) -> str:
@@ -81,7 +81,7 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
         if not any(one.frames.calibrated for one in shown):
             row[1].text(0.5, 0.5, "nothing was calibrated", ha="center", transform=row[1].transAxes, fontsize=8)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
-    _written(figure, file)
+    _save(figure, file)
 
 
 def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
@@ -150,7 +150,7 @@ def _background(axis: Any, past: Windows, future: Windows, paths: dict[str, list
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
     axis.set_aspect("equal")
-    axis.plot([], [], color=TRUTH, linewidth=0.8, linestyle=":", label="what they did")
+    axis.plot([], [], color=TRUTH, linewidth=0.8, linestyle=":", label="true path")
 
 
 def _at(past: Windows, future: Windows, reach: float) -> NDArray[np.float64]:
@@ -200,7 +200,7 @@ def _figure(rows: int, columns: int, size: tuple[float, float]) -> tuple[Any, An
     return figure, figure.subplots(rows, columns, squeeze=False)
 
 
-def _written(figure: Any, file: Path) -> None:
+def _save(figure: Any, file: Path) -> None:
     fresh = file.with_suffix(".part")
     figure.savefig(fresh, format="png")
     fresh.replace(file)

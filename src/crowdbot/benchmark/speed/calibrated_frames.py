@@ -47,8 +47,8 @@ def scheme_frames(warm: bool, recording: Path | None) -> Gauge:
         seconds.append(time.perf_counter() - begin)
     people = statistics.median(int(now.present[0, -1].sum()) for _, now in pairs)
     source = "built-in crossing flows" if recording is None else recording.name
-    start = "from the fit of the frame before" if warm else "from nothing"
-    words = f"{limit:g} ms; {budget} crowds of {people:g} people {start}, {len(pairs)} frames of {source}"
+    start = "starting from the previous fit" if warm else "without a previous fit"
+    words = f"{limit:g} ms; {budget} candidate crowds of {people:g} people {start}, {len(pairs)} frames of {source}"
     return Gauge("ms", 1e3 * statistics.median(seconds[1:]), words, limit)
 
 

@@ -28,7 +28,7 @@ __all__ = ["learning_measurements"]
 
 UPDATES = 4
 SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
-"""Number of people in synthetic scenes, as in recordings: mostly a few, in busy places dozens."""
+"""Number of people in synthetic scenes: mostly a few, sometimes dozens, as in recordings."""
 MEMORY = 2000.0
 """Maximum memory of training [MB]."""
 PEOPLE = 50
@@ -75,7 +75,7 @@ def _learning(name: str) -> Measurement:
     samples = synthetic_samples()
     model = untrained_network(name, samples)
     share = UPDATES / len(model.batches(stream(0, "order")))
-    words = f"an epoch of 3000 windows a minute; one torch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
+    words = f"3000 windows per minute; one PyTorch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
     return Measurement("windows/s", share * len(samples), functools.partial(_updates, model, UPDATES), words, 50.0)
 
 
@@ -131,4 +131,4 @@ def _memory() -> Gauge:
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)  # noqa: S603
     if run.returncode:
         raise InputError(f"training in a child process failed: {run.stderr.strip().splitlines()[-1]}")
-    return Gauge("MB", float(run.stdout), f"{MEMORY:.0f} MB while Social Ways learns", MEMORY)
+    return Gauge("MB", float(run.stdout), f"{MEMORY:.0f} MB for the training of Social Ways", MEMORY)

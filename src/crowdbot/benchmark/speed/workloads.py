@@ -44,7 +44,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
 
     kinds = builtin_classes(models, models.CrowdModel)
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
-    del kinds["mixture"]  # its cost is that of its models
+    del kinds["mixture"]  # its speed depends on its models
     for name, kind in kinds.items():
         found[f"{name}-1000"] = functools.partial(_crowd_of, kind, 1000)
         if name != "cost-model":
@@ -89,27 +89,27 @@ def crowd(agents: int, environments: int = 1, seed: int = 0) -> Scene:
     return Scene.of(place[:, order], velocity[:, order], goal=goal[:, order], max_speed=1.8)
 
 
-def _made(kind: type) -> Any:
+def _make_model(kind: type) -> Any:
     names = {row.name for row in parameters(kind)}
     given = {"max_neighbors": float(NEIGHBORS), "neighbor_distance": REACH}
     return kind(**{name: value for name, value in given.items() if name in names})
 
 
 def _crowd_of(kind: type, agents: int) -> Measurement:
-    model, scene = _made(kind), crowd(agents)
+    model, scene = _make_model(kind), crowd(agents)
     real = f"real time ({agents} people, step {DT} s)"
     return Measurement("agent-steps/s", agents, lambda: model.step(scene, DT), real, agents / DT)
 
 
 def _batch_of(kind: type) -> Measurement:
-    model, scene = _made(kind), crowd(32, environments=1024)
+    model, scene = _make_model(kind), crowd(32, environments=1024)
     real = f"real time (1024 scenes of 32 people, step {DT} s)"
     agents = scene.shape[0] * scene.shape[1]
     return Measurement("agent-steps/s", agents, lambda: model.step(scene, DT), real, agents / DT)
 
 
 def _growth(kind: type) -> Measurement:
-    model, large, small = _made(kind), crowd(100_000), crowd(1000)
+    model, large, small = _make_model(kind), crowd(100_000), crowd(1000)
     words = "the same model with 1000 people, per agent"
     return Measurement(
         "agent-steps/s", 1e5, lambda: model.step(large, DT), words,
@@ -119,7 +119,7 @@ def _growth(kind: type) -> Measurement:
 
 def _against_jupedsim(kind: type, theirs: str = JUPEDSIM[0], dt: float = DT) -> Measurement:
     """Compare the simulated time of all agents: ours with steps of ``dt``, JuPedSim with its own steps of 0.01 s."""
-    model, scene = _made(kind), crowd(10_000)
+    model, scene = _make_model(kind), crowd(10_000)
     step = jupedsim_step(theirs, scene)
     words = f"JuPedSim {theirs}, 10000 people, step {JUPEDSIM_DT} s (ours {dt} s)"
     return Measurement(
@@ -129,8 +129,8 @@ def _against_jupedsim(kind: type, theirs: str = JUPEDSIM[0], dt: float = DT) -> 
 
 
 def _against_numpy(kind: type) -> Measurement:
-    model, scene = _made(kind), crowd(1000)
-    words = "the same law in NumPy, all pairs at once, 1000 people"
+    model, scene = _make_model(kind), crowd(1000)
+    words = "the same model in NumPy, for all pairs, 1000 people"
     return Measurement(
         "agent-steps/s", 20e3, lambda: [model.step(scene, DT) for _ in range(20)], words,
         other=lambda: power_law_in_numpy(scene), other_amount=1e3,
@@ -145,7 +145,7 @@ def _alone() -> Measurement:
         Scene.of(many.position[e], many.velocity[e], goal=many.goal[e], max_speed=1.8) for e in range(many.shape[0])
     ]
     agents = many.shape[0] * many.shape[1]
-    words = "the same 256 scenes of 32 people one after the other"
+    words = "the same 256 scenes of 32 people, one at a time"
     return Measurement(
         "agent-steps/s", agents, lambda: model.step(many, DT), words,
         other=lambda: [model.step(scene, DT) for scene in single], other_amount=agents,
@@ -161,11 +161,11 @@ def _memory() -> Gauge:
         "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
         "print(peak_memory())"
     )
-    said = ""
+    output = ""
     for _ in range(2):  # the first run may compile kernels, which needs more memory
         run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
-        said = run.stdout
-    return Gauge("MB", float(said), "500 MB for 100000 people", 500.0)
+        output = run.stdout
+    return Gauge("MB", float(output), "500 MB for 100000 people", 500.0)
 
 
 def _lidar() -> Measurement:
@@ -185,7 +185,7 @@ def _rays_of_limbs(rings: int = 0) -> Measurement:
     scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).to_spatial()
     sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
     theirs = mujoco_rays(scene, sensor, pose)
-    words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
+    words = "mj_multiRay of MuJoCo with the same 750 capsules, 4 walls and the floor"
     ours, others = (40, 1) if rings else (300, 10)  # similar durations, so that changes of the load affect both
     return Measurement(
         "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
@@ -199,7 +199,7 @@ def _predictor(name: str) -> Measurement:
 
     predictor = getattr(prediction, name)()
     past, _ = run(load_trial("crossing-flows")).tracks(0.4).windows(8, 12)
-    live = "2.5 windows/s of a live stream"
+    live = "a live stream of 2.5 windows/s"
     return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
 
 

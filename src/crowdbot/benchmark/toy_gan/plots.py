@@ -43,7 +43,7 @@ def plot_samples(study: GanComparison, runs: Sequence[GanRun], file: Path) -> Pa
             axes.plot(*drawn[group][:, -1].T, ".", color="#009e73", ms=2.0)
             axes.plot(*begin[group].T, "-o", color=SEEN, lw=1.5, ms=2.5)
         axes.set(title=name, xlim=(-1.1, 1.1), ylim=(-1.1, 1.1), aspect="equal", xticks=[], yticks=[])
-    return _saved(figure, file)
+    return _save(figure, file)
 
 
 def plot_measures(study: GanComparison, runs: Sequence[GanRun], ideal: Mapping[str, float], file: Path) -> Path:
@@ -66,10 +66,10 @@ def plot_measures(study: GanComparison, runs: Sequence[GanRun], ideal: Mapping[s
             axes.set_yscale("log")
         if panel == 0:
             axes.legend(ncols=3, fontsize=7, frameon=False)
-    return _saved(figure, file)
+    return _save(figure, file)
 
 
-def _saved(figure: Any, file: Path) -> Path:
+def _save(figure: Any, file: Path) -> Path:
     draft = file.with_suffix(".part")
     figure.savefig(draft, format="png", dpi=120, metadata={"Software": None})
     os.replace(draft, file)

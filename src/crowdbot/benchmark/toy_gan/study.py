@@ -79,7 +79,7 @@ class GanComparison:
             for seed in self.seeds
             for method in self.methods
         ]
-        for _, run in each(_trained, jobs, workers):
+        for _, run in each(_train_run, jobs, workers):
             yield run
 
     def real_futures(self) -> NDArray[np.float64]:
@@ -113,7 +113,7 @@ class GanComparison:
         return found
 
 
-def _trained(job: tuple[GanComparison, str, int, Path | None]) -> GanRun:
+def _train_run(job: tuple[GanComparison, str, int, Path | None]) -> GanRun:
     """Train one method with one seed, or resume its training."""
 
     from .training import ToyTraining, gan_config, sample_futures

@@ -49,12 +49,11 @@ class ToyData:
 
     def __post_init__(self) -> None:
         if self.groups < 1 or not self.modes or self.tracks < 1:
-            raise InputError("toy set: groups, modes and tracks must be at least 1")
+            raise InputError("toy data: groups, modes and tracks must be at least 1")
         if not 2 <= self.observe < len(self.radii) or len(self.jitter) != len(self.radii) - self.observe:
             raise InputError(
-                f"toy set: {self.observe} of {len(self.radii)} rows are observed and {len(self.jitter)} later "
-                f"ones have a"
-                " jitter; at least two must be observed, and each later row needs a jitter"
+                f"toy data: {self.observe} of {len(self.radii)} rows are observed and {len(self.jitter)} later rows"
+                " have a jitter; at least two rows must be observed, and each later row needs a jitter"
             )
 
     @property
@@ -65,12 +64,12 @@ class ToyData:
     def paths(self, rng: np.random.Generator, tracks: int) -> Floats:
         """Draw tracks ``[groups, modes, tracks, rows, 2]`` [m]."""
         jitter = rng.uniform(-1.0, 1.0, (self.groups, len(self.modes), tracks, self.predict)) * np.array(self.jitter)
-        return self._turned(jitter + np.array(self.modes)[:, None, None])
+        return self._rotate(jitter + np.array(self.modes)[:, None, None])
 
     def middles(self) -> Floats:
         """Return the center of every mode ``[groups, modes, rows, 2]`` [m]."""
         zero = np.zeros((self.groups, len(self.modes), 1, self.predict))
-        return self._turned(zero + np.array(self.modes)[:, None, None])[:, :, 0]
+        return self._rotate(zero + np.array(self.modes)[:, None, None])[:, :, 0]
 
     def samples(self, rng: np.random.Generator) -> Samples:
         """Return drawn tracks as training samples; every track is a scene with one person."""
@@ -87,7 +86,7 @@ class ToyData:
             dt=1.0,
         )
 
-    def _turned(self, later: Floats) -> Floats:
+    def _rotate(self, later: Floats) -> Floats:
         """Return the tracks with later rows rotated by angles ``[groups, modes, N, predict]`` [rad]."""
         begin = 2.0 * np.pi * np.arange(self.groups) / self.groups
         turn = np.concatenate([np.zeros((*later.shape[:3], self.observe)), later], axis=-1)

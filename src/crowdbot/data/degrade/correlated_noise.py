@@ -1,4 +1,4 @@
-"""Correlated noise: errors that drift, as in trackers that smooth or follow one edge of a body."""
+"""Correlated noise: drifting errors, as of trackers that smooth or follow one edge of a body."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["CorrelatedNoise"]
 
 @dataclass(frozen=True)
 class CorrelatedNoise(Degradation):
-    """Every coordinate of a track has an independent first-order Gauss-Markov error.
+    """Adds an independent first-order Gauss-Markov error to every coordinate of a track.
 
     Errors at times t and s of one track have the correlation exp(-|t - s| / time), also across gaps. ``time=0`` is
     white noise.

@@ -20,13 +20,13 @@ Ghost = tuple[float, float, NDArray[np.float64], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class FalseTracks(Degradation):
-    """Ghosts appear at a rate, walk straight, and disappear.
+    """Adds tracks of people who do not exist; they appear at a constant rate, move straight and disappear.
 
-    They appear uniformly in the bounding box of the people, as a Poisson process in time, with exponential lifetimes
-    and normal velocity components. Their ids are above all others.
+    False tracks appear uniformly in the bounding box of the people, as a Poisson process in time, with exponential
+    lifetimes and normal velocity components. Their ids are above all others.
 
     Fields:
-        rate: ghosts per second in the whole area [1/s]; the level.
+        rate: false tracks per second in the whole area [1/s]; the level.
         life: mean lifetime [s].
         speed: root mean square speed [m/s].
     """
@@ -39,7 +39,7 @@ class FalseTracks(Degradation):
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.2, 0.5, 1.0, 2.0)
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording with ghosts, see :meth:`Degradation.apply`."""
+        """Return the recording with false tracks, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         frames, first = np.unique(tracks.frame, return_index=True)
         times = tracks.time[first]
@@ -60,7 +60,7 @@ class FalseTracks(Degradation):
         return seen.add_false_rows(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
 
     def _ghosts(self, seconds: float, rng: np.random.Generator) -> list[Ghost]:
-        """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every ghost."""
+        """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every false track."""
         found: list[Ghost] = []
         birth = 0.0
         while True:

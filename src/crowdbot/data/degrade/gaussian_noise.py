@@ -16,7 +16,7 @@ __all__ = ["GaussianNoise"]
 
 @dataclass(frozen=True)
 class GaussianNoise(Degradation):
-    """Every coordinate of every row has an independent normal error.
+    """Adds an independent normal error to every coordinate of every row.
 
     Fields:
         sd: standard deviation of a coordinate [m]; the level.

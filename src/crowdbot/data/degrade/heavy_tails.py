@@ -16,15 +16,15 @@ __all__ = ["HeavyTails"]
 
 @dataclass(frozen=True)
 class HeavyTails(Degradation):
-    """A share of the rows are outliers, displaced by a bivariate Student-t error.
+    """Displaces a share of the rows by a bivariate Student-t error (outliers).
 
     The distance r of an outlier exceeds any R with probability (1 + R^2 / (freedom scale^2))^(-freedom / 2).
-    ``probability=1`` makes Student-t noise of every row.
+    ``probability=1`` adds Student-t noise to every row.
 
     Fields:
-        probability: that a row is an outlier [1]; the level.
-        scale: of the error [m].
-        freedom: degrees of freedom [1]; the fewer, the longer the tail.
+        probability: probability of an outlier per row [1]; the level.
+        scale: scale of the error [m].
+        freedom: degrees of freedom [1]; smaller values give heavier tails.
 
     Paper: Lange, Little, Taylor (1989), doi 10.1080/01621459.1989.10478852.
     """

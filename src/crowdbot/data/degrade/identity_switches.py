@@ -67,9 +67,9 @@ def _close(
 
 @dataclass(frozen=True)
 class IdentitySwitches(Degradation):
-    """Two tracks near each other may swap their ids for good, at the frame of their smallest distance.
+    """Swaps the ids of two tracks near each other, from the frame of their smallest distance on.
 
-    Each encounter is decided once. A track can be swapped many times.
+    There is one random decision per encounter. A track can be swapped several times.
 
     Fields:
         probability: probability of a swap per encounter [1]; the level.

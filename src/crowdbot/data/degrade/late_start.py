@@ -17,9 +17,9 @@ __all__ = ["LateStart"]
 
 @dataclass(frozen=True)
 class LateStart(Degradation):
-    """A track is confirmed, and visible, only after its first rows.
+    """Removes the first rows of each track, as a tracker that confirms new tracks late.
 
-    Shorter tracks are never visible. Gaps later in a track do not restart it. Deterministic.
+    Shorter tracks are removed. Gaps do not restart a track. Deterministic.
 
     Fields:
         rows: rows of a track before confirmation; the level.

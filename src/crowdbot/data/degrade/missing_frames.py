@@ -20,15 +20,15 @@ OF = ("person", "frame")
 
 @dataclass(frozen=True)
 class MissingFrames(Degradation):
-    """A share of the rows is missing, single or in bursts: a Markov chain with the states seen and missing (Gilbert).
+    """Removes a share of the rows, single or in bursts (Gilbert model, a Markov chain with two states).
 
-    After a missing row the next one is missing with probability 1 - (1 - probability) / burst, so that the mean
-    gap has burst / (1 - probability) rows; ``burst=1`` drops every row on its own.
+    After a missing row, the next row is missing with probability 1 - (1 - probability) / burst, so the mean gap has
+    burst / (1 - probability) rows. With ``burst=1``, rows are removed independently.
 
     Fields:
-        probability: that a row is missing [1]; the level.
-        burst: length of gaps relative to independent drops [1], at least 1.
-        of: ``person``: each track has its own gaps; ``frame``: everyone is missing at the same frames.
+        probability: probability of a missing row [1]; the level.
+        burst: length of gaps relative to independently missing rows [1], at least 1.
+        of: ``person``: each track has separate gaps; ``frame``: all people are missing at the same frames.
 
     Paper: Gilbert (1960), doi 10.1002/j.1538-7305.1960.tb03959.x.
     """
@@ -63,7 +63,7 @@ class MissingFrames(Degradation):
         return seen.keep_rows(~missing)
 
     def _missing(self, id: NDArray[np.int64], frame: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.bool_]:
-        """Return which rows are missing; those of a low level are missing at every higher one, too."""
+        """Return the mask of missing rows; rows missing at a low level are also missing at all higher levels."""
         drawn = rng.random(len(id))
         missing = np.zeros(len(id), dtype=np.bool_)
         seen_again = (1.0 - self.probability) / self.burst

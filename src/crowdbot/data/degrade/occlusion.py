@@ -21,7 +21,7 @@ Bools = NDArray[np.bool_]
 
 
 def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
-    """Return who is not visible from a point, ``[N]`` bool.
+    """Return the mask ``[N]`` of people who are not visible from a point.
 
     The line of sight to a person's centre decides, so about half a body must be visible. A body hides people who are
     farther away; a body around the viewpoint hides everyone on its side.
@@ -30,7 +30,7 @@ def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, re
         eye: ``[2]`` [m].
         place: ``[N, 2]`` [m], positions of people.
         bodies: ``[B, 2]`` [m], centres of the occluding discs; people do not hide themselves.
-        radius: of the discs [m].
+        radius: radius of the discs [m].
         reach: range of vision [m].
         walls: ``[M, 4]`` segments x, y, x, y [m].
 
@@ -50,7 +50,7 @@ def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, re
 
 
 def _behind_walls(eye: Floats, sight: Floats, walls: Floats) -> Bools:
-    """Return which lines of sight ``[N, 2]`` from the eye cross a wall."""
+    """Return the mask of lines of sight ``[N, 2]`` from the eye that cross a wall."""
     start, edge = walls[:, :2] - eye, walls[:, 2:] - walls[:, :2]
     turn = sight[:, 0, None] * edge[:, 1] - sight[:, 1, None] * edge[:, 0]
     on_sight = start[:, 0] * edge[:, 1] - start[:, 1] * edge[:, 0]
@@ -62,10 +62,10 @@ def _behind_walls(eye: Floats, sight: Floats, walls: Floats) -> Bools:
 
 @dataclass(frozen=True)
 class Occlusion(Degradation):
-    """People are lost while hidden from a viewpoint by bodies or walls, or out of range.
+    """Removes people while they are hidden from a viewpoint by bodies or walls, or out of range.
 
-    At frames without the observer everyone is lost. The observer's own track stays and hides no one; false tracks
-    neither hide nor are hidden. In a chain it belongs first, so true positions occlude.
+    At frames without the observer, all people are removed. The track of the observer is unchanged and hides nobody.
+    False tracks neither hide others nor are hidden. Place it first in a chain, so true positions occlude.
 
     Fields:
         probability: probability that a hidden row is lost [1]; the level.
@@ -99,13 +99,13 @@ class Occlusion(Degradation):
         robots = sorted(tracks.robots)
         if self.eye is None and not robots:
             raise DataError(
-                f"{self.name}: {tracks.name} has no robot to look from;"
-                " set eye to a point x,y [m] or to the id of a person who looks"
+                f"{self.name}: {tracks.name} has no robot as a viewpoint;"
+                " set eye to a point x,y [m] or to the id of a person"
             )
         if self.eye is None and len(robots) > 1:
             raise DataError(
                 f"{self.name}: {tracks.name} has the robots {', '.join(map(str, robots))};"
-                " set eye to the id of the one that looks"
+                " set eye to the id of one of them"
             )
         if self.eye is not None and self.eye not in tracks.ids:
             raise DataError(

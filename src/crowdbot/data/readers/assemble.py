@@ -19,7 +19,7 @@ from .time_base import check_speeds, row_rate_of
 __all__ = ["PER_METRE", "assemble", "check_units"]
 
 PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "px": 1.0}
-"""Units of a file in one metre; pixels stay pixels."""
+"""Units per metre; pixels are not converted."""
 
 
 def assemble(

@@ -36,7 +36,7 @@ _NAMES = {
     "label": "label class type agent_type category",
 }
 NAMES = {meaning: names.split() for meaning, names in _NAMES.items()}
-"""Known names of each column, in small letters; x and y may carry a unit, as in ``x_cm``, ``x/m`` or ``y [m]``."""
+"""Known names of each column, in lower case; x and y may have a unit, as in ``x_cm``, ``x/m`` or ``y [m]``."""
 
 WITH_UNIT = re.compile(r"^(.*?[a-z])[\s_/]*[\[(/_\s]\s*(mm|cm|m|px)\s*[\])]?$")
 SLOWEST, FASTEST = 1000.0, 1e-4
@@ -69,7 +69,7 @@ def check_columns(found: dict[str, str], names: list[str], name: str) -> None:
     if missing:
         known = "; ".join(f"{meaning} may be called {', '.join(NAMES[meaning])}" for meaning in missing)
         held = ", ".join(names[:20]) or "none"
-        raise DataError(f"{name} lacks a column for {', '.join(missing)}; it has {held}; {known}")
+        raise DataError(f"{name} has no column for {', '.join(missing)}; it has {held}; {known}")
 
 
 def numbers(values: NDArray[Any], column: str, name: str, line: Lines) -> NDArray[np.float64]:
@@ -93,12 +93,12 @@ def ids(values: NDArray[Any], column: str, name: str, line: Lines) -> tuple[NDAr
     read = [_number(value) for value in values.tolist()]
     empty = next((index for index, value in enumerate(read) if value is not None and np.isnan(value)), None)
     if empty is not None:
-        raise DataError(f"{where(name, empty, line)}: {column} is empty, every row needs one")
+        raise DataError(f"{where(name, empty, line)}: {column} is empty, but every row needs a value")
     if None not in read:
         return integers(values if values.dtype.kind in "iu" else np.asarray(read, np.float64), column, name, line), ""
     known = {word: number for number, word in enumerate(dict.fromkeys(map(str, values.tolist())), 1)}
     options = np.asarray([known[str(word)] for word in values.tolist()], dtype=np.int64)
-    return options, f"ids are words: {next(iter(known))[:40]!r} became 1, and so on in the order of appearance"
+    return options, f"ids are words; they are numbered in order of appearance, {next(iter(known))[:40]!r} is 1"
 
 
 def labels(values: NDArray[Any], id: NDArray[np.int64]) -> dict[int, str]:

@@ -1,4 +1,4 @@
-"""Episodes, our recordings of trials: MCAP with ROS 2 messages; people and robots become tracks.
+"""Episodes, the recordings of trials: MCAP with ROS 2 messages; people and robots become tracks.
 
 The reader uses ``/people`` (people_msgs/msg/People, the name is the id), every ``.../odom`` (nav_msgs/msg/Odometry of
 a robot, in the world frame), and ``walls`` (JSON list of rings) and ``robots`` (ids) of the metadata record
@@ -112,7 +112,7 @@ def _add_message(messages: _EpisodeData, topic: str, message: Any) -> None:
 def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int64]]:
     """Return the period of /people [ns] and the frame of each message, from its stamp."""
     if len(stamps) < 2:
-        raise DataError(f"{name} holds {len(stamps)} messages on {PEOPLE}, at least 2 are needed")
+        raise DataError(f"{name} has {len(stamps)} messages on {PEOPLE}, at least 2 are required")
     steps = np.diff(stamps)
     if np.any(steps <= 0):
         index = int(np.argmax(steps <= 0)) + 1

@@ -47,7 +47,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         x=x,
         y=y,
         units="px" if pixels else "m",
-        note="large numbers: taken as pixels; units overrides it" if pixels and options.units is None else "",
+        note="large coordinates are interpreted as pixels; units overrides this"
+        if pixels and options.units is None
+        else "",
         line=line,
     )
 
@@ -64,8 +66,8 @@ def eth_time_base(values: NDArray[np.float64], options: ReadOptions) -> tuple[fl
     if not known or options.fps is not None:
         return None, ""
     if options.time_base == "published":
-        return 25.0, "time base published: 10 frames taken as 0.4 s, truly 0.667 s, so speeds are 1.67 times too high"
-    return ETH_VIDEO_FPS, "time base true: 10 frames are 0.667 s; publications take them as 0.4 s (time_base published)"
+        return 25.0, "time base published: 10 frames are 0.4 s instead of 0.667 s, so speeds are 1.67 times too high"
+    return ETH_VIDEO_FPS, "time base true: 10 frames are 0.667 s; publications use 0.4 s (time_base published)"
 
 
 READER = Reader("eth-obsmat", "ETH/UCY obsmat.txt: frame id x z y vx vz vy", sniff, read)

@@ -40,15 +40,17 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read id, frame, x, y; z is ignored."""
     header = "\n".join(_header(source))
     if not source.rows:
-        raise DataError(f"{source.name} holds a header but no row of any track")
+        raise DataError(f"{source.name} has a header but no rows")
     values, line = source.table(len(source.rows[0]))
     if values.shape[1] not in (4, 5):
-        raise DataError(f"{source.name} has {values.shape[1]} columns, PeTrack has id frame x y and perhaps z")
+        raise DataError(
+            f"{source.name} has {values.shape[1]} columns, PeTrack files have id frame x y and optionally z"
+        )
     fps, unit = FPS.search(header), UNIT.search(header)
     units, guess = (unit.group(1).lower(), "") if unit else _guess_units(values)
     notes = [] if options.units else [guess]
     if fps is None and options.fps is None and not header:
-        notes.append("no frame rate in the file: 16 frames a second are assumed, as in HERMES; fps overrides it")
+        notes.append("no frame rate in the file: 16 Hz is assumed, as in HERMES; fps overrides this")
     return assemble(
         source,
         options,
@@ -77,7 +79,7 @@ def _parse_fps(fps: re.Match[str], name: str) -> float:
 def _guess_units(values: NDArray[np.float64]) -> tuple[str, str]:
     size = float(np.nanmax(np.abs(values[:, 2:4]), initial=0.0))
     units = "cm" if size > ROOM else "m"
-    return units, f"no unit in the file: coordinates up to {size:.0f} are taken as {units}; units overrides it"
+    return units, f"no unit in the file: coordinates up to {size:.0f} are interpreted as {units}; units overrides this"
 
 
 READER = Reader("petrack", "PeTrack and HERMES text: id frame x y z, metres or centimetres", sniff, read)

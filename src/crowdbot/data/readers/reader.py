@@ -1,4 +1,4 @@
-"""Reader: one file format, and the options of the user that override what a file says."""
+"""Reader: a file format, and user options that override the content of a file."""
 
 from __future__ import annotations
 

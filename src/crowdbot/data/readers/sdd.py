@@ -1,4 +1,4 @@
-"""Stanford Drone Dataset, ``annotations.txt``: boxes in pixels at 30 frames a second (Robicquet et al., ECCV 2016).
+"""Stanford Drone Dataset, ``annotations.txt``: boxes in pixels at 30 Hz (Robicquet et al., ECCV 2016).
 
 Ten columns: id xmin ymin xmax ymax frame lost occluded generated "label".
 """
@@ -33,7 +33,7 @@ def sniff(source: Source) -> bool:
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read the middle of every box; rows marked lost are left out, labels are kept by id."""
+    """Read the center of every box; rows marked lost are excluded, labels are stored by id."""
     text = source.text()
     names = sorted(set(LABEL.findall(text)))
     for number, name in enumerate(names):
@@ -42,7 +42,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     _check_labels(source.name, values[:, 9], len(names), line)
     seen = values[:, 6] == 0.0
     if not np.any(seen):
-        raise DataError(f"{source.name}: all of its {len(values)} rows are marked lost, nobody is in view")
+        raise DataError(f"{source.name}: all of its {len(values)} rows are marked lost")
     lost = int(np.sum(~seen))
     values, line = values[seen], line[seen]
     id = integers(values[:, 0], "id", source.name, line)
@@ -56,7 +56,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         y=(values[:, 2] + values[:, 4]) / 2.0,
         fps=VIDEO_FPS,
         units="px",
-        note=f"pixels; {lost} rows marked lost left out",
+        note=f"pixels; {lost} rows marked lost are excluded",
         line=line,
         labels={key: names[int(values[row, 9])] for key, row in zip(ids.tolist(), first, strict=True)},
     )

@@ -35,7 +35,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         hidden = [line.split()[2:] == [HIDDEN, HIDDEN] for line in lines]
         left_out = sum(hidden)
         text = "\n".join("" if gone else line for gone, line in zip(hidden, lines, strict=True))
-        note = f"{left_out} rows with '?' left out: a test file whose futures are hidden"
+        note = f"{left_out} rows with '?' are excluded: a test file with hidden futures"
     values, line = source.table(4, text)
     fps, base = eth_time_base(values, options) if len(values) else (None, "")
     return assemble(
@@ -56,7 +56,7 @@ def _exchange_warning(values: NDArray[np.float64]) -> str:
     given_order, swapped_order = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
     if given_order is None or swapped_order is None or not given_order > SMOOTHER * swapped_order:
         return ""
-    return "id and frame look exchanged (read as frame id x y); format petrack reads id frame x y"
+    return "id and frame seem to be swapped (read as frame id x y); format petrack reads id frame x y"
 
 
 def _jump(id: NDArray[np.float64], frame: NDArray[np.float64], values: NDArray[np.float64]) -> float | None:

@@ -24,7 +24,7 @@ NAMES = ("obsvs", "preds", "times")
 
 
 def sniff(source: Source) -> bool:
-    """Return whether the file is a zip that begins with an array."""
+    """Return whether the file is a zip archive whose first entry is an array."""
     return source.kind == "zip" and b".npy" in source.head[:200]
 
 
@@ -56,7 +56,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         frame=frame.ravel(),
         x=place[:, :, 0].ravel(),
         y=place[:, :, 1].ravel(),
-        note="" if options.units else "no unit in the file: taken as m; units overrides it",
+        note="" if options.units else "no unit in the file: m is assumed; units overrides this",
     )
 
 

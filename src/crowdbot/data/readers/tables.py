@@ -40,7 +40,7 @@ NAME = re.compile(r"^[A-Za-z_][\w .:/()\[\]-]*$")
 
 def sniff_csv(source: Source) -> bool:
     """Return whether the first line has column names: two known names, or one word per value of the next line."""
-    lines = _uncommented(source)
+    lines = _data_lines(source)
     if not lines:
         return False
     names = _words(lines[0])
@@ -52,7 +52,7 @@ def sniff_csv(source: Source) -> bool:
 
 def read_csv(source: Source, options: ReadOptions) -> Trajectories:
     """Read a table with a line of names; delimiters are commas, semicolons, tabs or blanks, "#" begins a comment."""
-    head = _uncommented(source)
+    head = _data_lines(source)
     if not head:
         raise DataError(f"{source.name} is not a text with a line of column names")
     delimiter = _delimiter(head[0])
@@ -91,7 +91,7 @@ def read_parquet(source: Source, options: ReadOptions) -> Trajectories:
     return _tracks(source, options, columns, _metadata_fields(source.name, table.schema.metadata or {}), None)
 
 
-def _uncommented(source: Source) -> list[str]:
+def _data_lines(source: Source) -> list[str]:
     return [line for line in source.lines if not line.lstrip().startswith("#")]
 
 

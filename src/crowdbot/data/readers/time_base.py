@@ -74,7 +74,7 @@ def row_rate_of(
     if row_rate is not None:
         return check_fps(row_rate, name), ""
     if step in CONVENTIONAL_FPS:
-        note = f"no frame rate in the file: {step} frames are taken as 0.4 s, as in ETH/UCY"
+        note = f"no frame rate in the file: {step} frames are interpreted as 0.4 s, as in ETH/UCY"
         return CONVENTIONAL_FPS[step] / step, note
     raise DataError(
         f"{name} has no frame rate, and a step of {step} frames is not a convention of the field;"

@@ -39,7 +39,7 @@ def sniff(source: Source) -> bool:
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read rows and scenes; rows of predictions (with a prediction number) are refused."""
+    """Read rows and scenes; rows of predictions (with a prediction number) are rejected."""
     rows: list[tuple[Any, ...]] = []
     scenes: list[dict[str, Any]] = []
     for number, line in enumerate(source.text().split("\n"), 1):
@@ -49,11 +49,11 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         if kind == "scene":
             scenes.append(record)
         elif record.get("prediction_number") is not None:
-            raise DataError(f"{source.name} line {number} is a prediction, not a recording; leave such rows out")
+            raise DataError(f"{source.name} line {number} is a prediction, not a recording; remove such rows")
         else:
             rows.append((number, *(_value(record, key, source.name, number) for key in "fpxy")))
     if not rows:
-        raise DataError(f"{source.name} holds {len(scenes)} scenes and no row of any track")
+        raise DataError(f"{source.name} has {len(scenes)} scenes but no rows")
     lines, frame, id, x, y = (np.asarray(column) for column in zip(*rows, strict=True))
     return assemble(
         source,
@@ -71,13 +71,13 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 def _record(name: str, number: int, line: str) -> tuple[str, dict[str, Any]]:
     if len(line) > MAX_LINE:
         raise DataError(
-            f"{name} line {number} has {len(line)} characters, more than {MAX_LINE}; it is no TrajNet++ row"
+            f"{name} line {number} has {len(line)} characters, more than {MAX_LINE}; it is not a TrajNet++ row"
         )
     try:
         record = json.loads(line)
     except (ValueError, RecursionError):
         raise DataError(
-            f"{name} line {number} is not JSON: {line.strip()[:40]!r}; the file is cut short or mixed"
+            f"{name} line {number} is not JSON: {line.strip()[:40]!r}; the file is truncated or damaged"
         ) from None
     for kind in ("track", "scene"):
         if isinstance(record, dict) and isinstance(record.get(kind), dict):

@@ -1,8 +1,8 @@
 """UCY's own annotation, ``annotation.vsp``: one spline of control points per person, in pixels.
 
 First line: number of splines. Then per spline its number of control points and a line "x y frame gaze" for each.
-Comments run from " - " to the end of the line. The origin is the middle of the image, y goes up, 25 frames a second.
-Positions between control points are interpolated linearly: at the frames of the published text files this meets them
+Comments run from " - " to the end of the line. The origin is the middle of the image, y goes up, 25 Hz.
+Positions between control points are interpolated linearly: they agree with the published text files
 within 2 mm in the median (zara01, zara02, students003).
 """
 
@@ -54,7 +54,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         )
     parts = [_interpolate(points, number) for number, points in enumerate(splines, 1) if len(points)]
     if not parts:
-        raise DataError(f"{source.name} holds no control point of any spline")
+        raise DataError(f"{source.name} has no control points")
     id, frame, x, y = (np.concatenate(column) for column in zip(*parts, strict=True))
     fitted = bool(len(splines[0])) and (len(splines), splines[0][0, 0], splines[0][0, 1]) in KNOWN
     homography = TO_METRES if fitted and options.units is None else None
@@ -68,7 +68,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         y=y,
         fps=VIDEO_FPS,
         units="px",
-        note=f"{note}; metres() turns them into the metres of the text files" if fitted else note,
+        note=f"{note}; metres() converts them to the metres of the text files" if fitted else note,
         homography=homography,
     )
 
@@ -84,7 +84,7 @@ def _splines(source: Source) -> list[NDArray[np.float64]]:
     def whole(what: str) -> int:
         nonlocal at
         if at >= len(lines):
-            raise DataError(f"{source.name} ends before {what}; the file is cut short")
+            raise DataError(f"{source.name} ends before {what}; the file is truncated")
         number, words = lines[at]
         if not words.isdecimal() or len(words) > 9:
             raise DataError(f"{source.name} line {number}: {words[:40]!r} is not {what}")
@@ -96,7 +96,7 @@ def _splines(source: Source) -> list[NDArray[np.float64]]:
         count = whole(f"the number of control points of spline {spline}")
         points = [_point(source.name, number, words) for number, words in lines[at : at + count]]
         if len(points) < count:
-            raise DataError(f"{source.name} ends inside spline {spline}; the file is cut short")
+            raise DataError(f"{source.name} ends inside spline {spline}; the file is truncated")
         at += count
         splines.append(np.asarray(points, dtype=np.float64).reshape(-1, 3))
     return splines
@@ -120,4 +120,4 @@ def _interpolate(points: NDArray[np.float64], number: int) -> tuple[NDArray[np.f
     return np.full(len(frame), float(number)), frame, x, y
 
 
-READER = Reader("ucy-vsp", "UCY annotation.vsp: splines of control points, pixels, 25 frames a second", sniff, read)
+READER = Reader("ucy-vsp", "UCY annotation.vsp: splines of control points, pixels, 25 Hz", sniff, read)

@@ -85,7 +85,7 @@ class Anchors(Predictor):
         if why:
             warnings.warn(f"anchors: {why}; sampled constant velocity is used instead", stacklevel=2)
             return SampledConstantVelocity().predict(past, steps, samples, rng)
-        shapes, share = self._chosen(past)
+        shapes, share = self._anchors(past)
         people, window, slot = agent_histories(past)
         residual = np.broadcast_to(shapes[:samples], (len(window), *shapes[:samples].shape))
         bend = rotate(residual, heading_vectors(people.past), back=True)
@@ -96,7 +96,7 @@ class Anchors(Predictor):
         weight = share[:samples] / share[:samples].sum()
         return dataclasses.replace(forecast, weight=np.broadcast_to(weight, forecast.weight.shape).copy())
 
-    def _chosen(self, past: Windows) -> tuple[Floats, Floats]:
+    def _anchors(self, past: Windows) -> tuple[Floats, Floats]:
         if self.shapes is not None and self.share is not None:
             return self.shapes, self.share
         found = load_pretrained("anchors", fold_of(past.source) if self.fold == AUTO else self.fold)
@@ -154,11 +154,11 @@ def cluster_centers(
     for _ in range(starts):
         place = _start(points, count, rng)
         for _ in range(rounds):
-            near = np.argmin(_squared(points, place), axis=1)
+            near = np.argmin(_squared_distances(points, place), axis=1)
             size = np.bincount(near, minlength=count)
             mean = np.stack([np.bincount(near, column, count) for column in points.T], axis=1)
             place = np.where(size[:, None] > 0, mean / np.maximum(size, 1)[:, None], place)
-        squared = _squared(points, place)
+        squared = _squared_distances(points, place)
         cost = float(squared.min(axis=1).sum())
         if best is None or cost < best[0]:
             share = np.bincount(np.argmin(squared, axis=1), minlength=count) / len(points)
@@ -199,15 +199,15 @@ def scatter_to_slots(past: Windows, away: Floats, window: NDArray[np.int64], slo
 def _start(points: Floats, count: int, rng: np.random.Generator) -> Floats:
     """Return ``count`` initial centers (k-means++)."""
     place: Floats = points[int(rng.integers(len(points)))][None]
-    nearest = _squared(points, place)[:, 0]
+    nearest = _squared_distances(points, place)[:, 0]
     for _ in range(count - 1):
         share = np.cumsum(nearest)
         row = min(int(np.searchsorted(share, rng.random() * share[-1])), len(points) - 1)
         new = points[row][None]
-        nearest = np.minimum(nearest, _squared(points, new)[:, 0])
+        nearest = np.minimum(nearest, _squared_distances(points, new)[:, 0])
         place = np.concatenate([place, new])
     return np.asarray(place)
 
 
-def _squared(points: Floats, place: Floats) -> Floats:
+def _squared_distances(points: Floats, place: Floats) -> Floats:
     return np.asarray(np.stack([((points - one) ** 2).sum(axis=1) for one in place], axis=1))

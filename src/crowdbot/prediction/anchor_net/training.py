@@ -38,17 +38,17 @@ class AnchorTraining:
     """Training settings of AnchorNet.
 
     Fields:
-        people: in one batch.
-        width, social: numbers in a hidden layer, and about a neighbor.
-        count: futures.
-        rate, decay, warm: learning rate, weight decay, updates until the full rate.
-        average: of the weights.
-        apart: weight of the mean error of all futures at the begin, falling to 0; it keeps every future alive.
-        choice: weight of the cross-entropy of the probabilities against a soft nearest future.
-        single: weight of the error of the single answer.
+        people: number of people per batch.
+        width, social: sizes of the hidden layers, and of the neighbor features.
+        count: number of futures.
+        rate, decay, warm: learning rate, weight decay, number of warm-up updates.
+        average: factor of the moving average of the weights.
+        apart: initial weight of the mean error of all futures, decreasing to 0; it prevents unused futures.
+        choice: weight of the cross-entropy of the probabilities with a soft assignment to the nearest future.
+        single: weight of the error of the single trajectory.
         likely: weight of the likelihood under the mixture, which trains probabilities and spreads only.
-        seed: of everything that is drawn.
-        variation: of the people.
+        seed: random seed.
+        variation: data augmentation.
     """
 
     people: int = 256
@@ -73,16 +73,18 @@ def learner(
     """Return an AnchorNet ready to train, from the options of the command line.
 
     Args:
-        settings: there is one kind, ``shipped``, that of the shipped weights.
-        values: settings that differ, as text; those of the variation too.
-        samples, watched, seed, device: as of :class:`AnchorNetTraining`.
+        settings: name of the preset; only ``shipped`` exists, the settings of the shipped weights.
+        values: settings that differ from the preset, including those of the augmentation, as text.
+        samples, watched: training data and validation data.
+        seed: random seed.
+        device: ``cpu`` or ``cuda``.
 
     Raises:
-        InputError: a name or value is not known, or rows are not 8 + 12 at 0.4 s in metres.
+        InputError: a name or value is unknown, or the samples do not have 8 + 12 rows of 0.4 s in metres.
     """
     if settings not in (None, "shipped"):
-        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; there"
-                         " is shipped")  # fmt: skip
+        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; the"
+                         " only preset is shipped")  # fmt: skip
     varied = {field.name for field in dataclasses.fields(Augmentation)}
     plain = {name.replace("-", "_"): value for name, value in values.items()}
     variation = from_attributes(Augmentation, {name: value for name, value in plain.items() if name in varied})
@@ -94,9 +96,9 @@ def learner(
 
 
 def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
-    """Return ``basis [6, 24]``, ``centres [count, 6]`` and ``spread [6]`` of what constant velocity misses."""
+    """Return ``basis [6, 24]``, ``centres [count, 6]`` and ``spread [6]`` of the residuals to constant velocity."""
     if len(material) < count:
-        raise InputError(f"{len(material)} people are too few to learn {count} futures from")
+        raise InputError(f"{len(material)} people are too few to train {count} futures")
     past = material.people.past
     step = past[:, -1] - past[:, -2]
     missed = rotate(
@@ -112,7 +114,7 @@ def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
 
 
 def network(how: AnchorTraining) -> Any:
-    """Return the layers, a torch module; what they give is turned into futures by :func:`_losses`."""
+    """Return the layers as a torch module; :func:`outputs` evaluates them."""
     W, S, K = how.width, how.social, how.count
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(how.seed)
@@ -140,7 +142,7 @@ def _layers(W: int, S: int, K: int) -> Any:
 
 
 def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
-    """Return ``[N, 20 * 6 + 20 + 6 + 6]``: bends of all futures, their scores, the single bend, and spreads."""
+    """Return ``[N, 20 * 6 + 20 + 6 + 6]``: residuals of all futures, their scores, the single residual, and spreads."""
     hidden = torch.relu(layers["own_2"](torch.relu(layers["own_1"](own))))
     near = torch.relu(layers["near_2"](torch.relu(layers["near_1"](company))))  # [N, M, S]
     query = layers["query"](hidden)
@@ -154,16 +156,16 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
 
 
 class AnchorNetTraining(Trainable):
-    """The anchor network with its people; see :class:`~crowdbot.prediction.Trainable`.
+    """AnchorNet with its training data; see :class:`~crowdbot.prediction.Trainable`.
 
     With ``check_every`` equal to the number of updates, the averaged weights after the last update are used.
     Probabilities and spreads are calibrated on the validation data.
 
     Args:
-        config: how it is trained.
-        material: people to learn from.
-        watched: people on whom errors are watched and probabilities calibrated.
-        names: of the recordings that are learned from.
+        config: settings.
+        material: training data.
+        watched: validation data, also used to calibrate the probabilities.
+        names: names of the training recordings.
         device: ``cpu`` or ``cuda``.
     """
 
@@ -186,17 +188,17 @@ class AnchorNetTraining(Trainable):
         self.optimiser = torch.optim.AdamW(self.layers.parameters(), lr=config.rate, weight_decay=config.decay)
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
-        """Return as many batches as it takes to see about everyone once; each update draws its own people."""
+        """Return placeholders for the batches of an epoch; each update draws random people."""
         del rng
         return [None] * -(-len(self.material) // self.config.people)
 
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
-        """Do one update; people and how they are varied come from a stream named by seed and number."""
+        """Run one update; people and their augmentation are drawn from a stream given by the seed and the number."""
         del batch, rng
         how, own = self.config, stream(self.config.seed, "batch", number)
         shown = make_batch(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
         for group in self.optimiser.param_groups:
-            group["lr"] = how.rate * _pace(number, total, how)
+            group["lr"] = how.rate * _rate_factor(number, total, how)
         loss = _loss(self.layers, self.fixed, shown, how, 1.0 - number / total)
         self.optimiser.zero_grad()
         loss.backward()
@@ -209,7 +211,7 @@ class AnchorNetTraining(Trainable):
         return {"loss": float(loss.detach())}
 
     def check(self) -> Mapping[str, float]:
-        """Return ADE and FDE [m] of the nearest of the fixed futures, and ADE of the single answer."""
+        """Return ADE and FDE [m] of the nearest future, and ADE of the single trajectory."""
         numbers = self.numbers()
         own, company, there, missed = make_batch(
             self.watched, np.arange(len(self.watched)), NO_AUGMENTATION, stream(0, "check")
@@ -225,28 +227,28 @@ class AnchorNetTraining(Trainable):
         return {name: float(values.mean()) for name, values in nearest.items()}
 
     def numbers(self) -> Numbers:
-        """Return the averaged numbers, not calibrated."""
+        """Return the averaged weights before the calibration."""
         return self.shapes | _plain(self.mean)
 
     def weights(self) -> Mapping[str, Any]:
-        """Return the averaged numbers, calibrated on who is watched."""
+        """Return the averaged weights with probabilities calibrated on the validation data."""
         return calibrate_confidence(self.numbers(), self.watched)
 
     def state(self) -> Mapping[str, Any]:
-        """Return layers, optimiser and average."""
+        """Return layers, optimizer and averaged weights."""
         return {
             "layers": dict(self.layers.state_dict()), "optimiser": self.optimiser.state_dict(), "mean": self.mean,
         }  # fmt: skip
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Restore a state."""
+        """Restore a result of :meth:`state`."""
         kept = to_tensors(dict(state), self.device)
         self.layers.load_state_dict(kept["layers"])
         self.optimiser.load_state_dict(kept["optimiser"])
         self.mean = kept["mean"]
 
 
-def _pace(update: int, total: int, how: AnchorTraining) -> float:
+def _rate_factor(update: int, total: int, how: AnchorTraining) -> float:
     if update < how.warm:
         return (update + 1) / how.warm
     done = (update - how.warm) / max(1, total - how.warm)
@@ -254,7 +256,7 @@ def _pace(update: int, total: int, how: AnchorTraining) -> float:
 
 
 def _loss(layers: Any, fixed: dict[str, Any], shown: TrainingBatch, how: AnchorTraining, early: float) -> Any:
-    """Return the loss of one batch; ``early`` falls from 1 to 0 over the training."""
+    """Return the loss of one batch; ``early`` decreases from 1 to 0 over the training."""
     K = how.count
     device = fixed["basis"].device
     own, company, missed = (torch.from_numpy(np.ascontiguousarray(v)).float().to(device)

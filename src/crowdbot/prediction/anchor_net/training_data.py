@@ -43,7 +43,7 @@ AT_ONCE = 64
 
 
 class TrainingSet(NamedTuple):
-    """N people with their futures, in world axes, relative to their last position."""
+    """Histories and futures of N people, in world axes, relative to their last position."""
 
     people: AgentHistories
     planned: AgentHistories
@@ -79,16 +79,16 @@ class Augmentation:
 
     Fields:
         mirror: share of mirrored people.
-        scale: standard deviation of the logarithm of a common factor, kept within 0.4 to 2.5.
-        grow: mean of that logarithm; above 0 fast walkers are shown more often.
-        turn: standard deviation of an error of the heading [rad].
-        jitter: noise of each row but the last, uniform up to this standard deviation [m].
-        noisy, noise: share of tracks with noise at every row, and its largest standard deviation [m].
-        holes, hole: share of tracks with rows missing, and the share of their rows.
-        late: share of tracks that begin late, with 2 to 7 rows.
+        scale: standard deviation of the logarithm of a scale factor, limited to 0.4 to 2.5.
+        grow: mean of this logarithm; values above 0 increase the share of fast people.
+        turn: standard deviation of a heading error [rad].
+        jitter: maximum standard deviation of the noise of all rows except the last [m]; it is uniformly distributed.
+        noisy, noise: share of tracks with noise at every row, and its maximum standard deviation [m].
+        holes, hole: share of tracks with missing rows, and the share of missing rows in them.
+        late: share of tracks that start late, with 2 to 7 rows.
         switched: share of tracks whose older rows belong to the nearest neighbor.
-        planned: share of people who know where some neighbors go.
-        unseen: share of neighbors that are not seen.
+        planned: share of people for whom the future of some neighbors is known.
+        unseen: share of neighbors that are not observed.
     """
 
     mirror: float = 0.5
@@ -125,7 +125,7 @@ def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> Tr
         for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
     if not parts:
-        raise InputError("there is no recording to learn from")
+        raise InputError("there is no training recording")
     return _material(parts)
 
 
@@ -139,12 +139,12 @@ def training_set_of(samples: Samples, reverse: bool = True) -> TrainingSet:
         samples.dt - STEP
     ) > 0.01 * STEP:
         raise InputError(
-            f"anchor-net learns {ROWS} + {PREDICTED_ROWS} rows of {STEP} s in metres, {samples.names[0]} is cut into"
+            f"anchor-net requires {ROWS} + {PREDICTED_ROWS} rows of {STEP} s in metres, {samples.names[0]} has"
             f" {samples.observe} + {samples.predict} rows of {samples.dt:.4g} s in {samples.units}; resample with"
             f" --step {STEP}"
         )
     if samples.people == 0:
-        raise InputError("nobody is there at all rows of any window: there is nothing to learn from")
+        raise InputError("no person is present at all rows of a window: there is no training data")
     parts = []
     size = np.diff(samples.first)
     for scenes in np.array_split(np.argsort(size, kind="stable"), max(1, len(samples) // AT_ONCE)):
@@ -177,7 +177,7 @@ def make_batch(
     material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
 ) -> TrainingBatch:
     """Return a batch of augmented people."""
-    people, ahead, seen_from = _varied(material, rows, how, rng)
+    people, ahead, seen_from = _augment(material, rows, how, rng)
     heading = heading_vectors(people.past)
     angle = how.turn * rng.standard_normal(len(rows))
     wrong = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
@@ -188,7 +188,7 @@ def make_batch(
     return TrainingBatch(own, company, people.there, rotate(missed, heading))
 
 
-def _varied(
+def _augment(
     material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
 ) -> tuple[AgentHistories, Floats, Floats]:
     """Return augmented histories, futures and last positions, relative to the true last position."""
@@ -202,8 +202,8 @@ def _varied(
     past, ahead = plain.past * factor[:, None], material.ahead[rows] * factor[:, None]
     near, pace = plain.near * factor[:, None], plain.pace * factor[:, None]
     past = past + _noise(N, past.shape[1], how, rng)
-    past = _switched(past, near, pace, how, rng)
-    seen = _rows_seen(past, plain.seen, how, rng)
+    past = _switch_identities(past, near, pace, how, rng)
+    seen = _draw_observed_rows(past, plain.seen, how, rng)
     past = interpolate_gaps(past, seen)
     now = past[:, -1:]
     zero = there[..., None]
@@ -222,7 +222,7 @@ def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -
     return np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
 
 
-def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
+def _switch_identities(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
     """Return tracks, some with an identity switch: earlier rows come from the nearest neighbor."""
     N, T, _ = past.shape
     row = np.arange(1.0 - T, 1.0)[:, None]
@@ -233,7 +233,9 @@ def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: 
     return np.where((chosen & (np.arange(T) < from_row))[..., None], other, past)
 
 
-def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Augmentation, rng: np.random.Generator) -> NDArray[np.bool_]:
+def _draw_observed_rows(
+    past: Floats, seen: NDArray[np.bool_], how: Augmentation, rng: np.random.Generator
+) -> NDArray[np.bool_]:
     N, T = seen.shape
     hole = (rng.random((N, 1)) < how.holes) & (rng.random((N, T)) < how.hole)
     begin = np.where(rng.random((N, 1)) < how.late, T - rng.integers(2, T, size=(N, 1)), 0)
@@ -257,12 +259,12 @@ def _people(past: Windows, future: Windows) -> TrainingSet:
 
 def _material(parts: Sequence[TrainingSet]) -> TrainingSet:
     return TrainingSet(
-        _joined([part.people for part in parts]),
-        _joined([part.planned for part in parts]),
+        _concatenate([part.people for part in parts]),
+        _concatenate([part.planned for part in parts]),
         np.concatenate([part.ahead for part in parts]),
     )
 
 
-def _joined(parts: Sequence[AgentHistories]) -> AgentHistories:
+def _concatenate(parts: Sequence[AgentHistories]) -> AgentHistories:
     columns: list[Any] = [np.concatenate(values) for values in zip(*parts, strict=True)]
     return AgentHistories(*columns)

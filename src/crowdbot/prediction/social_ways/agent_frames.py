@@ -50,13 +50,14 @@ class AgentFrames:
 
 
 def agent_frames(past: Floats, here: Bools, frame: str, offset: Floats) -> AgentFrames:
-    """Put tracks ``[S, T, A, 2]`` [m] into frames; who is not ``here`` ``[S, A]`` stays at 0.
+    """Transform tracks ``[S, T, A, 2]`` [m] to agent frames; absent agents stay at 0.
 
     Args:
         past: complete observed tracks.
-        here: who is there.
-        frame: ``person``: from where each person is, along their heading; ``world``: from ``offset`` for all.
-        offset: ``[2]`` [m].
+        here: mask of present agents ``[S, A]``.
+        frame: ``person``: origin at the last position and x axis along the heading of each person; ``world``: origin at
+            ``offset`` for all.
+        offset: origin of the frame ``world``, ``[2]`` [m].
     """
     now = past[:, -1]
     if frame == "world":
@@ -71,9 +72,9 @@ def agent_frames(past: Floats, here: Bools, frame: str, offset: Floats) -> Agent
 
 
 def headings(past: Floats) -> Floats:
-    """Return ``[S, A, 2]`` unit vectors along which people walk: of their last rows, or more when they hardly moved.
+    """Return heading vectors ``[S, A, 2]`` of the last rows, or of more rows if a person hardly moved.
 
-    Who did not move at all heads along +x.
+    The heading of people who did not move is +x.
     """
     rows = past.shape[1]
     found = np.zeros_like(past[:, -1])

@@ -34,7 +34,7 @@ class Normalization:
     Fields:
         position, velocity, distance: root mean squares: of observed positions in their frames [m], of velocities
             [m/s], and of distances to others [m].
-        offset: middle of the training data [m], where the frame ``world`` stands.
+        offset: center of the training data [m], the origin of the frame ``world``.
         dt: time step [s].
     """
 
@@ -72,7 +72,7 @@ class Normalization:
 def scene_input(
     past: Floats, here: NDArray[np.bool_], config: SocialWaysConfig, scales: Normalization, device: Any = "cpu"
 ) -> tuple[SceneInput, AgentFrames]:
-    """Return what the generator sees of complete observed tracks ``[S, T, A, 2]`` [m], and the frames."""
+    """Return the input of the generator for complete observed tracks ``[S, T, A, 2]`` [m], and the frames."""
     seen = agent_frames(past, here, config.frame, np.array(scales.offset))
     velocity = np.diff(seen.local[:, -2:], axis=1)[:, 0] / scales.dt
 
@@ -89,7 +89,7 @@ def states_of(local: Floats, scales: Normalization, before: Floats | None = None
 
     Args:
         local: positions.
-        scales: to divide by.
+        scales: normalization.
         before: ``[S, A, 2]`` [m] the position one row earlier; None repeats the first velocity.
     """
     whole = local if before is None else np.concatenate([before[:, None], local], axis=1)

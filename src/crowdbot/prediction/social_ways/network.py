@@ -69,12 +69,12 @@ class Generator(nn.Module):
     def forward(
         self, sight: SceneInput, noise: Tensor, steps: int, plan: Tensor | None = None
     ) -> tuple[Tensor, Tensor]:
-        """Return positions [m] and states of the future in the own frames, ``[K, B, T, A, 2]`` and ``[..., 4]``.
+        """Return future positions [m] and states in agent frames, ``[K, B, T, A, 2]`` and ``[..., 4]``.
 
         Args:
             sight: B scenes.
             noise: ``[K, B, A, M]`` in 0..1, K draws; the codes come first.
-            steps: rows ahead.
+            steps: number of predicted rows.
             plan: ``[B, T, A, 2]`` [m] known positions, in the frame of each person; NaN where unknown.
         """
         draws, scenes, people, _ = noise.shape
@@ -94,8 +94,8 @@ class Generator(nn.Module):
         for step in range(steps):
             pooled = self.pool(hidden[0], place, velocity, seen)  # [K * B * A, P]
             spoken = self.decoder(torch.cat([hidden[0], pooled, rows], dim=1), spoken)
-            said = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
-            velocity = seen.velocity + said if self.config.residual else said.float()
+            output = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
+            velocity = seen.velocity + output if self.config.residual else output.float()
             moved = place + self.dt * velocity
             if plan is not None:
                 known = plan[:, step].repeat(draws, 1, 1)
@@ -119,12 +119,12 @@ class Generator(nn.Module):
         return hidden
 
     def pool(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
-        """Return the attention-pooled neighbors of everyone ``[B * A, P]``; 0 without neighbors.
+        """Return the attention-pooled neighbors of each agent ``[B * A, P]``; 0 without neighbors.
 
         Args:
-            hidden: ``[B * A, H]`` encoded tracks up to now.
-            place, velocity: ``[B, A, 2]`` [m] and [m/s] in the own frames.
-            sight: the scenes.
+            hidden: ``[B * A, H]`` encoded tracks.
+            place, velocity: ``[B, A, 2]`` [m] and [m/s] in agent frames.
+            sight: B scenes.
         """
         count, people, _ = place.shape
         if not self.config.social or people == 1:
@@ -132,7 +132,7 @@ class Generator(nn.Module):
         pairs = sight.here[:, :, None] & sight.here[:, None, :]  # [B, A, A]
         pairs = pairs & ~torch.eye(people, dtype=torch.bool, device=pairs.device)
         with torch.no_grad():
-            delta = social_features(sight.origin + _turned(place, sight.turn), _turned(velocity, sight.turn))
+            delta = social_features(sight.origin + _rotate(place, sight.turn), _rotate(velocity, sight.turn))
             delta = delta / delta.new_tensor([self.scales[2], 1.0, self.scales[2]])
             delta = torch.where(pairs[..., None], delta, 0.0).transpose(1, 2).contiguous()  # [B, j, i, 3]
         mapped = hidden.view(count, people, -1)
@@ -145,8 +145,8 @@ class Generator(nn.Module):
 def social_features(place: Tensor, velocity: Tensor) -> Tensor:
     """Return distance [m], bearing angle [rad] and distance of closest approach [m] of all pairs, ``[B, A, A, 3]``.
 
-    The bearing of j from i is between the velocity of i and the way from i to j, positive to the left. The closest
-    approach is that of two who keep their velocities, now or later, never before.
+    The bearing of j from i is the angle from the velocity of i to the vector from i to j, positive to the left. The
+    closest approach is now or in the future, at constant velocities.
 
     Args:
         place, velocity: ``[B, A, 2]`` [m] and [m/s].
@@ -161,17 +161,17 @@ def social_features(place: Tensor, velocity: Tensor) -> Tensor:
     return torch.stack([distance, bearing, closest], dim=-1)
 
 
-def _turned(vector: Tensor, turn: Tensor) -> Tensor:
+def _rotate(vector: Tensor, turn: Tensor) -> Tensor:
     cos, sin = turn[..., 0], turn[..., 1]
     x, y = vector[..., 0], vector[..., 1]
     return torch.stack([cos * x - sin * y, sin * x + cos * y], dim=-1)
 
 
 class Discriminator(nn.Module):
-    """Says of tracks whether their future is real, and which latent codes made it."""
+    """Discriminator: classifies futures as real or generated, and recovers the latent codes."""
 
     def __init__(self, config: SocialWaysConfig) -> None:
-        """Make it with random weights."""
+        """Initialize with random weights."""
         super().__init__()
         c = config
         self.observed = nn.LSTM(4, c.hidden, batch_first=True)  # LSTM-OE
@@ -183,7 +183,7 @@ class Discriminator(nn.Module):
         self.codes = nn.Linear(64, max(1, c.latent_codes))  # Q
 
     def forward(self, observed: Tensor, future: Tensor) -> tuple[Tensor, Tensor]:
-        """Return how real tracks are ``[N]`` (before the sigmoid), and their codes ``[N, 2]``.
+        """Return the logits of being real ``[N]``, and the recovered codes ``[N, 2]``.
 
         Args:
             observed, future: ``[N, T, 4]`` states.
@@ -191,5 +191,5 @@ class Discriminator(nn.Module):
         _, (past, _) = self.observed(observed)  # [1, N, H]
         _, (ahead, _) = self.future(future)  # [1, N, H]
         both = torch.cat([self.of_observed(past[0]), self.of_future(ahead[0])], dim=1)  # [N, 128]
-        told = self.joined(both)  # [N, 64]
-        return self.real(told)[:, 0], self.codes(told)
+        features = self.joined(both)  # [N, 64]
+        return self.real(features)[:, 0], self.codes(features)

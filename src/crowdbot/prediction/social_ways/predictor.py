@@ -212,11 +212,11 @@ class SocialWays(LearnedPredictor):
             people = np.flatnonzero(past.present[window, -1])
             if len(people):
                 only = _only(past[window : window + 1], people)
-                place[window][:, :, people] = _drawn(network, only, steps, samples, own)
+                place[window][:, :, people] = _draw(network, only, steps, samples, own)
         return self.forecast(past, separate_people(past, place, self.contact))
 
 
-def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
+def _draw(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
     """Return draws ``[K, T, A, 2]`` [m] of one window that do not cross walls."""
     people = np.arange(past.present.shape[2])
     tries = TRIES if past.walls else 1

@@ -36,9 +36,9 @@ def learner(
     """Return a Social Ways network ready to train, from the options of the command line.
 
     Args:
-        settings: name of a preset; None is ``report``.
-        values: settings that differ, as text.
-        samples, watched, seed, device: as of :class:`SocialWaysTraining`.
+        settings: name of a preset; None means ``report``.
+        values: settings that differ from the preset, as text.
+        samples, watched, seed, device: see :class:`SocialWaysTraining`.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
     read = from_attributes(SocialWaysConfig, dict(values))
@@ -46,8 +46,8 @@ def learner(
     return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
 
 
-class _Lesson(NamedTuple):
-    """A batch as tensors: sight, the true future states ``[N, T, 4]`` of the N who count, and who they are."""
+class _TensorBatch(NamedTuple):
+    """A batch as tensors: input of the generator, mask of the N scored people, their observed and future states."""
 
     sight: SceneInput
     scored: Tensor  # [S, A]
@@ -77,7 +77,7 @@ class SocialWaysTraining(Trainable):
         for part in (samples, watched):
             if (part.observe, part.predict) != (config.observe, config.predict):
                 raise InputError(
-                    f"social ways learns {config.observe} + {config.predict} rows, {part.names[0]} is cut into"
+                    f"social ways requires {config.observe} + {config.predict} rows, {part.names[0]} has"
                     f" {part.observe} + {part.predict}"
                 )
         self.config, self.samples = config, samples
@@ -101,34 +101,34 @@ class SocialWaysTraining(Trainable):
         self.mean = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
-        """Return scenes, about ``config.batch`` people at a time."""
+        """Return batches of approximately ``config.batch`` people."""
         return list(self.samples.batches(rng, self.config.batch))
 
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
         """Run a discriminator step, unrolled discriminator steps, and a generator step."""
         self._rates(number, total)
-        lesson = self._lesson(augment(self.samples.batch(batch), self.samples.observe, self.config, rng))
+        tensors = self._to_tensors(augment(self.samples.batch(batch), self.samples.observe, self.config, rng))
         c = self.config
-        noise = self._noise(lesson, rng, c.variety_draws if c.use_variety_loss else 1)
-        codes = noise[0][lesson.scored][:, : c.latent_codes]
-        _, made = self._made(lesson, noise)  # one drawing serves both networks
-        told = made[0].detach()
+        noise = self._noise(tensors, rng, c.variety_draws if c.use_variety_loss else 1)
+        codes = noise[0][tensors.scored][:, : c.latent_codes]
+        _, made = self._draw(tensors, noise)  # both networks use the same draw
+        sample = made[0].detach()
         penalty = self._penalty(number / total)
-        losses = self._discriminator_step(lesson, told, codes, rng, penalty)
+        losses = self._discriminator_step(tensors, sample, codes, rng, penalty)
         kept = None
         if c.unrolling_steps:
             kept = copy.deepcopy((self.discriminator.state_dict(), self.of_discriminator.state_dict()))
             for _ in range(c.unrolling_steps):
-                self._discriminator_step(lesson, told, codes, rng, penalty)
-        losses |= self._generator_step(lesson, made, codes, self._variety_weight(number / total))
-        if kept is not None:  # every layer and everything that Adam knows
+                self._discriminator_step(tensors, sample, codes, rng, penalty)
+        losses |= self._generator_step(tensors, made, codes, self._variety_weight(number / total))
+        if kept is not None:  # all layers and the state of Adam
             self.discriminator.load_state_dict(kept[0])
             self.of_discriminator.load_state_dict(kept[1])
-        self._averaged()
+        self._update_average()
         return losses
 
     def check(self) -> Mapping[str, float]:
-        """Return the best of 20 ADE and FDE per person [m], always with the same noise."""
+        """Return best-of-20 ADE and FDE per person [m], always with the same noise."""
         kept = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
         self.generator.load_state_dict(self.mean)
         rng = stream(0, "check")
@@ -136,9 +136,9 @@ class SocialWaysTraining(Trainable):
         observe = self.samples.observe
         for part in self.watched.batches(stream(0, "parts"), self.config.batch):
             scenes = self.watched.batch(part)
-            lesson = self._lesson(scenes)
+            tensors = self._to_tensors(scenes)
             with torch.no_grad():
-                place, _ = self._rolled(lesson.sight, self._noise(lesson, rng, DRAWS))
+                place, _ = self._generate(tensors.sight, self._noise(tensors, rng, DRAWS))
             true = self._frames(scenes).own(scenes.position[:, observe:])
             away = np.linalg.norm(place.cpu().numpy() - true, axis=-1)  # [K, S, T, A]
             ade, fde = away.mean(axis=2).min(axis=0), away[:, :, -1].min(axis=0)
@@ -148,12 +148,12 @@ class SocialWaysTraining(Trainable):
         return {"ade": float(sums[1] / count), "fde": float(sums[2] / count)}
 
     def sample_futures(self, past: NDArray[np.float64], draws: int, rng: np.random.Generator) -> NDArray[np.float64]:
-        """Return futures ``[K, S, T, A, 2]`` [m] that the averaged generator draws for observed tracks.
+        """Return futures ``[K, S, T, A, 2]`` [m] of observed tracks, drawn with the averaged generator.
 
         Args:
             past: ``[S, T, A, 2]`` [m] complete tracks.
-            draws: K, the number of futures.
-            rng: source of the noise.
+            draws: number K of futures.
+            rng: random generator of the noise.
         """
         here = np.ones((len(past), past.shape[2]), dtype=bool)
         sight, seen = scene_input(past, here, self.config, self.scales, self.device)
@@ -161,7 +161,7 @@ class SocialWaysTraining(Trainable):
         kept = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
         self.generator.load_state_dict(self.mean)
         with torch.no_grad():
-            place, _ = self._rolled(sight, noise.to(self.device))
+            place, _ = self._generate(sight, noise.to(self.device))
         self.generator.load_state_dict(kept)
         return seen.world(place.double().cpu().numpy())
 
@@ -170,7 +170,7 @@ class SocialWaysTraining(Trainable):
         return self.mean
 
     def state(self) -> Mapping[str, Any]:
-        """Return both networks, both optimisers and the average."""
+        """Return both networks, both optimizers and the averaged weights."""
         return {
             "generator": dict(self.generator.state_dict()),
             "discriminator": dict(self.discriminator.state_dict()),
@@ -186,84 +186,86 @@ class SocialWaysTraining(Trainable):
         for name, value in kept.items():
             getattr(self, name).load_state_dict(value)
 
-    def _lesson(self, scenes: Scenes) -> _Lesson:
+    def _to_tensors(self, scenes: Scenes) -> _TensorBatch:
         rows = self.samples.observe
         past, future = scenes.position[:, :rows], scenes.position[:, rows:]
         sight, seen = scene_input(past, scenes.here, self.config, self.scales, self.device)
         true = states_of(seen.own(future), self.scales, seen.local[:, -1])  # [S, T, A, 4]
         scored = torch.as_tensor(scenes.scored, device=self.device)
         ahead = torch.as_tensor(true.swapaxes(1, 2)[scenes.scored], dtype=torch.float32, device=self.device)
-        return _Lesson(sight, scored, sight.state.transpose(1, 2)[scored], ahead)
+        return _TensorBatch(sight, scored, sight.state.transpose(1, 2)[scored], ahead)
 
     def _frames(self, scenes: Scenes) -> Any:
         return scene_input(scenes.position[:, : self.samples.observe], scenes.here, self.config, self.scales)[1]
 
-    def _noise(self, lesson: _Lesson, rng: np.random.Generator, draws: int) -> Tensor:
+    def _noise(self, tensors: _TensorBatch, rng: np.random.Generator, draws: int) -> Tensor:
         """Return ``[K, S, A, M]`` in 0..1."""
-        drawn = rng.random((draws, *lesson.scored.shape, self.config.inputs), dtype=np.float32)
+        drawn = rng.random((draws, *tensors.scored.shape, self.config.inputs), dtype=np.float32)
         return torch.as_tensor(drawn, device=self.device)
 
-    def _rolled(self, sight: SceneInput, noise: Tensor) -> tuple[Tensor, Tensor]:
+    def _generate(self, sight: SceneInput, noise: Tensor) -> tuple[Tensor, Tensor]:
         rolled: tuple[Tensor, Tensor] = self.generator(sight, noise, self.config.predict)
         return rolled
 
-    def _made(self, lesson: _Lesson, noise: Tensor) -> tuple[Tensor, Tensor]:
-        """Return drawn positions ``[K, N, T, 2]`` [m] and states ``[K, N, T, 4]`` of those who count."""
+    def _draw(self, tensors: _TensorBatch, noise: Tensor) -> tuple[Tensor, Tensor]:
+        """Return drawn positions ``[K, N, T, 2]`` [m] and states ``[K, N, T, 4]`` of scored people."""
         with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.mixed):
-            place, state = self._rolled(lesson.sight, noise)
-        return place.transpose(2, 3)[:, lesson.scored], state.transpose(2, 3)[:, lesson.scored]
+            place, state = self._generate(tensors.sight, noise)
+        return place.transpose(2, 3)[:, tensors.scored], state.transpose(2, 3)[:, tensors.scored]
 
     def _discriminator_step(
-        self, lesson: _Lesson, made: Tensor, codes: Tensor, rng: np.random.Generator, penalty: float
+        self, tensors: _TensorBatch, made: Tensor, codes: Tensor, rng: np.random.Generator, penalty: float
     ) -> dict[str, float]:
-        both = torch.cat([lesson.future, made])  # [2 N, T, 4]: true ones, then drawn ones
+        both = torch.cat([tensors.future, made])  # [2 N, T, 4]: true ones, then drawn ones
         asked = both
         if penalty > 0.0:
             aside = torch.as_tensor(rng.standard_normal(both.shape, dtype=np.float32), device=self.device)
             asked = torch.cat([both, both + ASIDE * aside])
-        said, read = self.discriminator(lesson.observed.repeat(len(asked) // len(made), 1, 1), asked)
-        real, fake, *others = said.split(len(made))
-        told = adversarial_loss(real, True, self.config) + adversarial_loss(fake, False, self.config)
-        loss = told + self._info(read[len(made) : len(both)], codes)
+        logits, read = self.discriminator(tensors.observed.repeat(len(asked) // len(made), 1, 1), asked)
+        real, fake, *others = logits.split(len(made))
+        adversarial = adversarial_loss(real, True, self.config) + adversarial_loss(fake, False, self.config)
+        loss = adversarial + self._info(read[len(made) : len(both)], codes)
         for here, there in zip((real, fake), others, strict=False):
             loss = loss + 0.5 * penalty * ((there - here) / ASIDE).square().mean()
-        self._stepped(loss, self.of_discriminator, self.discriminator)
-        return {"discriminator": float(told.detach())}
+        self._optimise(loss, self.of_discriminator, self.discriminator)
+        return {"discriminator": float(adversarial.detach())}
 
-    def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor, variety_weight: float) -> dict[str, float]:
+    def _generator_step(
+        self, tensors: _TensorBatch, made: Tensor, codes: Tensor, variety_weight: float
+    ) -> dict[str, float]:
         c = self.config
-        self.discriminator.requires_grad_(False)  # it only passes on what the generator should change
-        fake, read = self.discriminator(lesson.observed, made[0])
+        self.discriminator.requires_grad_(False)  # gradients of the generator only
+        fake, read = self.discriminator(tensors.observed, made[0])
         parts = {"adversarial": c.adversarial_weight * adversarial_loss(fake, True, c)}
         if c.use_info_loss:
             parts["info"] = self._info(read, codes)
-        true = lesson.future[..., :2]
+        true = tensors.future[..., :2]
         if c.use_l2_loss:
             parts["l2"] = c.l2_weight * (made[0, ..., :2] - true).square().sum(-1).mean()
         if c.use_variety_loss:
             parts["variety"] = variety_weight * variety_loss(made[..., :2], true)
-        self._stepped(torch.stack(list(parts.values())).sum(), self.of_generator, self.generator)
+        self._optimise(torch.stack(list(parts.values())).sum(), self.of_generator, self.generator)
         self.discriminator.requires_grad_(True)
         return {name: float(value.detach()) for name, value in parts.items()}
 
     def _penalty(self, done: float) -> float:
-        """Return the weight of the slope penalty when this share of the updates is done."""
+        """Return the weight of the slope penalty at a completed share of the updates."""
         fallen = min(1.0, max(0.0, (done - 0.3) / 0.6))
         return float(self.config.slope_penalty * self.config.slope_penalty_left**fallen)
 
     def _variety_weight(self, done: float) -> float:
-        """Return the weight of the variety loss when this share of the updates is done."""
+        """Return the weight of the variety loss at a completed share of the updates."""
         grown = min(1.0, max(0.0, (done - 0.3) / 0.5))
         return float(self.config.variety_weight * self.config.variety_growth**grown)
 
     def _info(self, read: Tensor, codes: Tensor) -> Tensor:
-        """Return the loss of information: a normal density around what is read, so a squared distance."""
+        """Return the information loss: the squared error of the recovered codes, for a normal density."""
         if not self.config.use_info_loss:
             return read.new_zeros(())
         away: Tensor = nn.functional.mse_loss(read[:, : codes.shape[1]], codes) * self.config.info_weight
         return away
 
-    def _stepped(self, loss: Tensor, optimiser: torch.optim.Optimizer, network: nn.Module) -> None:
+    def _optimise(self, loss: Tensor, optimiser: torch.optim.Optimizer, network: nn.Module) -> None:
         optimiser.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
         if self.config.clip > 0.0:
@@ -275,7 +277,7 @@ class SocialWaysTraining(Trainable):
         self.of_generator.param_groups[0]["lr"] = share * self.config.generator_rate
         self.of_discriminator.param_groups[0]["lr"] = share * self.config.discriminator_rate
 
-    def _averaged(self) -> None:
+    def _update_average(self) -> None:
         keep = self.config.average
         for name, value in self.generator.state_dict().items():
             self.mean[name].mul_(keep).add_(value.detach(), alpha=1.0 - keep)

@@ -46,7 +46,7 @@ def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]
     """Return the content of a checkpoint, with tensors as arrays.
 
     Raises:
-        InputError: there is no such file, it is damaged or no checkpoint, or one of another kind or format.
+        InputError: the file is missing, damaged, not a checkpoint, or has another kind or format.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "one.npz"
@@ -56,7 +56,7 @@ def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]
     """
     path = Path(file)
     if not path.is_file():
-        raise InputError(f"there is no checkpoint {path}; crowdbot train makes one")
+        raise InputError(f"there is no checkpoint {path}; create one with crowdbot train")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as entries:
             arrays = {name: entries[name] for name in entries.files}
@@ -80,7 +80,7 @@ def _pack(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
         value = value.detach().cpu().numpy()
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
-            raise InputError(f"a checkpoint holds arrays of numbers, not of {value.dtype}")
+            raise InputError(f"a checkpoint contains arrays of numbers, not of {value.dtype}")
         name = f"a{len(arrays)}"
         arrays[name] = value
         return {ARRAY: name}
@@ -94,7 +94,7 @@ def _pack(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
         return [_pack(item, arrays) for item in value]
     if value is None or isinstance(value, str | int | float):
         return value
-    raise InputError(f"a checkpoint cannot hold a {type(value).__name__}")
+    raise InputError(f"a checkpoint cannot contain a {type(value).__name__}")
 
 
 def _unpack(value: Any, arrays: Mapping[str, NDArray[Any]]) -> Any:

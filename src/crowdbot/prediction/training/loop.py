@@ -176,7 +176,7 @@ def train(
     course = _begin_or_resume(model, schedule, folder, resume)
     batches = model.batches(stream(schedule.seed, "order", course.epoch))
     if not batches:
-        raise InputError("nobody is there at all rows of any window: there is nothing to learn from")
+        raise InputError("no person is present at all rows of a window: there is no training data")
     total = schedule.updates or (schedule.epochs or 1) * len(batches)
     stopped = _out_of_patience(course, schedule)
     while course.update < total and not stopped:
@@ -191,7 +191,7 @@ def train(
         last = course.update == total
         checked = last or course.update % schedule.check_every == 0
         if checked:
-            _checked(model, schedule, course, folder)
+            _validate(model, schedule, course, folder)
         course.seconds += time.perf_counter() - begin
         if checked:
             course.rows[-1]["seconds"] = round(course.seconds, 3)
@@ -213,16 +213,17 @@ def _begin_or_resume(model: Trainable, schedule: TrainingSchedule, folder: Path 
     if folder is None or not (folder / LAST).exists():
         return _TrainingState()
     if not resume:
-        raise InputError(f"{folder} holds a training already: go on with --resume, or choose another folder")
+        raise InputError(f"{folder} already contains a training: resume it with --resume, or choose another folder")
     kept = load_checkpoint(folder / LAST, f"{model.kind} training")
     now = _about(model)
-    kept["config"] = _defaults(model.config) | kept["config"]  # a setting that came later began as what was done before
+    # the defaults of newer settings reproduce the earlier behavior
+    kept["config"] = _defaults(model.config) | kept["config"]
     for word, what in (("config", "settings"), ("data", "data")):
         if kept[word] != now[word]:
             was = _difference(kept[word], now[word])
-            raise InputError(f"{folder} holds a training with other {what} ({was}); choose another folder")
+            raise InputError(f"{folder} contains a training with other {what} ({was}); choose another folder")
     if kept["seed"] != schedule.seed:
-        raise InputError(f"{folder} holds a training with seed {kept['seed']}, not {schedule.seed}")
+        raise InputError(f"{folder} contains a training with seed {kept['seed']}, not {schedule.seed}")
     model.restore(kept["state"])
     course = _TrainingState(**kept["course"])
     _write_log(course, folder)
@@ -259,14 +260,14 @@ def _add_losses(course: _TrainingState, losses: Mapping[str, float]) -> None:
     course.step += 1
 
 
-def _checked(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, folder: Path | None) -> None:
+def _validate(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, folder: Path | None) -> None:
     """Validate, add a row to the log, and save the weights if they are the best."""
     means = {name: value / course.summed for name, value in course.sums.items()}
     errors = {name: float(value) for name, value in model.check().items()}
     course.rows.append({"update": course.update, "epoch": course.epoch, **means, **errors})
     course.sums, course.summed = {}, 0
-    new = _watched(course.rows[-1], schedule)
-    if course.best is None or new < _watched(course.rows[course.best], schedule):
+    new = _watched_error(course.rows[-1], schedule)
+    if course.best is None or new < _watched_error(course.rows[course.best], schedule):
         course.best = len(course.rows) - 1
         if folder is not None:
             save_checkpoint(
@@ -276,10 +277,10 @@ def _checked(model: Trainable, schedule: TrainingSchedule, course: _TrainingStat
             )
 
 
-def _watched(row: LogRow, schedule: TrainingSchedule) -> float:
+def _watched_error(row: LogRow, schedule: TrainingSchedule) -> float:
     unknown = next((name for name in schedule.watch if name not in row), None)
     if unknown is not None:
-        raise InputError(f"{unknown} is not measured while training; there are {', '.join(row)}")
+        raise InputError(f"{unknown} is not measured during training; known are {', '.join(row)}")
     return sum(row[name] for name in schedule.watch)
 
 
@@ -299,7 +300,7 @@ def _save(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, 
 
 
 def _write_log(course: _TrainingState, folder: Path) -> None:
-    """Rewrite the log: it has no row beyond the checkpoint."""
+    """Rewrite the log without rows after the checkpoint."""
     names = list(dict.fromkeys(name for row in course.rows for name in row))
     draft = folder / f"{LOG}.part"
     with draft.open("w", newline="", encoding="utf-8") as file:

@@ -40,9 +40,9 @@ class Scenes(NamedTuple):
     """A batch of S scenes, padded to A people.
 
     Fields:
-        position: ``[S, T, A, 2]`` [m], observed rows first, then the future; 0 where nobody is.
+        position: ``[S, T, A, 2]`` [m], observed rows first, then the future; 0 where a person is absent.
         there: ``[S, T, A]`` bool.
-        scored: ``[S, A]`` bool: complete tracks, which losses and errors count.
+        scored: ``[S, A]`` bool: people with complete tracks, who count in losses and errors.
         here: ``[S, A]`` bool: people who are present at the last observed row.
     """
 
@@ -54,16 +54,16 @@ class Scenes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """S scenes (windows) with P people altogether, scene by scene.
+    """S scenes (windows) with P people in total, ordered by scene.
 
     Fields:
-        position: ``[P, T, 2]`` [m], observed rows first, then the future; 0 where it is not known.
+        position: ``[P, T, 2]`` [m], observed rows first, then the future; 0 where a position is unknown.
         there: ``[P, T]`` bool.
         scored: ``[P]`` bool.
         first: ``[S + 1]`` the first person of each scene, then P.
-        source: ``[S]`` which recording a scene is of.
-        names: of the recordings.
-        observe: how many of the T rows are observed.
+        source: ``[S]`` index of the recording of each scene.
+        names: names of the recordings.
+        observe: number of observed rows, out of T.
         dt: time step [s].
         units: ``m`` or ``px``.
     """
@@ -80,19 +80,19 @@ class Samples:
 
     @classmethod
     def of(cls, recordings: Sequence[Recording]) -> Samples:
-        """Cut all windows of some recordings.
+        """Return the samples of all windows of the recordings.
 
         Raises:
             InputError: there is no recording, or they differ in time step, units or rows.
             DataError: a recording has no window.
         """
         if not recordings:
-            raise InputError("there is no recording to learn from")
+            raise InputError("there is no training recording")
         return cls.concatenate([cls.from_windows(*one.windows, one.name) for one in recordings])
 
     @classmethod
     def from_windows(cls, past: Windows, future: Windows, name: str = "") -> Samples:
-        """Return the scenes of windows, everyone who is present at the last observed row."""
+        """Return the scenes of windows, with all people who are present at the last observed row."""
         window, person = np.nonzero(past.present[:, -1])
         place = np.concatenate([past.position, future.position], axis=1)
         there = np.concatenate([past.present, future.present], axis=1)
@@ -124,7 +124,7 @@ class Samples:
             if abs(part.dt - begin.dt) > 0.01 * begin.dt:
                 raise InputError(
                     f"{begin.names[0]} has a row every {begin.dt:.4g} s, {part.names[0]} every {part.dt:.4g} s;"
-                    " bring them to one step with --step"
+                    " resample them to the same time step with --step"
                 )
         people = np.cumsum([0, *(len(part.position) for part in parts)])
         kinds = np.cumsum([0, *(len(part.names) for part in parts)])
@@ -144,7 +144,7 @@ class Samples:
 
     @property
     def rows(self) -> int:
-        """Number T of rows, observed and future ones."""
+        """Number T of observed and future rows."""
         return int(self.position.shape[1])
 
     @property
@@ -154,7 +154,7 @@ class Samples:
 
     @property
     def people(self) -> int:
-        """Number of people whose future counts."""
+        """Number of people with a scored future."""
         return int(self.scored.sum())
 
     @property
@@ -189,9 +189,9 @@ class Samples:
         return Scenes(place.swapaxes(1, 2), there.swapaxes(1, 2), self.scored[person] & here, here)
 
     def batches(self, rng: np.random.Generator, people: int) -> list[Integers]:
-        """Return every scene with somebody to learn from once, in random batches of about so many scored people.
+        """Return random batches of approximately the given number of scored people; each scene is used once.
 
-        Scenes of about the same size come together, so that little is padded.
+        Scenes without scored people are skipped. Batches contain scenes of similar size, which reduces padding.
         """
         counted = np.add.reduceat(np.append(self.scored, False).astype(np.int64), self.first[:-1])
         counted[np.diff(self.first) == 0] = 0
@@ -209,9 +209,9 @@ def leave_out(recordings: Sequence[Recording], name: str) -> tuple[list[Recordin
     """Return the training recordings and the held-out recordings.
 
     Args:
-        recordings: of all scenes.
-        name: a scene of the leave-one-out protocol (eth, hotel, univ, zara1, zara2), the begin of a file name, one of
-            its words, or, when no file has it, those of a folder.
+        recordings: all recordings.
+        name: a scene of the leave-one-out protocol (eth, hotel, univ, zara1, zara2), or the beginning or a word of a
+            file name; if no file matches, of a folder name.
 
     Raises:
         InputError: no recording has this name, or none is left.
@@ -220,15 +220,15 @@ def leave_out(recordings: Sequence[Recording], name: str) -> tuple[list[Recordin
     stems = [Path(one.path).stem.lower() for one in recordings]
     folders = [Path(one.path).parent.name.lower() for one in recordings]
     named = [_is_named(stem, begins) for stem in stems]
-    if not any(named):  # obsmat.txt stands in a folder that has the name
+    if not any(named):  # obsmat.txt is in a folder with the name of the scene
         named = [_is_named(folder, begins) for folder in folders]
     out = [one for one, is_out in zip(recordings, named, strict=True) if is_out]
     kept = [one for one, is_out in zip(recordings, named, strict=True) if not is_out]
     if not out:
         near = did_you_mean(name, [*FOLDS, *stems])
-        raise InputError(f"no recording is called {name!r}{near}; there are {', '.join(sorted(set(stems)))}")
+        raise InputError(f"no recording matches {name!r}{near}; known are {', '.join(sorted(set(stems)))}")
     if not kept:
-        raise InputError(f"{name!r} leaves out all {len(out)} recordings; nothing is left to learn from")
+        raise InputError(f"{name!r} excludes all {len(out)} recordings; no training recording is left")
     return kept, out
 
 
@@ -245,14 +245,14 @@ def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Sample
         DataError: no scene is left on one side.
     """
     if not 0.0 < share < 1.0:
-        raise InputError(f"the share of a recording that is held back is {share}, it must be above 0 and below 1")
+        raise InputError(f"the validation share {share} must be above 0 and below 1")
     early, late = [], []
     for one in recordings:
         past, future = one.windows
         border = past.frame[min(len(past) - 1, int(len(past) * (1.0 - share))), 0]
         before, after = future.frame[:, -1] < border, past.frame[:, 0] >= border
         if not before.any() or not after.any():
-            raise DataError(f"{one.path}: {len(past)} windows are too few to hold back the last {share:.0%} in time")
+            raise DataError(f"{one.path}: {len(past)} windows are too few for a validation share of {share:.0%}")
         early.append(Samples.from_windows(past[before], future[before], one.name))
         late.append(Samples.from_windows(past[after], future[after], one.name))
     return Samples.concatenate(early), Samples.concatenate(late)

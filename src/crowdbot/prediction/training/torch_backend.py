@@ -34,7 +34,7 @@ def torch_device(name: str) -> Any:
     if kind == "cuda":
         count = torch.cuda.device_count() if torch.cuda.is_available() else 0
         if int(number or 0) >= count:
-            raise InputError(f"device {name!r} is asked for, but torch sees {count} CUDA devices here; use cpu")
+            raise InputError(f"device {name!r} does not exist: torch finds {count} CUDA devices; use cpu")
     return torch.device(name)
 
 

@@ -93,7 +93,7 @@ class Drive(ABC):
 
 @dataclass(frozen=True)
 class DifferentialDrive(Drive):
-    """Differential drive: forward and turn; the ``left`` part of a command is ignored.
+    """Differential drive: forward speed and turn rate; the lateral speed of a command is ignored.
 
     The command is clipped to the speed limits, and the change of the twist to the accelerations times ``dt``. The new
     twist is constant during the step; the path is an exact circular arc.
