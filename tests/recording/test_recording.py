@@ -125,7 +125,8 @@ def test_the_mcap_reader_alone_opens_the_file(recorded: tuple[Path, Episode]) ->
         assert stamps == [round(t * 1e9) for t in episode.times]
         metadata = {record.name: record.metadata for record in reader.iter_metadata()}
     assert set(metadata["crowdbot"]) == {
-        "format", "trial", "trial_name", "seed", "version", "python", "numpy", "numba", "step_ns", "walls", "robots",
+        "format", "trial", "trial_name", "seed", "version", "python", "numpy", "numba", "processor", "step_ns", "walls",
+        "robots",
     }  # fmt: skip
     assert set(metadata["crowdbot.end"]) == {"digest", "outcome", "steps", "people", "metrics"}
     assert json.loads(metadata["crowdbot"]["robots"])[0]["name"] == "robot"

@@ -49,12 +49,12 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
     other = replay(copy_episode(tmp_path / "episode.mcap", tmp_path / "seed.mcap", {"seed": "4"}))
     assert not other.equal
-    assert str(other).endswith("the versions are equal")
+    assert str(other).endswith("the versions and the processor are equal")
     old = replay(
         copy_episode(tmp_path / "episode.mcap", tmp_path / "old.mcap", {"digest": "0" * 32, "version": "0.0.9"})
     )
     assert not old.equal
-    assert f"it was recorded with other versions: version 0.0.9 then, {crowdbot.__version__} now" in str(old)
+    assert f"it was recorded with version 0.0.9 (now {crowdbot.__version__})" in str(old)
     new = replay(copy_episode(tmp_path / "episode.mcap", tmp_path / "new.mcap", {"version": "0.0.9"}))
     assert new.equal
     assert "(made with crowdbot 0.0.9) replays with the same digest" in str(new)

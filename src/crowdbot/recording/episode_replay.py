@@ -27,7 +27,7 @@ class Replay:
         trial, seed: the trial and its seed.
         recorded, replayed: digests of the recording and of the new run.
         outcomes: outcomes of the recording and of the new run.
-        recorded_versions, versions: versions of crowdbot, Python, numpy and numba of both runs.
+        recorded_versions, versions: versions of crowdbot, Python, numpy and numba, and the processor, of both runs.
         differs: time [s] of the first recorded step that differs; None if equal or unknown.
         complete: whether the recording is complete; an incomplete one is compared up to its last step.
         failures: the exceptions that ended the recording and the new run.
@@ -90,9 +90,9 @@ class Replay:
             told += f"; the replay ended with an error: {replayed}"
         if self.equal:
             return f"{what} replays with the same digest {self.recorded}{told}"
-        other = [f"{n} {v} then, {self.versions[n]} now" for n, v in self.recorded_versions.items()
-                 if v != self.versions[n]]  # fmt: skip
-        why = f"it was recorded with other versions: {'; '.join(other)}" if other else "the versions are equal"
+        pairs = ((name, then, self.versions[name]) for name, then in self.recorded_versions.items())
+        other = [f"{name} {then} (now {now})" for name, then, now in pairs if then != now]
+        why = f"it was recorded with {'; '.join(other)}" if other else "the versions and the processor are equal"
         since = "" if self.differs is None else f" from {self.differs:g} s on"
         return f"{what} does NOT replay{since}: recorded digest {self.recorded}, replayed {self.replayed}; {why}{told}"
 

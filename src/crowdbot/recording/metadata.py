@@ -9,6 +9,7 @@ import platform
 from collections.abc import Mapping
 from typing import Any
 
+import llvmlite.binding
 import numba
 import numpy as np
 
@@ -42,7 +43,7 @@ CONTACTS = "/crowdbot/contacts"
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of the packages that affect an episode."""
+    """Return what an episode depends on to the last bit: versions of packages, and the processor."""
     door = importlib.import_module(
         "crowdbot"
     )  # crowdbot imports this package, so it cannot be imported at module level
@@ -51,6 +52,7 @@ def versions() -> dict[str, str]:
         "python": platform.python_version(),
         "numpy": np.__version__,
         "numba": numba.__version__,
+        "processor": llvmlite.binding.get_host_cpu_name(),
     }
 
 
