@@ -38,8 +38,8 @@ def test_commands_that_the_file_does_not_have_are_nan(recorded: tuple[Path, Reco
     path = copy_episode(recorded[0], tmp_path / "part.mcap", without=["/robot/cmd_vel"])
     robots = table(path, tmp_path / "robots.parquet", "robots")
     assert len(robots) == len(recorded[1].times)
-    assert robots[["command_forward", "command_turn", "command_left"]].isna().all(axis=None)
-    assert robots["forward"].notna().all()
+    assert robots[["command_linear_x", "command_angular_z", "command_linear_y"]].isna().all(axis=None)
+    assert robots["linear_x"].notna().all()
 
 
 @pytest.mark.parametrize("ending", ["parquet", "csv"])
@@ -62,7 +62,7 @@ def test_robots_scans_and_contacts(recorded: tuple[Path, RecordedEpisode], tmp_p
     path, read = recorded
     robots = table(path, tmp_path / "robots.parquet", "robots")
     assert np.array_equal(robots["time"], read.times)
-    assert np.array_equal(robots[["command_forward", "command_turn", "command_left"]], read.commands[:, 0])
+    assert np.array_equal(robots[["command_linear_x", "command_angular_z", "command_linear_y"]], read.commands[:, 0])
     scans = table(path, tmp_path / "scans.parquet", "scans")
     assert np.array_equal(scans["range"], np.concatenate([scan.ranges for scan in read.scans]))
     assert np.array_equal(scans["hit"], np.concatenate([scan.hit for scan in read.scans]))

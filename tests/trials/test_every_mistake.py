@@ -149,7 +149,7 @@ def test_a_stage_with_a_mistake_keeps_its_other_solids_and_their_numbers() -> No
 def test_the_whole_range_is_told() -> None:
     for old, new, said in (
         ('time-horizon="2"', 'neighbor-distance="-1"', "it must be at least 0 m and at most 1e+09 m"),
-        ('time-horizon="2"', 'max-speed="-1"', "it must be at least 0 m/s and at most 1e+09 m/s, or left out"),
+        ('time-horizon="2"', 'max-speed="-1"', "it must be at least 0 m/s and at most 1e+09 m/s, or None to use"),
         ('rays="90"', 'rays="0"', "rays = 0 must be a whole number of at least 1 and at most 1000000"),
         ('rays="90"', 'rate="-1"', "rate = -1.0 Hz must be finite and at least 1e-06 Hz, without an upper limit"),
         ('max-speed="1"', 'max-turn-rate="0"', "must be finite and above 0 rad/s, without an upper limit"),

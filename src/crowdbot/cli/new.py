@@ -58,8 +58,8 @@ def main(options: argparse.Namespace) -> int:
     for file in (options.file, *files):
         if file.exists() and not options.force:
             raise InputError(f"{file} already exists; use another name, or --force to replace it")
-        if file.exists() and not file.is_file():
-            raise InputError(f"{file} is a {'folder' if file.is_dir() else 'device'}; give the path of a file")
+        if file.exists() and not (file.is_file() or file.is_dir()):
+            raise InputError(f"{file} is a device; give the path of a file")
     if not options.file.parent.is_dir():
         raise InputError(f"the folder {options.file.parent} of {options.file.name} does not exist")
     if options.kind == "schema":

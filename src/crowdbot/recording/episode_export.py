@@ -14,6 +14,7 @@ from crowdbot.messages import ContactEventRecord, ContactForceRecord
 
 from .episode_reader import iterate_steps, read_metadata
 from .image_export import ImageExport
+from .metadata import TWIST
 from .reading_tables import READING_TABLES
 from .step_records import RecordedStep
 
@@ -32,8 +33,8 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
 
     * ``people``: person or robot: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
       radius [m];
-    * ``robots``: robot: name, x, y, heading, twist forward [m/s], turn [rad/s] and left [m/s], and command
-      (command_forward, ...; NaN if the file has none for this step);
+    * ``robots``: robot: name, x, y, heading, twist linear_x [m/s], angular_z [rad/s] and linear_y [m/s], and command
+      (command_linear_x, ...; NaN if the file has none for this step);
     * ``scans``: beam: sensor, its x, y, heading in the world, angle [rad], range [m], and hit: id of the person or
       robot, -1 nothing, -2 a wall;
     * ``contacts``: contact: robot, other, clearance [m];
@@ -160,13 +161,12 @@ def _robots(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Colum
     there = [name for name in bodies if name in moment.robots]
     states = [moment.robots[name] for name in there]
     commands = [moment.commands.get(name, _UNKNOWN) for name in there]
-    words = ("forward", "turn", "left")
     return {
         "time": np.full(len(there), moment.time),
         "robot": np.array(there, dtype=object),
         **{name: np.array([getattr(state, name) for state in states], float) for name in ("x", "y", "heading")},
-        **{word: np.array([state.twist[k] for state in states], float) for k, word in enumerate(words)},
-        **{f"command_{word}": np.array([command[k] for command in commands], float) for k, word in enumerate(words)},
+        **{word: np.array([state.twist[k] for state in states], float) for k, word in enumerate(TWIST)},
+        **{f"command_{word}": np.array([command[k] for command in commands], float) for k, word in enumerate(TWIST)},
     }
 
 

@@ -21,6 +21,7 @@ __all__ = [
     "FORMAT",
     "KEYS",
     "METADATA",
+    "TWIST",
     "as_json",
     "from_json",
     "heading_of",
@@ -38,6 +39,8 @@ END_KEYS = ("digest", "outcome", "steps", "people", "metrics")
 FORMAT = "2"
 DIGEST = "/crowdbot/digest"
 """Topic of the digest up to each recorded step, as if interrupted there."""
+TWIST = ("linear_x", "angular_z", "linear_y")
+"""Columns of forward speed [m/s], turn rate [rad/s] and leftward speed [m/s], named as in ROS."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
 

@@ -20,6 +20,7 @@ from crowdbot.sensors import (
     spatial_pose,
 )
 
+from .metadata import TWIST
 from .step_records import RecordedStep
 
 __all__ = ["READING_TABLES"]
@@ -73,7 +74,7 @@ def _odometry(reading: Any) -> Columns:
         "estimate_x": estimate.position[:, 0],
         "estimate_y": estimate.position[:, 1],
         "estimate_heading": estimate.heading,
-        **{word: reading.twist[:, k] for k, word in enumerate(("forward", "turn", "left"))},
+        **{word: reading.twist[:, k] for k, word in enumerate(TWIST)},
     }
 
 
@@ -110,7 +111,7 @@ TABLES: dict[str, tuple[type[Reading], Callable[[Any], Columns], tuple[str, ...]
     "odometry": (
         Odometry,
         _odometry,
-        ("estimate_x", "estimate_y", "estimate_heading", "forward", "turn", "left"),
+        ("estimate_x", "estimate_y", "estimate_heading", *TWIST),
     ),
     "bumpers": (BumperReading, _bumpers, ("sector", "depth", "hit")),
     "tracked": (
