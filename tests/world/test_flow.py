@@ -80,8 +80,8 @@ def test_people_come_at_random_at_the_rate():
 
 
 def test_no_more_come_than_asked_for():
-    assert len(entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, most=7)), 30.0)) == 7
-    assert entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, most=0)), 3.0) == []
+    assert len(entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, max_count=7)), 30.0)) == 7
+    assert entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, max_count=0)), 3.0) == []
 
 
 def test_who_comes_walks_with_a_speed_and_a_body_that_were_drawn():
@@ -144,7 +144,7 @@ def test_memories_of_who_left_are_forgotten():
     walls = [[(5.0, -3.0), (5.0, 3.0)]]
     keeps = {"kept": np.ones((1, 4))}
     scene = empty(4, walls=walls).replace(memory=keeps)
-    world = world_of(PeopleSource(DOOR, ACROSS, rate=1.0, most=2), scene=scene, router=Router.of(walls))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=1.0, max_count=2), scene=scene, router=Router.of(walls))
     while not np.any(world.scene.active):
         world.step({})
     a = int(np.flatnonzero(world.scene.active[0])[0])
@@ -159,7 +159,7 @@ def test_memories_begin_as_the_model_says():
         memory_at_start: ClassVar[dict[str, float]] = {"kept": 0.5}
 
     scene = empty(4).replace(memory={"kept": np.ones((1, 4))})
-    world = world_of(PeopleSource(DOOR, ACROSS, rate=9.0, most=1), scene=scene, model=Calm())
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=9.0, max_count=1), scene=scene, model=Calm())
     entries(world, 2.0)
     assert sorted(world.scene.memory["kept"][0].tolist()) == [0.5, 1.0, 1.0, 1.0]
 
@@ -232,7 +232,7 @@ def test_a_flow_through_a_door_goes_on_and_on():
         ({"rate": np.nan}, "rate = nan"),
         ({"timing": "regula"}, "did you mean 'regular'"),
         ({"begin": 5.0, "end": 5.0}, "begin = 5.0 s must be finite and before end = 5.0 s"),
-        ({"most": -1}, "most = -1 people"),
+        ({"max_count": -1}, "max_count = -1 people"),
         ({"speed": 0.0}, "speed = 0.0 must be finite and above 0"),
         ({"radius": np.inf}, "radius = inf"),
     ],

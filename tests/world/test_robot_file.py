@@ -221,7 +221,7 @@ def test_check_counts_for_programs(capsys, urdf):
     path = str(urdf / "urdf_tutorial" / "06-flexible.urdf")
     assert main(["check", path, "--json"]) == 0
     row = json.loads(capsys.readouterr().out)[path]
-    assert row["right"]
+    assert row["valid"]
     assert (row["robot"]["links"], row["robot"]["joints"], row["robot"]["joints_that_move"]) == (16, 15, 8)
     assert row["robot"]["joint_kinds"] == {"continuous": 5, "fixed": 7, "prismatic": 1, "revolute": 2}
     assert len(row["robot"]["repaired"]) == 14

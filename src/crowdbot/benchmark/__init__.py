@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 _MODULES = {
     "catalogue": ("builtin_names", "cite", "papers"),
     "demo": ("Demo", "run_demo"),
-    "report": ("Predicted", "write_report"),
+    "report": ("PredictionResult", "write_report"),
     "prediction": (
         "DegradedScore",
         "FrameResults",
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     from .prediction import plot_errors as plot_errors
     from .prediction import plot_frames as plot_frames
     from .prediction import sweep_degradations as sweep_degradations
-    from .report import Predicted as Predicted
+    from .report import PredictionResult as PredictionResult
     from .report import write_report as write_report
     from .speed import SpeedRow as SpeedRow
     from .speed import measure as measure

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core import InputError, kebab_case
 from crowdbot.recording import run
 
-from .report import Predicted, write_report
+from .report import PredictionResult, write_report
 
 if TYPE_CHECKING:
     from crowdbot.calibration import Fit
@@ -105,7 +105,9 @@ def _calibrate(trial: Trial, seed: int, progress: Callable[[float], None]) -> Fi
     return calibrator.fit(past[::4], seed=seed, progress=progress)
 
 
-def _predict(fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]) -> list[Predicted]:
+def _predict(
+    fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]
+) -> list[PredictionResult]:
     from crowdbot.core import stream
     from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
 
@@ -116,7 +118,7 @@ def _predict(fit: Fit, past: Windows, future: Windows, seed: int, progress: Call
     for number, predictor in enumerate(predictors, start=1):
         score = evaluate(predictor, past, future, seed=seed)
         score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # parameters are listed below
-        found.append(Predicted(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
+        found.append(PredictionResult(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
         progress(number / 4)
     return found
 

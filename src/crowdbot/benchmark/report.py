@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from crowdbot.metrics import Score
     from crowdbot.simulation import Episode
 
-__all__ = ["Predicted", "write_report"]
+__all__ = ["PredictionResult", "write_report"]
 
 COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
 """Colours that are distinguishable with colour blindness (Okabe & Ito)."""
@@ -34,7 +34,7 @@ MARGIN = 0.6
 
 
 @dataclass(frozen=True)
-class Predicted:
+class PredictionResult:
     """Forecasts of a predictor for the windows of an episode, and their score."""
 
     forecast: Forecast
@@ -46,7 +46,7 @@ def write_report(
     episode: Episode,
     past: Windows,
     future: Windows,
-    predicted: Sequence[Predicted],
+    predicted: Sequence[PredictionResult],
     commands: Mapping[str, str],
     seen: str,
 ) -> Path:
@@ -86,7 +86,7 @@ def _asset(name: str) -> str:
     return importlib.resources.files("crowdbot").joinpath("assets", "report", name).read_text(encoding="utf-8")
 
 
-def _cards(episode: Episode, predicted: Sequence[Predicted]) -> str:
+def _cards(episode: Episode, predicted: Sequence[PredictionResult]) -> str:
     best = min(predicted, key=lambda one: one.score.ade).score
     people = episode.position.shape[1] - len(episode.robots)
     cards = [
@@ -106,7 +106,7 @@ def _cards(episode: Episode, predicted: Sequence[Predicted]) -> str:
     )
 
 
-def _prediction_table(predicted: Sequence[Predicted], future: Windows) -> str:
+def _prediction_table(predicted: Sequence[PredictionResult], future: Windows) -> str:
     best, marked = min(one.score.ade for one in predicted), ' class="best"'
     rows = "".join(
         f"<tr{marked if one.score.ade == best else ''}><td>{html.escape(one.score.predictor)}</td>"
@@ -155,7 +155,7 @@ def _environment(episode: Episode) -> str:
     )
 
 
-def _horizon_chart(predicted: Sequence[Predicted], dt: float) -> str:
+def _horizon_chart(predicted: Sequence[PredictionResult], dt: float) -> str:
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -176,7 +176,7 @@ def _horizon_chart(predicted: Sequence[Predicted], dt: float) -> str:
     return text.getvalue()[text.getvalue().index("<svg") :]
 
 
-def _data(episode: Episode, past: Windows, future: Windows, predicted: Sequence[Predicted]) -> str:
+def _data(episode: Episode, past: Windows, future: Windows, predicted: Sequence[PredictionResult]) -> str:
     robot = episode.robots[0]
     chosen = _frames(episode.times)
     times = episode.times[chosen]
@@ -234,7 +234,7 @@ def _scans(episode: Episode) -> dict[str, Any]:
     }
 
 
-def _forecasts(past: Windows, future: Windows, predicted: Sequence[Predicted], begin: float) -> dict[str, Any]:
+def _forecasts(past: Windows, future: Windows, predicted: Sequence[PredictionResult], begin: float) -> dict[str, Any]:
     observed = past.position.shape[1]
     instants = [float(begin + past.dt * (frame + observed - 1)) for frame in range(len(past))]
     return {

@@ -41,7 +41,7 @@ def main(options: argparse.Namespace) -> int:
     with without_running_code():
         for name in options.names:
             row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
-            found[name] = {"right": not row["problems"], **row}
+            found[name] = {"valid": not row["problems"], **row}
     if options.json:
         print_json(found)
     else:

@@ -58,7 +58,7 @@ class _Seekers(NamedTuple):
 
     place: Array
     reach: Array
-    most: Rows
+    max_count: Rows
     asking: NDArray[np.bool_]
 
 
@@ -79,7 +79,7 @@ class Neighbors(NamedTuple):
 def nearest(
     position: Array,
     reach: ArrayLike,
-    most: ArrayLike,
+    max_count: ArrayLike,
     seen: ArrayLike = True,
     asking: ArrayLike = True,
     *,
@@ -90,7 +90,7 @@ def nearest(
     Args:
         position: ``[E, A, 2]`` [m].
         reach: maximum distance of neighbours [m], exclusive; broadcasts to ``[E, A]``.
-        most: maximum number of neighbours; broadcasts to ``[E, A]``.
+        max_count: maximum number of neighbours; broadcasts to ``[E, A]``.
         seen: whether an agent can be a neighbour (active and visible); broadcasts to ``[E, A]``.
         asking: whether to search the neighbours of an agent; broadcasts to ``[E, A]``.
         method: ``auto``, ``brute`` or ``grid``; the results are equal.
@@ -98,7 +98,7 @@ def nearest(
     Raises:
         InputError: the method is unknown.
 
-    >>> found = nearest(np.array([[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]]), reach=1.5, most=8)
+    >>> found = nearest(np.array([[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]]), reach=1.5, max_count=8)
     >>> found.agent[0].tolist(), found.number.tolist()
     ([[2, -1], [2, -1], [0, 1]], [[1, 1, 2]])
     """
@@ -109,13 +109,13 @@ def nearest(
     seekers = _Seekers(
         np.require(position, np.float64, ["C", "W"]).reshape(E * A, 2),
         _rows(reach, (E, A), np.float64),
-        _rows(most, (E, A), np.int32),
+        _rows(max_count, (E, A), np.int32),
         _rows(asking, (E, A), np.bool_),
     )
     grid = _sort_into_grid(
         seekers, _rows(seen, (E, A), np.bool_), E, method == "grid" or (method == "auto" and A >= CROWD)
     )
-    widest = max(0, min(int(seekers.most.max(initial=0)), A - 1))
+    widest = max(0, min(int(seekers.max_count.max(initial=0)), A - 1))
     agent = np.empty((E * A, widest), dtype=np.int32)
     number = np.empty(E * A, dtype=np.int32)
     if len(number) <= SMALL:

@@ -49,7 +49,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         substeps=trial.substeps,
         **_router(old, trial),
     )
-    simulation.turn_to(trial, simulation.seed if seed is None else seed)
+    simulation.replace_trial(trial, simulation.seed if seed is None else seed)
     simulation.robots = [
         _robot_runtime(simulation, runtime, robot, seed)
         for runtime, robot in zip(simulation.robots, trial.robots, strict=True)

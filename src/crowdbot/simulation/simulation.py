@@ -257,7 +257,7 @@ class Simulation:
         new, self._told = over[self._told :], len(over)
         return tuple(new)
 
-    def turn_to(self, trial: Trial, seed: int) -> None:
+    def replace_trial(self, trial: Trial, seed: int) -> None:
         """Continue with another trial; see :func:`crowdbot.simulation.apply_overrides`, which changes the world."""
         self.trial, self.seed = trial, seed
         self.around.change(trial)

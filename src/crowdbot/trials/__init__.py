@@ -9,7 +9,7 @@ from .fields import UNWRITABLE, attribute, check, children, element_word, outlin
 from .files.code_references import code_references, is_code
 from .files.stage_maps import is_area_file, map_files
 from .files.trial_files import resolve_file
-from .importers.original import Imported, import_original, plan_of, trials_of
+from .importers.original import ImportedTrial, import_original, plan_of, trials_of
 from .importers.original_order import Plan
 from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
@@ -61,7 +61,7 @@ __all__ = [
     "EndCondition",
     "Exit",
     "Group",
-    "Imported",
+    "ImportedTrial",
     "InitialPeople",
     "Journey",
     "Light",

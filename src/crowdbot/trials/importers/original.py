@@ -24,7 +24,7 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from .original_crowd import Walker, crowds_of
 from .original_order import DEFAULT, Plan
 
-__all__ = ["Imported", "import_original", "plan_of", "trials_of"]
+__all__ = ["ImportedTrial", "import_original", "plan_of", "trials_of"]
 
 NEVER = 600.0
 """Duration [s] of a trial without an end."""
@@ -32,7 +32,7 @@ ROOTS = ("Trial", "Config")
 
 
 @dataclass(frozen=True)
-class Imported:
+class ImportedTrial:
     """Trials of an original file.
 
     Fields:
@@ -44,7 +44,9 @@ class Imported:
     left_out: tuple[str, ...]
 
 
-def import_original(path: str | Path, *, participant: int | None = None, root: str | Path | None = None) -> Imported:
+def import_original(
+    path: str | Path, *, participant: int | None = None, root: str | Path | None = None
+) -> ImportedTrial:
     """Read a trial, a configuration or an order of the original simulator.
 
     Args:
@@ -64,7 +66,7 @@ def import_original(path: str | Path, *, participant: int | None = None, root: s
             return _one(tree, path)
     plan = plan_of(path, root)
     rows, notes = trials_of(plan, plan.user if participant is None else participant)
-    return Imported(tuple((Path(entry).stem, trial) for entry, trial in rows), notes)
+    return ImportedTrial(tuple((Path(entry).stem, trial) for entry, trial in rows), notes)
 
 
 def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
@@ -133,12 +135,12 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
     return rows, tuple(notes)
 
 
-def _one(root: Element, path: Path) -> Imported:
+def _one(root: Element, path: Path) -> ImportedTrial:
     if root.tag != "Trial":
         raise TrialError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original trial has Trial")
     reader = _Reader(path.stem)
     trial = reader.trial(root)
-    return Imported(((path.stem, trial),), tuple(reader.notes))
+    return ImportedTrial(((path.stem, trial),), tuple(reader.notes))
 
 
 @dataclass

@@ -52,7 +52,7 @@ class PeopleSource:
         rate: arrival rate [people/s].
         timing: ``poisson`` (random) or ``regular`` (equal intervals, first arrival at ``begin``).
         begin, end: time of the first and last possible arrival [s].
-        most: maximum number of people (default: no limit).
+        max_count: maximum number of people (default: no limit).
         speed: preferred speed [m/s], a number or a distribution.
         radius: radius [m], a number or a distribution.
         model: index of the crowd model in a mixture.
@@ -62,7 +62,7 @@ class PeopleSource:
 
     >>> from crowdbot.world import PointWaypoint
     >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> PeopleSource(door, WaypointSequence((PointWaypoint(9.0, 1.0),)), rate=0.5, most=20).timing
+    >>> PeopleSource(door, WaypointSequence((PointWaypoint(9.0, 1.0),)), rate=0.5, max_count=20).timing
     'poisson'
     """
 
@@ -72,7 +72,7 @@ class PeopleSource:
     timing: str = "poisson"
     begin: float = 0.0
     end: float = math.inf
-    most: int | None = None
+    max_count: int | None = None
     speed: float | Sampler = 1.34
     radius: float | Sampler = 0.25
     model: int = 0
@@ -85,8 +85,8 @@ class PeopleSource:
             raise InputError(f"PeopleSource: timing {self.timing!r} is unknown{near}; choose {' or '.join(TIMINGS)}")
         if not (math.isfinite(self.begin) and self.begin < self.end):
             raise InputError(f"PeopleSource: begin = {self.begin} s must be finite and before end = {self.end} s")
-        if self.most is not None and self.most < 0:
-            raise InputError(f"PeopleSource: most = {self.most} people must be at least 0, or None")
+        if self.max_count is not None and self.max_count < 0:
+            raise InputError(f"PeopleSource: max_count = {self.max_count} people must be at least 0, or None")
         for name in ("speed", "radius"):
             value = getattr(self, name)
             if isinstance(value, int | float) and not 0.0 < value < math.inf:
@@ -142,7 +142,7 @@ class _Queue:
 
     def fill(self, time: float) -> None:
         """Add all arrivals up to a time [s] to the queue."""
-        most = math.inf if self.source.most is None else self.source.most
+        most = math.inf if self.source.max_count is None else self.source.max_count
         while self.due <= time + 1e-9 and self.due < self.source.end and self.come < most:
             self.come += 1
             self.waiting += 1

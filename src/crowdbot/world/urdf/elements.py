@@ -130,7 +130,7 @@ class UrdfReader:
             return np.eye(4)
         return frame(place, roll_pitch_yaw(*angles))
 
-    def mesh(self, element: Element, touching: bool) -> Mesh | str | None:
+    def mesh(self, element: Element, collision: bool) -> Mesh | str | None:
         """Return the mesh of <mesh filename scale>, the reason why it is unavailable, or None after an error.
 
         Raises:
@@ -152,10 +152,10 @@ class UrdfReader:
             self.say(element, str(error))
             return None
         factors = (float(scale[0]), float(scale[1]), float(scale[2]))
-        return self._load_trimesh(element, source, path, factors, touching)
+        return self._load_trimesh(element, source, path, factors, collision)
 
     def _load_trimesh(
-        self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], touching: bool
+        self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], collision: bool
     ) -> Mesh | str:
         if path is None:
             return f"the mesh file {source[:200]} is missing"
@@ -167,7 +167,7 @@ class UrdfReader:
             except (InputError, OSError) as error:
                 self._read[key] = f"the mesh {source[:200]} cannot be used: {error}"
         mesh = self._read[key]
-        if isinstance(mesh, str) or not touching or mesh.pieces:
+        if isinstance(mesh, str) or not collision or mesh.pieces:
             return mesh
         whole, coarse = with_pieces(mesh, self.colliders)
         self._read[key] = whole

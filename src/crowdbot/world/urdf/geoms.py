@@ -84,18 +84,18 @@ class Geoms:
         placed = {"pos": row(place[:3, 3]), "quat": row(quaternion(place[:3, :3]))}
         if not isinstance(part.shape, Mesh):
             return [Element("geom", {"name": name, **_sized(part.shape, wheel), **placed, **values})]
-        files = self._mesh(part.shape, touching=values["group"] == "3")
+        files = self._mesh(part.shape, collision=values["group"] == "3")
         names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
         return [
             Element("geom", {"name": one, "type": "mesh", "mesh": file, **placed, **values})
             for one, file in zip(names, files, strict=True)
         ]
 
-    def _mesh(self, mesh: Mesh, touching: bool) -> list[str]:
-        key = (id(mesh), touching)
+    def _mesh(self, mesh: Mesh, collision: bool) -> list[str]:
+        key = (id(mesh), collision)
         if key in self._known:
             return self._known[key]
-        if touching:
+        if collision:
             bodies = [(piece.vertices, piece.faces) for piece in mesh.pieces]
         else:
             bodies = [(mesh.vertices, mesh.faces[k : k + MOST_FACES]) for k in range(0, len(mesh.faces), MOST_FACES)]
@@ -104,8 +104,8 @@ class Geoms:
             name = f"{self.prefix}mesh{len(self.files)}"
             file = f"{name}.stl"
             self.files[file] = _stl(vertices, faces)
-            values = {"name": name, "file": file, "inertia": "convex" if touching else "shell"}
-            if touching:
+            values = {"name": name, "file": file, "inertia": "convex" if collision else "shell"}
+            if collision:
                 values["maxhullvert"] = str(MOST_CORNERS)
             self.meshes.append(Element("mesh", values))
             names.append(name)

@@ -51,7 +51,7 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
         if geometry is None:
             reader.say(inner, "needs <geometry>")
             continue
-        shape = _parse_shape(reader, geometry, touching=tag == "collision")
+        shape = _parse_shape(reader, geometry, collision=tag == "collision")
         origin = reader.origin(inner)
         color = read_color(reader, inner) if tag == "visual" else None
         if isinstance(shape, str):
@@ -61,7 +61,7 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
     return parts, lost
 
 
-def _parse_shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape | str | None:
+def _parse_shape(reader: UrdfReader, geometry: Element, collision: bool) -> Shape | str | None:
     """Return the shape, the reason why its mesh is unavailable, or None after an error."""
     inner = [child for child in geometry.children if child.tag in SHAPES]
     if len(inner) != 1:
@@ -71,7 +71,7 @@ def _parse_shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape
         return None
     element = inner[0]
     if element.tag == "mesh":
-        return reader.mesh(element, touching)
+        return reader.mesh(element, collision)
     if element.tag == "box":
         sides = reader.row(element, "size", 3, None)
         if sides is None:

@@ -83,7 +83,7 @@ class _Build:
     base: str
     prefix: str
     geoms: Geoms
-    touching: list[str]
+    collision: list[str]
 
     def called(self, name: str) -> str:
         return f"{self.prefix}{name}"
@@ -186,8 +186,8 @@ def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) 
         )
         shapes = build.geoms.of(build.model.links[name], matrix, axle)
         body.children += shapes
-        if any(shape.attributes.get("group") == "3" for shape in shapes) and build.called(link) not in build.touching:
-            build.touching.append(build.called(link))
+        if any(shape.attributes.get("group") == "3" for shape in shapes) and build.called(link) not in build.collision:
+            build.collision.append(build.called(link))
     for inner, matrix in moving:
         body.children.append(_body(build, inner.child, matrix, inner))
     return body
@@ -283,7 +283,7 @@ def _mass(build: _Build, fixed: Mapping[str, Floats], joint: Joint | None) -> li
 
 
 def _excluded(build: _Build) -> list[Element]:
-    names = build.touching
+    names = build.collision
     return [
         Element("exclude", {"body1": one, "body2": other}) for k, one in enumerate(names) for other in names[k + 1 :]
     ]
