@@ -197,3 +197,19 @@ def test_the_program_keeps_the_file_when_it_is_killed(tmp_path: Path) -> None:
     assert 0.2 < read.times[-1] < ran + 21.0
     assert sorted(os.listdir(tmp_path)) == ["in", "out"]
     assert os.listdir(tmp_path / "in") == ["trial.xml"]
+
+
+def test_repair_of_damaged_bytes_is_one_sentence(tmp_path: Path) -> None:
+    data = (Path(__file__).parents[1] / "compatibility" / "files" / "episodes" / "killed.mcap").read_bytes()
+    path, rng, said = tmp_path / "damaged.mcap", np.random.default_rng(4), set()
+    for _ in range(40):
+        damaged = bytearray(data)
+        for at in rng.integers(8, len(data), 12):
+            damaged[at] ^= 0xFF
+        path.write_bytes(damaged)
+        try:
+            assert repair(path) is not None
+        except EpisodeError as error:
+            said.add(str(error))
+    assert all(str(path) in sentence for sentence in said)
+    assert any("is damaged" in sentence for sentence in said)
