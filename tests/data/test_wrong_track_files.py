@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import DataError, InputError
 from crowdbot.data import FORMATS, load
+from crowdbot.data.readers import juelich
 
 OBSMAT = "1 1 0.5 0 1.5 0 0 0\n"
 VSP = "1 - the number of splines\n2 - Num of control points\n0 0 0 0 - (2D point)\n1 1 50 0 - (2D point)\n"
@@ -157,6 +158,20 @@ def test_a_line_of_ndjson_has_a_limit(tmp_path, monkeypatch):
     path.write_text('{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n')
     monkeypatch.setattr("crowdbot.data.readers.trajnetpp.MAX_LINE", 20)
     with pytest.raises(DataError, match="line 1 has 43 characters, more than 20"):
+        load(path)
+
+
+def test_an_hdf5_library_that_loops_without_end_is_stopped(tmp_path, monkeypatch):
+    program = tmp_path / "program.py"
+    program.write_text(
+        "from crowdbot.data.readers.hdf5_program import limit_cpu_time\nlimit_cpu_time(1)\nwhile True: pass\n"
+    )
+    monkeypatch.setattr(juelich, "PROGRAM", str(program))
+    monkeypatch.setattr(juelich, "SECONDS", 1)
+    path = tmp_path / "endless.h5"
+    with h5py.File(path, "w") as file:
+        file["trajectory"] = np.zeros(3)
+    with pytest.raises(DataError, match=r"endless.h5 is damaged: the HDF5 library does not finish reading it"):
         load(path)
 
 

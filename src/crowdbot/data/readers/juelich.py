@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import json
+import os
 import re
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -13,42 +18,61 @@ from crowdbot.core import DataError
 from crowdbot.data.source import MAX_ROWS, Source, parse_errors
 from crowdbot.data.trajectories import Trajectories
 
+from . import hdf5_program
 from .assemble import assemble
+from .hdf5_program import COLUMNS
 from .reader import Reader, ReadOptions
 
 __all__ = ["HDF5", "SQLITE"]
 
-COLUMNS = ("id", "frame", "x", "y")
+PROGRAM = hdf5_program.__file__
+SECONDS = 8
+"""CPU time for reading an HDF5 file [s], and more for a large one:"""
+BYTES_PER_SECOND = 20_000_000
 UNIT = re.compile(r"\[\s*(mm|cm|m)\s*\]")
 
 
 def read_hdf5(source: Source, options: ReadOptions) -> Trajectories:
     """Read the dataset ``trajectory`` (id, frame, x, y, z; attribute fps) and the walkable area as walls."""
-    import h5py
-
-    with parse_errors(source, "HDF5"), h5py.File(source.path, "r") as file:
-        if not isinstance(file.get("trajectory"), h5py.Dataset):
-            held = ", ".join(sorted(file)) or "nothing"
-            raise DataError(f"{source.name} is HDF5 without a table 'trajectory'; it holds {held}")
-        table = file["trajectory"]
-        missing = [column for column in COLUMNS if column not in (table.dtype.names or ())]
-        if missing:
-            found = ", ".join(table.dtype.names or ()) or "no named columns"
-            raise DataError(f"{source.name}: table 'trajectory' lacks {', '.join(missing)}; it has {found}")
-        if table.size > MAX_ROWS:
-            raise DataError(f"{source.name} has {table.size} rows, more than the limit of {MAX_ROWS}")
-        columns: dict[str, Any] = {column: np.asarray(table[column]) for column in COLUMNS}
-        fps = table.attrs.get("fps", file.attrs.get("fps"))
-        unit = UNIT.search(str(table.attrs.get("x", "")))
-        area = file.attrs.get("wkt_geometry")
+    about, columns = _read_hdf5_table(source)
+    if "held" in about:
+        held = ", ".join(about["held"]) or "nothing"
+        raise DataError(f"{source.name} is HDF5 without a table 'trajectory'; it holds {held}")
+    missing = [column for column in COLUMNS if column not in about["names"]]
+    if missing:
+        found = ", ".join(about["names"]) or "no named columns"
+        raise DataError(f"{source.name}: table 'trajectory' lacks {', '.join(missing)}; it has {found}")
+    if about["rows"] > MAX_ROWS:
+        raise DataError(f"{source.name} has {about['rows']} rows, more than the limit of {MAX_ROWS}")
+    unit = UNIT.search(about["unit"])
     return assemble(
         source,
         options,
         **columns,
-        fps=None if fps is None else _number(fps, "fps", source.name),
+        fps=None if about["fps"] is None else _number(about["fps"], "fps", source.name),
         units=unit.group(1) if unit else "m",
-        walls=_walls(None if area is None else str(area), source.name),
+        walls=_walls(about["area"], source.name),
     )
+
+
+def _read_hdf5_table(source: Source) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return content and columns of the file, read in a process of its own; see :mod:`.hdf5_program`."""
+    seconds = SECONDS + source.path.stat().st_size // BYTES_PER_SECOND
+    command = [sys.executable, "-P", PROGRAM, os.path.abspath(source.path), str(seconds), str(MAX_ROWS)]
+    with parse_errors(source, "HDF5"):
+        try:
+            done = subprocess.run(command, capture_output=True, check=False, timeout=10.0 * seconds)  # noqa: S603
+        except subprocess.TimeoutExpired:
+            done = None
+        if done is None or done.returncode < 0:
+            raise DataError(f"{source.name} is damaged: the HDF5 library does not finish reading it")
+        if done.returncode:
+            raise DataError(f"{source.name}: {done.stderr.decode(errors='replace').strip().splitlines()[-1]}")
+        with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
+            about = json.loads(str(arrays["about"]))
+            if "error" in about:
+                raise OSError(about["error"])
+            return about, {name: arrays[name] for name in COLUMNS if name in arrays}
 
 
 def read_sqlite(source: Source, options: ReadOptions) -> Trajectories:

@@ -1,0 +1,61 @@
+"""Program that reads an HDF5 recording in a process of its own: ``python hdf5_program.py FILE SECONDS ROWS``.
+
+The HDF5 library can loop without end in a damaged file. A loop in C cannot be interrupted from Python, so the process
+has a limit of its CPU time. It imports only h5py and numpy, and writes an ``.npz`` to standard output.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+import numpy as np
+
+__all__ = ["COLUMNS", "limit_cpu_time", "read_table"]
+
+COLUMNS = ("id", "frame", "x", "y")
+
+
+def limit_cpu_time(seconds: int) -> None:
+    """End this process after ``seconds`` of CPU time, where the system can do that; the caller has a limit too."""
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def read_table(path: str, max_rows: int) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
+    """Return what the file holds, and the columns of its table ``trajectory`` if they are complete."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        if not isinstance(file.get("trajectory"), h5py.Dataset):
+            return {"held": sorted(file)}, {}
+        table = file["trajectory"]
+        names = list(table.dtype.names or ())
+        about = {"names": names, "rows": int(table.size)}
+        if table.size > max_rows or not {*COLUMNS} <= {*names}:
+            return about, {}
+        fps, area = table.attrs.get("fps", file.attrs.get("fps")), file.attrs.get("wkt_geometry")
+        about["fps"] = None if fps is None else str(fps.item() if isinstance(fps, np.generic) else fps)
+        about["unit"] = str(table.attrs.get("x", ""))
+        about["area"] = None if area is None else str(area)
+        return about, {name: np.asarray(table[name]) for name in COLUMNS}
+
+
+def main() -> None:
+    """Read the file of the command line; an exception is part of the answer."""
+    path, seconds, max_rows = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    limit_cpu_time(seconds)
+    columns: dict[str, Any] = {}
+    try:
+        about, columns = read_table(path, max_rows)
+    except Exception as error:  # h5py raises many kinds for damaged files
+        about = {"error": " ".join(str(error).split()) or type(error).__name__}
+    np.savez(sys.stdout.buffer, about=np.array(json.dumps(about)), **columns)
+
+
+if __name__ == "__main__":
+    main()
