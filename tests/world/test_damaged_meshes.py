@@ -24,6 +24,13 @@ def test_a_triangle_beyond_the_points_is_rejected(tmp_path, monkeypatch):
         read_mesh(path, "body.ply", ONE)
 
 
+def test_points_of_two_coordinates_are_rejected(tmp_path):
+    path = tmp_path / "body.obj"
+    path.write_text("v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n")
+    with pytest.raises(InputError, match="its points have 2 coordinates, 3 are required|cannot be read as obj"):
+        read_mesh(path, "body.obj", ONE)
+
+
 class _Scene:
     def dump(self):
         return [trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]], process=False)]

@@ -51,6 +51,8 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
     if not len(faces):
         raise InputError("it has no triangles")
+    if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
+        raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
     if len(faces) > MOST_TRIANGLES:
         raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
     if faces.min() < 0 or faces.max() >= len(vertices):
