@@ -81,7 +81,8 @@ class Kernel:
     def starts_threads(self) -> bool:
         """Whether the function or a kernel that it calls is parallel."""
         used = (self.py_func.__globals__.get(name) for name in self.py_func.__code__.co_names)
-        return self._parallel or any(other.starts_threads for other in used if isinstance(other, Kernel))
+        others = (other for other in used if isinstance(other, Kernel) and other is not self)
+        return self._parallel or any(other.starts_threads for other in others)
 
     @property
     def _numba_type_(self) -> Any:
