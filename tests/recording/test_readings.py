@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import types
 from collections import Counter
@@ -15,43 +14,18 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 
 from crowdbot import sensors
-from crowdbot.core import EpisodeError, Pose, Scene, SpatialPose
+from crowdbot.core import SpatialPose
 from crowdbot.messages import (
     CODECS,
-    KIND,
-    REST,
     Codec,
-    MeasuredReading,
     Messages,
-    codec_of,
-    decode_reading,
-    encode_reading,
     image_in,
-    picture_codec,
     points_in,
-    unencoded_fields,
 )
 from crowdbot.recording import READING_TABLES, read_episode, replay, run
-from crowdbot.sensors import Gaussian, Lens, Reading, Sensor
 from crowdbot.simulation import Episode
 from crowdbot.trials import parse_trial
-
-SENSORS: dict[str, Sensor] = {
-    "Scan": sensors.Lidar2D(rays=31, noise=Gaussian(0.01)),
-    "PointCloud": sensors.Lidar3D(columns=24, noise=Gaussian(0.01)),
-    "RangeReading": sensors.Ultrasound(),
-    "DepthImage": sensors.DepthCamera(width=12, height=9),
-    "ImuReading": sensors.IMU(rate=100.0, acceleration_noise=0.01, turn_offset=0.1),
-    "Odometry": sensors.WheelOdometry(slip=0.01, ticks_per_turn=500),
-    "RgbImage": sensors.RGBCamera(width=12, height=9, segmentation=True),
-    "BumperReading": sensors.Bumper(radius=0.9),
-    "TrackedPeople": sensors.GroundTruthPeople(),
-}
-"""One that gives each class of readings; a new class needs a row here and in ``CODECS``."""
-SCENE = Scene.of([[1.0, 0.2], [2.5, -0.7], [-9.0, 3.0]], [[0.3, 0.1], [0.0, -1.0], [0.0, 0.0]], radius=0.3,
-                 walls=[[(4.0, -9.0), (4.0, 9.0)]])  # fmt: skip
-KINDS = [getattr(sensors, name) for name in sensors.__all__]
-READINGS = [cls for cls in KINDS if isinstance(cls, type) and issubclass(cls, Reading) and cls is not Reading]
+from reading_comparison import same
 
 TRIAL = """<trial name="eyes" duration="2" step="0.05" seed="4">
   <stage walkable="-6,-3 6,-3 6,3 -6,3"/>
@@ -87,127 +61,6 @@ TYPES = {
     "/robot/bumper": "sensor_msgs/msg/PointCloud2",
     "/robot/people": "people_msgs/msg/People",
 }
-
-
-def same(one: Any, two: Any, what: str) -> None:
-    """Compare what was read with what was measured, at the 32 bits that most standard types have."""
-    if dataclasses.is_dataclass(one):
-        assert type(one) is type(two), what
-        for field in dataclasses.fields(one):
-            same(getattr(one, field.name), getattr(two, field.name), f"{what}.{field.name}")
-        return
-    a, b = np.asarray(one), np.asarray(two)
-    assert a.shape == b.shape, what
-    if b.dtype.kind == "f":
-        assert np.allclose(a, b.astype(np.float32), rtol=3e-7, atol=1e-6, equal_nan=True), what
-        assert np.array_equal(np.isposinf(a), np.isposinf(b)), what
-        assert np.array_equal(np.isneginf(a), np.isneginf(b)), what
-    else:
-        assert a.dtype.kind == b.dtype.kind, what
-        assert np.array_equal(a, b), what
-
-
-def back(reading: Reading, sensor: Any) -> Reading:
-    """Return a reading after it was messages, as bytes."""
-    make = Messages()
-    found = {}
-    for ending, message in encode_reading(make, MeasuredReading(reading, sensor, "robot", "robot/eye")):
-        found[ending] = make.decode_message(make.encode_message(message), message.__msgtype__)
-    whole = found.pop(REST)
-    assert whole.__msgtype__ == KIND
-    return decode_reading(whole, found)
-
-
-def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
-    """Names in files do not change with those in Python: older recordings open, older versions read newer ones."""
-    kinds, names = {}, set()
-    for name, sensor in SENSORS.items():
-        reading = sensor.read(SCENE, Pose.of((0.1, 0.0), 0.3), np.random.default_rng(0))
-        whole = dict(encode_reading(Messages(), MeasuredReading(reading, sensor, "robot", "robot/eye")))[REST]
-        kinds[name] = whole.kind
-        names |= {field.name for field in whole.fields}
-    assert kinds == {
-        "Scan": "Scan", "PointCloud": "Cloud", "RangeReading": "Echo", "DepthImage": "DepthImage",
-        "ImuReading": "Inertial", "Odometry": "Odometry", "RgbImage": "Picture", "BumperReading": "Touch",
-        "TrackedPeople": "Tracked",
-    }  # fmt: skip
-    assert "facing" in names
-    assert "cos_incidence" not in names
-
-
-def test_no_class_of_readings_is_forgotten() -> None:
-    assert unencoded_fields() == []
-    assert {cls.__name__ for cls in READINGS} <= set(SENSORS)
-    assert {cls.__name__ for cls in CODECS} >= set(SENSORS)
-
-
-@pytest.mark.parametrize("kind", READINGS, ids=lambda cls: cls.__name__)
-@pytest.mark.parametrize("place", ["in the plane", "in space"])
-def test_every_class_of_readings_comes_back(kind: type[Reading], place: str) -> None:
-    sensor = SENSORS[kind.__name__]
-    pose: Any = Pose.of((0.1, 0.0), 0.3)
-    state = sensor.begin()
-    for number in range(2):
-        if place == "in space":
-            pose = Pose.of((0.1 + 0.2 * number, 0.0), 0.3).to_spatial(0.7, 0.02, 0.1)
-        view = sensors.SensorView(SCENE.replace(time=0.05 * number), pose)
-        reading, state = sensor.measure(view, state, np.random.default_rng(number))
-        assert type(reading) is kind
-        read = back(reading, sensor)
-        assert type(read) is kind
-        assert read.time == reading.time
-        assert (read.pose.position == reading.pose.position).all()
-        same(read, reading, kind.__name__)
-        same(back(read, sensor), read, "a second time")
-    with np.errstate(invalid="ignore"):
-        assert any(np.any(np.asarray(getattr(reading, f.name)) != 0) for f in dataclasses.fields(reading)[2:])
-
-
-def test_a_sensor_of_ones_own_may_give_these_readings(tmp_path: Path) -> None:
-    @dataclasses.dataclass(frozen=True)
-    class Warm(sensors.RangeReading):
-        pass
-
-    own = types.SimpleNamespace(rate=5.0)
-    reading = Warm(1.0, Pose.of((0.0, 0.0), 0.0), np.array([1.5]), np.array([3]), np.array([-1]), np.ones((1, 3)))
-    assert codec_of(Warm) is CODECS[sensors.RangeReading]
-    read = back(reading, own)
-    assert type(read) is sensors.RangeReading
-    assert read.ranges.tolist() == [1.5]
-    with pytest.raises(
-        EpisodeError, match=r"returns a Reading, which has no ROS message; return one of Scan, PointCloud"
-    ):
-        codec_of(Reading, "robot/eye")
-
-
-@dataclasses.dataclass(frozen=True)
-class Colours(Reading):
-    """What a colour camera gives."""
-
-    rgb: Any
-    lens: Lens
-    hit: Any
-
-
-def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(CODECS, Colours, picture_codec)
-    rgb = np.random.default_rng(0).integers(0, 256, (1, 6, 8, 3), dtype=np.uint8)
-    lens = Lens.of(8, 6, 1.0, (0.1, 0.0, 0.0, 0.0, 0.01))
-    picture = Colours(0.5, Pose.of((0.0, 0.0), 0.0).to_spatial(1.0), rgb, lens, np.full((1, 6, 8), -1))
-    make = Messages()
-    messages = dict(encode_reading(make, MeasuredReading(picture, None, "robot", "robot/eye")))
-    assert (messages["/image"].encoding, messages["/image"].step) == ("rgb8", 24)
-    assert messages["/image"].header.frame_id == "robot/eye_optical"
-    assert bytes(messages["/image"].data) == rgb.tobytes()
-    read = back(picture, None)
-    same(read, picture, "picture")
-    assert read.lens == lens  # type: ignore[attr-defined]
-    bare = dataclasses.replace(picture, hit=None)
-    assert "/labels" not in dict(encode_reading(make, MeasuredReading(bare, None, "robot", "robot/eye")))
-    assert back(bare, None).hit is None  # type: ignore[attr-defined]
-    ((parent, child, turn),) = picture_codec.frames("robot", "robot/eye")
-    assert (parent, child) == ("robot/eye", "robot/eye_optical")
-    assert np.allclose(turn.matrix[0], [[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
 
 
 @pytest.fixture(scope="module")
