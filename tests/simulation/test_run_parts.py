@@ -15,12 +15,11 @@ from crowdbot.simulation import (
     Simulation,
     SimulationRun,
     StopRequest,
-    apply_overrides,
     run_to_end,
     simulate,
     start_scene,
 )
-from crowdbot.trials import Trial, apply_values, parse_trial, place
+from crowdbot.trials import Trial, parse_trial, place
 from trial_texts import GOOD
 
 TINY = parse_trial(GOOD)
@@ -162,28 +161,3 @@ def test_a_failure_inside_a_library_is_placed_in_the_user_s_line() -> None:
     except ValueError as error:
         found = RunFailure.of(error, 0.0)
     assert found.place == f"test_run_parts.py:{line}"
-
-
-def test_navigators_get_the_scan_of_the_first_sensor() -> None:
-    scan = '<sensor name="scan" x="0.1" type="lidar2d" rays="90" noise="gaussian(0.01)"/>'
-    other = '<sensor name="other" type="lidar2d" rays="30"/>'
-    simulation = Simulation(parse_trial(GOOD.replace(scan, scan + other)), 0)
-    simulation.sense()
-    found = simulation.observation(simulation.robots[0]).scan
-    assert found is not None
-    assert found.ranges.shape[-1] == 90
-
-
-def test_a_new_goal_revokes_the_success_of_the_old_one() -> None:
-    trial = parse_trial(GOOD.replace('<end collision="false"/>', '<end goal="false" collision="false"/>'))
-    near = apply_values(trial, {"robot/goal.x": -1.6, "crowd.time_horizon": 1})
-    simulation = Simulation(near, 0)
-    for _ in range(30):
-        simulation.sense()
-        simulation.decide()
-        simulation.step()
-    assert simulation.event == "success"
-    apply_overrides(simulation, apply_values(near, {"crowd.time_horizon": 2}))
-    assert simulation.event == "success"
-    apply_overrides(simulation, apply_values(near, {"robot/goal.x": 3.0}))
-    assert simulation.event is None
