@@ -48,6 +48,7 @@ def test_the_upper_end_comes_first_if_asked_for():
 
 def test_a_wrong_number_is_shown_with_its_owner_and_unit():
     check_number("A", "b", 1.0, "m", min=1.0, max=1.0)
+    check_number("A", "b", 2.0, "m", min=1.0, max=2.0)
     with pytest.raises(InputError, match=r"^A: b = 2.0 m must be at least 1 m and at most 1 m$"):
         check_number("A", "b", 2.0, "m", min=1.0, max=1.0)
     with pytest.raises(InputError, match=r"^A: b = 0.5 must be a whole number$"):

@@ -57,6 +57,10 @@ def test_ray_to_segment(x, y, direction, ax, ay, bx, by):
     assert ray_to_segment(x, y, ux, uy, ax, ay, bx, by) == pytest.approx(expected, rel=1e-6)
 
 
+def test_a_ray_that_starts_on_a_segment_hits_it_at_once():
+    assert ray_to_segment(0.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0) == 0.0
+
+
 def test_a_ray_along_a_segment_misses_it():
     assert ray_to_segment(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 2.0, 0.0) == math.inf
 

@@ -17,6 +17,7 @@ from crowdbot.core import (
     from_attributes,
     kebab_case,
     required_fields,
+    sources_of,
 )
 
 
@@ -172,6 +173,17 @@ def test_untrusted_files_of_the_folder_are_loaded_once(tmp_path):
     (tmp_path / "once.py").write_text("from crowdbot.core import Scene\nclass Once(Scene): pass\n")
     first = find_class("once.py:Once", room, Scene, folder=tmp_path, trust=False)
     assert find_class("once.py:Once", room, Scene, folder=tmp_path) is first
+
+
+def test_the_sources_of_a_class_are_all_files_of_its_folder(tmp_path):
+    for name in ("lab/__init__.py", "lab/walks.py", "lab/deep/more.py", "alone.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("from crowdbot.core import Scene\nclass Mine(Scene): pass\n")
+    folder = find_class("lab/:walks.Mine", room, Scene, folder=tmp_path)
+    found = {path.relative_to(tmp_path).as_posix() for path in sources_of(folder)}
+    assert found == {"lab/__init__.py", "lab/walks.py", "lab/deep/more.py"}
+    assert sources_of(find_class("alone.py:Mine", room, Scene, folder=tmp_path)) == (tmp_path / "alone.py",)
+    assert sources_of(FastWalker) == ()
 
 
 def test_a_module_is_an_address():

@@ -81,6 +81,13 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
             "lacks one of the whole",
         ),
         ("u.ndjson", '{"track": {"f": 1e300, "p": 1, "x": 1, "y": 2}}\n', r"f is 1e\+300, it must be a whole number"),
+        (
+            "z.ndjson",
+            '{"scene": {"id": 0, "p": 1, "s": 0, "e": 1, "fps": 2.5}}\n'
+            '{"scene": {"id": 1, "p": 1, "s": 0, "e": 1, "fps": 25}}\n'
+            '{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n{"track": {"f": 1, "p": 1, "x": 1, "y": 2}}\n',
+            r"its scenes have 2 values of fps, 2\.5 to 25\.0; give fps",
+        ),
         ("v.txt", "# PeTrack\n# framerate: fast\n1 0 1 2 3\n", "has no frame rate"),
         ("w.txt", "# framerate: 2.5.1 fps\n1 0 1 2 3\n", r"w.txt: the header's frame rate '2\.5\.1' is not a number"),
         ("x.txt", "# PeTrack\n# framerate: 25 fps\n", "of an unknown format"),

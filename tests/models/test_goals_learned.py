@@ -40,6 +40,15 @@ def test_people_at_the_junction_are_known_to_turn():
     assert middle[1 + north] > 0.15
 
 
+def test_of_many_recorded_rows_every_kth_is_kept(monkeypatch):
+    every = LearnedDestinations.learn(street()).samples
+    count = len(every.turn)
+    monkeypatch.setattr("crowdbot.models.goals.learned_destinations.MOST_VOTERS", count // 3 + 1)
+    some = LearnedDestinations.learn(street()).samples
+    for name in every._fields:
+        np.testing.assert_array_equal(getattr(some, name), getattr(every, name)[::3])
+
+
 def test_where_nobody_has_been_people_go_straight_on():
     goal = LearnedDestinations.learn(street())
     past = eastwards(50.0, 50.0)

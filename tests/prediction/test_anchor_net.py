@@ -15,7 +15,7 @@ from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES
+from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES, agent_histories
 from crowdbot.prediction.anchor_net.layers import attend, dense
 from crowdbot.prediction.anchor_net.network_shapes import NEEDED
 from crowdbot.prediction.joint_kernels import assign_futures, first_crossing, separate_paths
@@ -86,6 +86,16 @@ def test_who_comes_too_near_gives_way_evenly() -> None:
     assert np.linalg.norm(held[0] - held[1], axis=1).min() >= 0.3
     head_on = path * np.array([1.0, 0.0])
     assert np.linalg.norm(np.subtract(*separate_paths(head_on, np.zeros(2, dtype=bool), 0.3, 12)), axis=1).min() >= 0.3
+
+
+def test_neighbors_are_the_12_nearest_in_order_of_distance(windows: Maker) -> None:
+    rank = np.arange(1, 15)
+    away = 0.5 * rank[:, None] * np.stack([np.cos(2.4 * rank), np.sin(2.4 * rank)], axis=1)
+    others = ((x, y, 1.0, 0.0) for x, y in away[stream(3, "order").permutation(14)])
+    people, _, slot = agent_histories(walking(windows, (0.0, 0.0, 1.0, 0.0), *others))
+    assert slot[0] == 0
+    assert people.there[0].all()
+    np.testing.assert_allclose(people.near[0], away[:12], atol=1e-12)
 
 
 def test_paths_through_a_wall_are_found() -> None:

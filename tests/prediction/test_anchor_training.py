@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -141,6 +142,26 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Train
     assert all(np.array_equal(whole[name], again[name]) for name in whole)
     with pytest.raises(InputError, match="contains a training with other settings"):
         trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
+
+
+def test_the_learning_rate_rises_linearly_and_falls_along_a_cosine(material: TrainingSet) -> None:
+    model, shares = AnchorNetTraining(TINY, material, material), []
+    for number in (0, 1, 4, 5, 10, 15, 20):
+        model.update(None, stream(0), number, 25)
+        shares.append(model.optimiser.param_groups[0]["lr"] / TINY.rate)
+    # 5 warm-up updates, then 0, 1/4, 1/2 and 3/4 of the other 20
+    slow = math.sqrt(2.0) / 4.0
+    assert shares == pytest.approx([0.2, 0.4, 1.0, 1.0, 0.5 + slow, 0.5, 0.5 - slow])
+
+
+def test_torch_uses_the_given_number_of_threads_inside_the_context_only() -> None:
+    before = torch.get_num_threads()
+    with torch_threads(2):
+        assert torch.get_num_threads() == 2
+        with torch_threads():
+            assert torch.get_num_threads() == 1
+        assert torch.get_num_threads() == 2
+    assert torch.get_num_threads() == before
 
 
 def test_calibrated_numbers_are_complete(material: TrainingSet) -> None:

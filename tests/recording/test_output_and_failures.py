@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, Scene, Twist, lock_output, relative_name
+from crowdbot.core import EpisodeError, InputError, Scene, Twist, lock_output, relative_name
 from crowdbot.models import CrowdModel
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import branch, export, open_run, read_episode, record, repair, replay
@@ -153,6 +153,15 @@ def test_a_lock_that_cannot_be_written_leaves_no_file(tmp_path: Path, monkeypatc
     with pytest.raises(OSError, match="No space left"), lock_output(tmp_path / "episode.mcap"):
         pass
     assert os.listdir(tmp_path) == []
+
+
+def test_a_full_disk_at_the_end_of_a_run_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(file: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(EpisodeError, match=r"cannot write .*episode\.mcap: No space left"):
+        record(dataclasses.replace(TRIAL, duration=0.5), out=tmp_path)
 
 
 def test_one_of_many_takes_over_a_stale_lock(tmp_path: Path) -> None:

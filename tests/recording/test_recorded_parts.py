@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from crowdbot.core import EpisodeError, Twist
+from crowdbot.data import McapReader
+from crowdbot.messages import Messages
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import attachments, branch, export, read_episode, run
+from crowdbot.recording.step_records import _moment
 from crowdbot.sensors import GroundTruthPeople
 from crowdbot.trials import Mount, Trial, parse_trial
 from crowdbot.world import Omnidirectional
@@ -101,6 +104,18 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("plain")
     run(dataclasses.replace(TINY, duration=1.0), seed=3, out=out)
     return out / "episode.mcap"
+
+
+def test_a_scan_of_an_old_episode_is_placed_by_its_transforms(plain: Path) -> None:
+    stamp, make, episode = 500_000_000, Messages(), read_episode(plain)
+    with plain.open("rb") as stream:
+        heard = [(one.topic, one.data) for one in McapReader(stream).messages() if one.stamp == stamp]
+    old = ("/tf", "/tf_static", "/robot/scan")  # there were no records of readings
+    scan = _moment(stamp, [(t.topic, make.decode_message(data, t.kind)) for t, data in heard if t.topic in old])
+    x, y = episode.position[5, episode.robots[0]]
+    heading = episode.heading[5, episode.robots[0]]
+    expected = (x + 0.1 * np.cos(heading), y + 0.1 * np.sin(heading), heading)
+    assert scan.scans["robot/scan"].pose == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("at", [-0.1, 1.1, 9.0])

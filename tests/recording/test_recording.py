@@ -9,12 +9,16 @@ import signal
 import subprocess
 import sys
 from collections import Counter
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
+from mcap.records import Chunk
 from rosbags.highlevel import AnyReader
 
 import crowdbot
@@ -104,6 +108,20 @@ def test_rosbags_opens_the_file(recorded: tuple[Path, Episode]) -> None:
                     "clear": 1, "people": 4, "robots": 1, "goals": 1, "walls": 1,
                 }  # fmt: skip
     assert dict(count) == expected(episode)
+
+
+def test_the_index_of_a_chunk_has_the_position_and_the_sizes_of_the_chunk(recorded: tuple[Path, Episode]) -> None:
+    path, _ = recorded
+    with path.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    assert summary.chunk_indexes
+    data = path.read_bytes()
+    for index in summary.chunk_indexes:
+        assert data[index.chunk_start_offset] == Opcode.CHUNK
+        begin = index.chunk_start_offset + 9  # the opcode and the length of the record
+        chunk = Chunk.read(ReadDataStream(BytesIO(data[begin : index.chunk_start_offset + index.chunk_length])))
+        assert (len(chunk.data), chunk.uncompressed_size) == (index.compressed_size, index.uncompressed_size)
 
 
 def test_the_mcap_reader_alone_opens_the_file(recorded: tuple[Path, Episode]) -> None:

@@ -18,7 +18,7 @@ from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.recording import read_episode, run
-from crowdbot.sensors import Gaussian, Lidar2D
+from crowdbot.sensors import Gaussian, Lidar2D, Scan
 from crowdbot.simulation import Episode, EpisodeLog, RunFailureWarning, Simulation, StopRequest, run_to_end, start_scene
 from crowdbot.trials import Mount, RobotGoal, RobotSpec, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
 from crowdbot.world import DifferentialDrive
@@ -206,6 +206,15 @@ def test_a_navigator_knows_the_people_its_scan_hit_and_no_others() -> None:
     blind: list[Observation] = []
     run(trial(spawners=[open_], robots=[robot(navigator=Spy(blind))], duration=0.1))
     assert (len(blind[0].people), blind[0].scan) == (0, None)
+
+
+def test_a_navigator_gets_the_scan_of_the_first_laser_scanner() -> None:
+    told: list[Observation] = []
+    lasers = [Mount(name="front", sensor=Lidar2D(rays=30)), Mount(name="back", heading=3.0, sensor=Lidar2D(rays=20))]
+    run(trial(robots=[robot(navigator=Spy(told), sensors=lasers)], duration=0.1))
+    scan = told[0].scan
+    assert isinstance(scan, Scan)
+    assert scan.ranges.shape == (1, 30)
 
 
 def test_two_robots_see_each_other_and_share_the_outcome() -> None:

@@ -15,6 +15,7 @@ from crowdbot.simulation import (
     Simulation,
     SimulationRun,
     StopRequest,
+    apply_overrides,
     run_to_end,
     simulate,
     start_scene,
@@ -30,6 +31,12 @@ PERIOD = 2
 def outcome(trial: Trial, ticks: int | None, stop: StopRequest | None = None) -> tuple[str, int]:
     simulation = Simulation(trial, 3)
     return run_to_end(simulation, [], stop or StopRequest(), None, ticks), simulation.tick
+
+
+def with_goal(trial: Trial, x: float) -> Trial:
+    """Return a trial whose robot, at x = -2 m, has its goal at another x [m]."""
+    robot = trial.robots[0]
+    return dataclasses.replace(trial, robots=[dataclasses.replace(robot, goal=dataclasses.replace(robot.goal, x=x))])
 
 
 @pytest.mark.parametrize(("ticks", "last"), [(1, 2), (2, 2), (3, 4), (4, 4), (10, 10)])
@@ -58,6 +65,23 @@ def test_a_run_that_is_not_stopped_goes_on_for_ever() -> None:
     running = SimulationRun(Simulation(TINY, 3))
     assert [running.step() for _ in range(9)] == [None] * 9
     assert running.outcome is None
+
+
+def test_the_outcome_of_a_run_cannot_be_given() -> None:
+    with pytest.raises(TypeError, match="outcome"):
+        SimulationRun(Simulation(TINY, 3), outcome="success")  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize(("x", "ended"), [(-2.0, "success"), (3.0, "timeout")])
+def test_a_robot_with_a_new_goal_has_not_arrived_yet(x: float, ended: str) -> None:
+    trial = with_goal(dataclasses.replace(TINY, duration=0.4, end=dataclasses.replace(TINY.end, goal=False)), -2.0)
+    simulation = Simulation(trial, 3)
+    running = SimulationRun(simulation)
+    while running.step() is None and simulation.tick < 2 * PERIOD:
+        pass
+    assert simulation.event == "success"
+    apply_overrides(simulation, with_goal(trial, x))
+    assert run_to_end(simulation, [], StopRequest()) == ended
 
 
 def test_progress_grows_to_one_and_each_share_is_told_once() -> None:

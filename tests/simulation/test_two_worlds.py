@@ -11,7 +11,7 @@ import pytest
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
 from crowdbot.recording import branch, open_run, read_episode, record, replay, run
-from crowdbot.sensors import RgbImage, TrackedPeople
+from crowdbot.sensors import Lidar2D, RgbImage, TrackedPeople
 from crowdbot.simulation import Simulation, SimulationRun, run_to_end
 from crowdbot.trials import (
     Trial,
@@ -171,6 +171,18 @@ def test_props_are_solid_in_the_plane_and_have_bodies_in_physics() -> None:
         assert touching[0] == pytest.approx(4.0 - 0.3 - 0.3, abs=0.05)
         scans = episode.readings["puck/scan"]
         assert scans[0].ranges[0, 30] == pytest.approx(1.7, abs=0.01)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_a_ray_above_a_cube_passes_over_it(world: str) -> None:
+    simulation = Simulation(parse_trial(room(world, LEAN, bodies="limbs")), 4)
+    robot = simulation.robots[0].agent
+    low, high = (
+        Lidar2D(rays=1).read(simulation.around.space.without(robot), simulation.world.pose(robot).to_spatial(height))
+        for height in (0.3, 1.2)
+    )
+    assert low.ranges[0, 0] == pytest.approx(1.7)  # from x = 2 m to the cube of 0.6 m around x = 4 m
+    assert high.ranges[0, 0] > 4.0
 
 
 def test_a_cube_is_pushed_in_physics() -> None:

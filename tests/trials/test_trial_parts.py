@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import shutil
+from pathlib import Path
 
 import pytest
 
-from crowdbot.core import TrialError
+from crowdbot.core import InputError, TrialError
+from crowdbot.navigation import Straight
 from crowdbot.sensors import IMU, GroundTruthPeople, Lidar2D
-from crowdbot.trials import Mount, check_trial, is_code, parse_trial
-from crowdbot.trials.robot import _merge_sensors
+from crowdbot.trials import Mount, RobotGoal, RobotSpec, check_trial, is_code, parse_trial
+from crowdbot.trials.robot import _assets, _merge_sensors
+from crowdbot.world import DifferentialDrive
 
 
 @pytest.mark.parametrize(
@@ -72,3 +76,19 @@ def test_a_way_that_a_wall_blocks_is_named_by_who_would_walk_it() -> None:
 def test_a_mount_keeps_what_is_not_changed() -> None:
     mount = Mount(name="front", sensor=Lidar2D(), x=0.2)
     assert dataclasses.replace(mount, y=0.1) == Mount(name="front", sensor=Lidar2D(), x=0.2, y=0.1)
+
+
+def test_only_a_robot_of_a_folder_has_files(tmp_path: Path) -> None:
+    shutil.copytree(_assets("turtlebot2"), tmp_path / "mine")
+    settings = {"x": 0.0, "y": 0.0, "goal": RobotGoal(5.0, 0.0), "navigator": Straight()}
+    own = RobotSpec(type="mine", folder=tmp_path, **settings).files()
+    assert {path.name for path in own} >= {"robot.xml", "turtlebot2.urdf"}
+    assert all(path.is_relative_to(tmp_path / "mine") for path in own)
+    assert RobotSpec(type="turtlebot2", **settings).files() == ()
+    assert RobotSpec(drive=DifferentialDrive(), **settings).files() == ()
+
+
+def test_a_trial_has_at_most_20000_single_people() -> None:
+    trial = parse_trial(HALL.format(people='<agent x="-4" y="0" goal="3,0"/>', inside="", routing=""))
+    with pytest.raises(InputError, match="20001 agents are too many, at most 20000"):
+        dataclasses.replace(trial, agents=trial.agents * 20_001)

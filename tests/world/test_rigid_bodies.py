@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, stream
 from crowdbot.world import CubeBody, TableBody, TreeBody, quaternion, roll_pitch_yaw
 from crowdbot.world.urdf.inertia import _round_tensor, _sides, unphysical
-from crowdbot.world.urdf.shapes import Box, Capsule, Cylinder, Sphere, together
+from crowdbot.world.urdf.shapes import Box, Capsule, ConvexPiece, Cylinder, Sphere, together
 from crowdbot.world.urdf.transforms import across, axis_rotation, frame, from_quaternion, transform_points
 
 angle = st.floats(-math.pi, math.pi)
@@ -98,6 +98,13 @@ def test_a_capsule_lies_between_cylinders() -> None:
     low, solid, high = (Cylinder(0.5, 2.0).solid(), Capsule(0.5, 2.0).solid(), Cylinder(0.5, 3.0).solid())
     assert low.volume < solid.volume < high.volume
     assert solid.volume == pytest.approx(low.volume + Sphere(0.5).solid().volume)
+
+
+def test_a_flat_convex_piece_has_no_volume_and_its_centre_is_the_mean_of_its_vertices() -> None:
+    triangle = np.array([[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 6.0, 1.0]])
+    solid = ConvexPiece(triangle, np.array([[0, 1, 2], [0, 2, 1]])).solid()
+    assert solid.volume == 0.0
+    np.testing.assert_allclose(solid.center, [1.0, 2.0, 1.0])
 
 
 @pytest.mark.parametrize(
