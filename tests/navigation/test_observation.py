@@ -90,6 +90,12 @@ def test_the_drive_arrives_and_stops_there(goal):
     assert abs(twist.forward[0]) < 0.05
 
 
+@pytest.mark.parametrize("acceleration", [0.5, 1.0, 2.0])
+def test_the_braking_speed_stops_within_the_distance_with_a_reserve(acceleration):
+    speed = alone(limits=DriveLimits(3.0, 2.0, acceleration, 3.0)).braking_speed(0.6)
+    assert speed**2 / (2.0 * acceleration) == pytest.approx(0.8 * 0.6)  # v^2 = 2 a d
+
+
 def test_unknown_accelerations_do_not_limit():
     fast = alone(limits=DriveLimits(1.0, 2.0))
     assert fast.braking_speed(0.1) == math.inf
