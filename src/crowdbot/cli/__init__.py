@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     debug = os.environ.get("CROWDBOT_DEBUG", "0") not in ("", "0")
     _open_standard_streams()
     try:
-        options = _parser(words).parse_args(words)
+        options = _parse(words)
         debug |= options.debug
         with _code_notices():
             status: int = options.main(options)
@@ -156,6 +156,31 @@ def _describe(error: Exception, debug: bool) -> str:
         traceback.print_exception(error)
         return bug
     return f"{bug}; the traceback is in {file.name}"
+
+
+def _parse(words: Sequence[str]) -> argparse.Namespace:
+    """Return the options; ends the program with a suggestion if an option is unknown."""
+    parser = _parser(words)
+    options, unknown = parser.parse_known_args(words)
+    if not unknown:
+        return options
+    from crowdbot.core import did_you_mean
+
+    chosen = {options.command, getattr(options, "verb", None)}
+    while deeper := [
+        one
+        for action in parser._actions
+        if isinstance(action, argparse._SubParsersAction)
+        for name, one in action.choices.items()
+        if name in chosen
+    ]:
+        parser = deeper[0]
+    known = [name for action in parser._actions for name in action.option_strings]
+    first = next((word for word in unknown if word.startswith("-")), "").partition("=")[0]
+    meant = did_you_mean(first, known) if first else ""
+    parser.exit(
+        2, f"{parser.prog}: error: unrecognized arguments: {shlex.join(unknown)}{meant}; see {parser.prog} --help\n"
+    )
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:

@@ -79,6 +79,8 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.experiments import is_experiment, load_experiment
     from crowdbot.trials import expand_sweeps, load_trial, trial_remarks
 
+    if Path(name).is_dir():
+        return {"problems": [f"{name} is a folder without robot.xml; give a trial, an experiment, a URDF or a robot"]}
     try:
         if is_experiment(name):
             load_experiment(name, trust=options.trust)

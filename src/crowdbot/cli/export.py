@@ -36,5 +36,7 @@ def main(options: argparse.Namespace) -> int:
         print_json(summary | images)
     else:
         more = f", images in {images['images']}" if images else ""
+        if not rows:
+            more = f": the episode holds no {options.table}"
         print(f"{options.to}: {rows} rows{more}")
     return 0

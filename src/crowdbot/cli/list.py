@@ -36,8 +36,13 @@ def _parameters(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError, did_you_mean
     from crowdbot.trials import PRESETS
 
+    if options.kind != "trials":
+        raise InputError(
+            f"crowdbot list {options.kind} takes no name, {options.name!r} was given;"
+            f" crowdbot list {options.kind} lists all, crowdbot cite {options.name} prints references"
+        )
     preset = PRESETS.get(options.name)
-    if options.kind != "trials" or preset is None:
+    if preset is None:
         near = did_you_mean(options.name, PRESETS)
         raise InputError(f"{options.name!r} is not a built-in trial with parameters{near}; see crowdbot list trials")
     rows = {name: str(option) for name, option in preset.options.items()}

@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import sys
+import textwrap
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -58,18 +59,31 @@ def _plain(value: Any) -> Any:
 def print_table(
     title: str, head: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "", words: int = 1
 ) -> None:
-    """Print a table on stdout; the first ``words`` columns are aligned left, the others right."""
+    """Print a table on stdout; the first ``words`` columns are aligned left, the others right.
+
+    Without column names, the table has no header. In a narrow terminal the columns are closer to each other.
+    """
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(title=title, caption=caption, box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left")
+    console = Console(width=None if sys.stdout.isatty() else 120, highlight=False, markup=False)
+    widths = [
+        max(len(line) for cell in column for line in cell.splitlines() or [""])
+        for column in zip(head, *rows, strict=False)
+    ]
+    narrow = words == 1 and sum(widths) + 3 * len(widths) + 1 > console.width
+    table = Table(box=box.SIMPLE_HEAD, show_header=any(head), padding=0 if narrow else (0, 1))
     for index, name in enumerate(head):
         table.add_column(name, justify="left" if index < words else "right", overflow="fold")
+    first = console.width - sum(widths[1:]) - len(widths) - 1
     for row in rows:
-        table.add_row(*row)
-    wide = None if sys.stdout.isatty() else 120
-    Console(width=wide, highlight=False, markup=False).print(table)
+        name = "\n".join(textwrap.wrap(row[0], max(8, first))) if narrow else row[0]  # breaks at spaces and hyphens
+        table.add_row(name, *row[1:])
+    console.print(title, style="italic")
+    console.print(table)
+    if caption:
+        console.print(caption, style="dim italic")
 
 
 def print_metrics(title: str, metrics: Mapping[str, float]) -> None:

@@ -30,10 +30,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
-    from crowdbot.core import PacedClock
+    from crowdbot.core import InputError, PacedClock
     from crowdbot.recording import record
     from crowdbot.trials import load_trial
 
+    if options.pace is not None and not options.pace > 0.0:
+        raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)

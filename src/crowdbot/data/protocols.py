@@ -264,7 +264,7 @@ def _why_none(tracks: TrackTable, rows: _Rows, observe: int, need: int, protocol
     return (
         f"{tracks.name}: no window of {observe} observed and {future} predicted rows was found (protocol {protocol}),"
         f" because the longest of {len(lengths)} tracks has {longest} rows{holes} and {observe + need} are needed;"
-        f" a row is {tracks.frame_step} frames or {tracks.dt:.4g} s,"
+        f" a row is {tracks.frame_step} frame{'s' if tracks.frame_step != 1 else ''} or {tracks.dt:.4g} s,"
         f" {len(rows.runs.frames)} frames hold {crowd.min()} to {crowd.max()} tracks each;"
         " ask for fewer rows, or resample to shorter steps"
     )

@@ -49,6 +49,8 @@ class Recording:
     every: int = 1
 
     def __post_init__(self) -> None:
+        if self.step is not None and not self.step > 0.0:
+            raise InputError(f"step = {self.step} s must be above 0, such as 0.4 s")
         if self.every < 1:
             raise InputError(f"every = {self.every} must be at least 1")
         if not 0.0 <= self.learn < 1.0:

@@ -284,8 +284,8 @@ def _content(path: Path, own: Path, row: AttachedFile, inside: Mapping[str, byte
         raise EpisodeError(f"{path} is damaged: the attached file {row.name!r} differs from its digest")
     if row.code and not trust:
         raise EpisodeError(
-            f"{path} needs the code {row.name!r}, which does not exist in {own}; use --trust to run the code stored"
-            " in the episode"
+            f"{path} needs the code {row.name!r}, which does not exist in {own}; name its folder with --folder, or use"
+            " --trust to run the code stored in the episode"
         )
     return data
 

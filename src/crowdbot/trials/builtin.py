@@ -55,10 +55,9 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
     if str(source) in known and not path.is_file():
         return _builtin(str(source), trust, values)
     if not path.exists() and not path.suffix and len(path.parts) == 1:
-        raise TrialError(
-            f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: there is no such file;"
-            f" built-in trials are {', '.join(known)}"
-        )
+        meant = did_you_mean(str(source), known)
+        names = "crowdbot list trials lists the built-in trials" if meant else f"built-in trials are {', '.join(known)}"
+        raise TrialError(f"there is no trial {str(source)!r}{meant}; it is neither a file nor a built-in name; {names}")
     trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return apply_values(trial, values, place=trial.name, trust=trust)
 

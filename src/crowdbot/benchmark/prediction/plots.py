@@ -101,6 +101,9 @@ def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
     figure, axes = _figure(1, 1, (7.5, 7.0))
     axis = axes[0, 0]
     _background(axis, past, future, paths)
+    figure.set_figheight(np.clip(7.0 * np.ptp(axis.get_ylim()) / np.ptp(axis.get_xlim()) + 1.2, 2.6, 7.0))
+    axis.set_xlabel(f"x [{recording.tracks.units}]", fontsize=8)
+    axis.set_ylabel(f"y [{recording.tracks.units}]", fontsize=8)
     axis.set_title(f"{recording.name}, frame {frame}", fontsize=10)
     lines = [
         axis.plot([], [], color=color, linewidth=1.6, label=name)[0] for color, name in zip(COLORS, paths, strict=False)

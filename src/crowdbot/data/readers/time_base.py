@@ -74,7 +74,7 @@ def row_rate_of(
     if row_rate is not None:
         return check_fps(row_rate, name), ""
     if step in CONVENTIONAL_FPS:
-        note = f"no frame rate in the file: {step} frames are interpreted as 0.4 s, as in ETH/UCY"
+        note = f"no frame rate in the file: {step} frames are interpreted as 0.4 s, as in ETH/UCY; fps overrides this"
         return CONVENTIONAL_FPS[step] / step, note
     raise DataError(
         f"{name} has no frame rate, and a step of {step} frames is not a convention of the field;"
@@ -100,7 +100,8 @@ def check_speeds(tracks: Trajectories, options: ReadOptions) -> str:
                 f" fps is frames per second, for {fps:g} rows per second give fps {fps * step:g}",
                 fps * step,
             )
-    if speed > FASTEST or (fps is not None and speed < SLOWEST):
+    given = fps is not None or options.units is not None
+    if speed > FASTEST or (given and speed < SLOWEST):
         return f"warning: the median speed {speed:.2g} m/s is impossible for people, check fps and units"
     return ""
 

@@ -72,9 +72,11 @@ class Robot:
         if shape.size == 0:
             shape = self.model.footprint(self.posture)
         if shape.ndim != 2 or shape.shape[1] != 2 or len(shape) < 3 or not np.all(np.isfinite(shape)):
+            has = (
+                f"{len(shape)} corners" if len(shape) else 'no colliders to take it from; add <footprint radius="0.3"/>'
+            )
             raise InputError(
-                f"Robot: the footprint of {self.name} must be at least 3 points x, y [m]; its model has"
-                f" {'no colliders to take it from' if not len(shape) else f'{len(shape)} corners'}"
+                f"Robot: the footprint of {self.name} must be at least 3 points x, y [m]; its model has {has}"
             )
         object.__setattr__(self, "footprint", shape)
         self.model.positions(self.posture)
