@@ -152,8 +152,10 @@ def _report_compilation(say: Callable[[str], None]) -> Iterator[None]:
     from crowdbot.core import cache_folder, is_cold, notify_compiling
 
     def report() -> None:
-        first = "first run: " if is_cold() else ""
-        say(f"{first}compiling kernels once, into {cache_folder()}; this takes one to two minutes")
+        if is_cold():
+            say(f"first run: compiling kernels once, into {cache_folder()}; this takes up to a minute or two")
+        else:
+            say(f"compiling further kernels once, into {cache_folder()}")
 
     with notify_compiling(report):
         yield
