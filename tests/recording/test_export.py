@@ -103,7 +103,7 @@ def test_the_program_says_where_the_images_are(
     assert main(["export", str(seen), "--to", str(tmp_path / "p.csv"), "--table", "pictures"]) == 0
     assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, images in {tmp_path}/p-images\n"
     assert main(["export", str(recorded[0]), "--to", str(tmp_path / "none.csv"), "--table", "pictures"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path}/none.csv: 0 rows\n"
+    assert capsys.readouterr().out == f"{tmp_path}/none.csv: 0 rows: the episode holds no pictures\n"
     assert sorted(os.listdir(tmp_path)) == ["none.csv", "p-images", "p.csv"]
     whole = seen.read_bytes()
     (tmp_path / "hole.mcap").write_bytes(whole[: len(whole) // 2] + bytes(2000) + whole[len(whole) // 2 + 2000 :])
