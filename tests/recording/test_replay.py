@@ -73,7 +73,7 @@ def test_code_of_a_recorded_trial_is_loaded_from_its_folder_only(tmp_path: Path)
     (tmp_path / "shy.py").write_text(SHY)
     trial = load_trial(written(tmp_path, changed('type="straight"', 'type="shy.py:Shy"')))
     episode = run(trial, out=tmp_path / "out")
-    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not exist in .*--folder, or use --trust"):
+    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not exist .*--folder, or use --trust"):
         replay(tmp_path / "out" / "episode.mcap")
     assert replay(tmp_path / "out" / "episode.mcap", folder=tmp_path).replayed == episode.digest
 
