@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from mcap.reader import make_reader
@@ -12,7 +12,11 @@ __all__ = ["copy_episode"]
 
 
 def copy_episode(
-    source: Path, target: Path, changes: Mapping[str, str | None] | None = None, without: Sequence[str] = ()
+    source: Path,
+    target: Path,
+    changes: Mapping[str, str | None] | None = None,
+    without: Sequence[str] = (),
+    bytes_of: Callable[[str, bytes], bytes] = lambda topic, data: data,
 ) -> Path:
     """Copy an episode.
 
@@ -20,6 +24,7 @@ def copy_episode(
         source, target: files.
         changes: new values of metadata; None removes an entry.
         without: topics to leave out.
+        bytes_of: new content of a message, from its topic and its content.
     """
     with source.open("rb") as old, target.open("wb") as new:
         reader, writer = make_reader(old), Writer(new)
@@ -32,7 +37,8 @@ def copy_episode(
             if channel.id not in channels:
                 number = writer.register_schema(schema.name, schema.encoding, schema.data)
                 channels[channel.id] = writer.register_channel(channel.topic, "cdr", number)
-            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+            data = bytes_of(channel.topic, message.data)
+            writer.add_message(channels[channel.id], message.log_time, data, message.publish_time)
         for record in reader.iter_metadata():
             known = record.metadata | {key: value for key, value in (changes or {}).items() if key in record.metadata}
             writer.add_metadata(record.name, {key: value for key, value in known.items() if value is not None})

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import SMALL, InputError, Neighbors
-from crowdbot.core.neighbors import CROWD, nearest
+from crowdbot.core.neighbors import CROWD, FEW, SPARE, dense, nearest
 from samples import sample
 
 
@@ -153,3 +153,36 @@ def test_read_only_arrays_are_fine_and_stay_as_they_are():
 def test_unknown_method():
     with pytest.raises(InputError, match=r"'gird', did you mean 'grid'\?; choose auto, brute, grid"):
         nearest(np.zeros((1, 2, 2)), 5.0, 4, method="gird")
+
+
+@pytest.mark.parametrize("A", [FEW, FEW + 1, FEW + 2, SPARE + 3, SPARE + 40])
+@pytest.mark.parametrize("most", [1, 2, 5, 60])
+def test_brute_force_of_every_size_agrees_with_sorting(A, most):
+    rng = np.random.default_rng(A)
+    position = np.round(rng.uniform(0.0, 4.0, (2, A, 2)))  # many equal distances
+    check_against_twin(position, 3.0, most, seen=rng.random((2, A)) < 0.8)
+
+
+def test_numbers_and_arrays_mean_the_same():
+    position = np.random.default_rng(0).uniform(0.0, 4.0, (3, 9, 2))
+    whole = nearest(position, 2.0, 3)
+    spread = nearest(position, np.full((3, 9), 2.0), np.full(9, 3.0), np.ones((3, 1), bool), np.ones((3, 9), bool))
+    for one, other in zip(whole, spread, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_dense_arrays_are_copied_only_if_necessary():
+    kind = np.dtype(np.float64)
+    plain = np.arange(6.0).reshape(2, 3)
+    assert dense(plain, (2, 3), kind) is plain
+    fixed = plain.copy()
+    fixed.flags.writeable = False
+    for value in (fixed, plain.T.copy().T, plain.astype(np.float32), plain.tolist()):
+        found = dense(value, (2, 3), kind)
+        assert found.flags.carray
+        assert found.dtype == kind
+        np.testing.assert_array_equal(found, plain)
+    np.testing.assert_array_equal(dense([1.0, 2.0, 3.0], (2, 3), kind), [[1.0, 2.0, 3.0]] * 2)
+    np.testing.assert_array_equal(dense(2.5, (2, 3), np.dtype(np.int32)), np.full((2, 3), 2))
+    with pytest.raises(ValueError, match="broadcast"):
+        dense(np.zeros(4), (2, 3), kind)

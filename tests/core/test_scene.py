@@ -1,5 +1,8 @@
 """Scene: shapes, defaults, the step, copies and the digest."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -188,3 +191,129 @@ def test_wrong_values_of_active_agents_are_refused(changes, message):
 
 def test_an_agent_is_absent_for_its_own_sensors():
     assert Scene.of(np.zeros((2, 3, 2))).without(1).active.tolist() == [[True, False, True]] * 2
+
+
+def _advance_with_numpy(scene, velocity, dt):
+    own = scene.active & ~scene.external
+    moved = np.where(own[..., None], velocity, scene.velocity)
+    speed = np.sqrt(moved[..., 0] ** 2 + moved[..., 1] ** 2)
+    turned = np.where(own & (speed > 0.05), np.arctan2(moved[..., 1], moved[..., 0]), scene.heading)
+    return np.where(scene.active[..., None], scene.position + moved * dt, scene.position), moved, turned
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.integers(0, 9), st.sampled_from([0.01, 0.05, 1.0]))
+def test_the_step_of_the_kernel_has_the_bits_of_numpy(seed, envs, agents, dt):
+    rng = np.random.default_rng(seed)
+    shape = (envs, agents, 2)
+    scene = Scene.of(
+        rng.normal(0.0, 9.0, shape),
+        rng.normal(0.0, 0.1, shape),
+        heading=rng.uniform(-4.0, 4.0, shape[:2]),
+        active=rng.random(shape[:2]) < 0.7,
+        external=rng.random(shape[:2]) < 0.3,
+    )
+    wild = np.where(scene.active[..., None], scene.position, np.nan)
+    velocity = rng.normal(0.0, 0.06, shape)
+    for one in (scene, scene.replace(position=wild)):
+        for chosen in (velocity, velocity[..., ::-1], velocity[:1, :1], np.float64(0.25)):
+            later = one.advance(chosen, dt)
+            for found, expected in zip(
+                (later.position, later.velocity, later.heading), _advance_with_numpy(one, chosen, dt), strict=True
+            ):
+                assert found.tobytes() == np.ascontiguousarray(expected).tobytes()
+
+
+def test_a_step_shares_the_arrays_that_it_does_not_change():
+    scene = _pair()
+    later = scene.advance(scene.velocity, 0.5)
+    for name in ("radius", "goal", "preferred_speed", "max_speed", "active", "visible", "external", "group", "walls"):
+        assert getattr(later, name) is getattr(scene, name)
+    assert (scene.time, later.time) == (0.0, 0.5)
+
+
+def test_a_copy_replaces_fields_that_exist():
+    scene = _pair()
+    other = scene.replace(time=2.0, wall_height=1.0)
+    assert (other.time, other.wall_height, scene.time, scene.wall_height) == (2.0, 1.0, 0.0, 3.0)
+    assert type(other) is Scene
+    assert other.position is scene.position
+    with pytest.raises(TypeError, match="Scene has no field 'speed'"):
+        scene.replace(speed=1.0)
+
+
+def test_copies_and_pickles_of_a_scene_are_equal():
+    scene = _pair(walls=[[(0, 1), (9, 1)]], time=[3.0])
+    scene.walls.segments()
+    for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene)), copy.copy(scene)):
+        assert other.digest() == scene.digest()
+        np.testing.assert_array_equal(other.walls.segments(), scene.walls.segments())
+        assert other.time.tolist() == [3.0]
+
+
+def test_environments_may_be_at_different_times():
+    scene = Scene.of(np.zeros((3, 2, 2)), time=[0.0, 1.0, 2.5])
+    later = scene.advance(scene.velocity, 0.5)
+    assert later.time.tolist() == [0.5, 1.5, 3.0]
+    assert scene.time.tolist() == [0.0, 1.0, 2.5]
+    assert later.environments([2, 0, 2]).time.tolist() == [3.0, 0.5, 3.0]
+    assert scene.replace(time=1.0).environments([2, 0]).time == 1.0
+    assert later.without(0).time is later.time
+
+
+@pytest.mark.parametrize("time", [2, 2.0, np.float64(2.0), np.array(2.0)])
+def test_one_time_for_all_environments_is_a_float(time):
+    scene = Scene.of(np.zeros((3, 2, 2)), time=time)
+    assert type(scene.time) is float
+    assert type(scene.advance(scene.velocity, 0.5).time) is float
+    assert scene.advance(scene.velocity, 0.5).time == 2.5
+
+
+def test_a_scene_owns_its_times():
+    times = np.zeros(3)
+    scene = Scene.of(np.zeros((3, 2, 2)), time=times)
+    times[:] = 7.0
+    assert scene.time.tolist() == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        ([0.0, 1.0], r"scene: time has shape \[2\], it must be a number or \[E\] = \[3\]"),
+        (np.zeros((3, 1)), r"scene: time has shape \[3, 1\]"),
+        ([0.0, np.nan, 1.0], "scene: time nan s is not finite"),
+        (np.inf, "scene: time inf s is not finite"),
+    ],
+)
+def test_wrong_times_are_refused(time, message):
+    with pytest.raises(InputError, match=message):
+        Scene.of(np.zeros((3, 2, 2)), time=time)
+
+
+@pytest.mark.parametrize("name", ["position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed"])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_value_that_is_not_finite_is_found_anywhere(name, value):
+    scene = Scene.of(np.zeros((2, 3, 2)))
+    wrong = getattr(scene, name).copy()
+    wrong[1, 2, ...] = value
+    changed = scene.replace(**{name: wrong})
+    with pytest.raises(InputError, match=f"^scene: {name} of an active agent is not finite; mark absent agents"):
+        changed.check()
+    changed.without(2).check()
+    assert not changed.without(2).active[1, 2]
+
+
+@pytest.mark.parametrize("name", ["radius", "active", "visible", "external", "group", "preferred_speed", "heading"])
+def test_values_of_the_wrong_number_of_agents_are_refused(name):
+    for wrong in (np.ones(3), np.ones((1, 1, 2)), np.ones((2, 2))):
+        with pytest.raises(ValueError, match="broadcast|does not fit"):
+            _pair(**{name: wrong})
+
+
+def test_the_arrays_of_a_scene_are_dense_and_its_own():
+    values = np.full((2, 3), 0.5).T.copy().T
+    scene = Scene.of(np.zeros((2, 3, 2))[:, ::-1], np.zeros((1, 3, 2)), radius=values, heading=values, active=[True])
+    for value in vars(scene).values():
+        if isinstance(value, np.ndarray):
+            assert value.flags.carray
+            assert not np.shares_memory(value, values)
+    assert scene.radius.tolist() == values.tolist()

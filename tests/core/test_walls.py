@@ -1,5 +1,11 @@
 """Walls: rings become edges with the right neighbours, corners and sides."""
 
+import copy
+import dataclasses
+import gc
+import pickle
+import weakref
+
 import numpy as np
 import pytest
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
@@ -102,3 +108,38 @@ def test_no_walls_are_empty_arrays():
     walls = Walls.of()
     assert len(walls) == 0
     assert walls.segments().shape == (0, 4)
+
+
+def test_derived_values_are_computed_once_for_each_walls():
+    calls = []
+
+    def count(walls):
+        calls.append(walls)
+        return len(walls)
+
+    one, other = (Walls.of([[(0, 0), (2, 0), (2, k)]]) for k in (1, 2))
+    assert [one.derive(count), one.derive(count), other.derive(count)] == [3, 3, 3]
+    assert [id(call) for call in calls] == [id(one), id(other)]
+    assert one.segments() is one.segments()
+    assert one.segments() is not other.segments()
+
+
+def test_copies_of_walls_derive_their_own_values():
+    walls = Walls.of([[(0, 0), (2, 0)]])
+    plain = pickle.dumps(walls)
+    segments = walls.segments()
+    assert pickle.dumps(walls) == plain
+    moved = dataclasses.replace(walls, start=walls.start + 1.0, end=walls.end + 1.0)
+    assert moved.segments().tolist() == [[1.0, 1.0, 3.0, 1.0]]
+    for same in (copy.deepcopy(walls), pickle.loads(plain), copy.copy(walls)):
+        assert same.segments() is not segments
+        np.testing.assert_array_equal(same.segments(), segments)
+
+
+def test_derived_values_do_not_keep_walls_alive():
+    walls = Walls.of([[(0, 0), (2, 0)]])
+    walls.segments()
+    reference = weakref.ref(walls)
+    del walls
+    gc.collect()
+    assert reference() is None

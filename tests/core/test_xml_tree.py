@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from crowdbot.core import (
     Element,
@@ -126,3 +128,10 @@ def test_numbers_in_plain_notation(text: str) -> None:
 def test_other_texts_are_not_numbers(text: str, words: str) -> None:
     with pytest.raises(InputError, match=f"^{words}$"):
         parse_number(text, "is no length")
+
+
+@given(st.text(alphabet="ab&<>\"'\n\r\t;", max_size=12))
+def test_attributes_are_quoted_as_the_standard_library_does(value: str) -> None:
+    from xml.sax.saxutils import quoteattr
+
+    assert f"a={quoteattr(value)}/>" in format_xml(Element("trial", {"a": value}))

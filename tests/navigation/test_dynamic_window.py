@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from exhaustive_window import Start, cost_of, exhaustive_twist, people_of, walls_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import Twist, Walls, stream
 from crowdbot.navigation import DriveLimits, Observation, VisiblePeople, WindowCosts, dynamic_window_twist
-from crowdbot.navigation.dynamic_window import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
+from crowdbot.navigation.window_search import MATCH, STEP, WINDOW
 
 LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 few = settings(max_examples=40, deadline=None)
@@ -38,7 +39,7 @@ def segment_distance(a, b):
     return float(np.min(np.hypot(*(a + share * (b - a)).T)))
 
 
-def slow_cost(forward, turn, seen, wish, caution):
+def slowcost_of(forward, turn, seen, wish, caution):
     """The twin: follow the way, then look at it as a whole."""
     steps = round(caution.look / STEP)
     place, heading, v, w = [np.zeros(2)], [seen.heading], seen.twist.forward, seen.twist.turn
@@ -70,9 +71,9 @@ def slow_cost(forward, turn, seen, wish, caution):
 def test_the_cost_is_that_of_the_slow_twin(seed, forward, turn, x, y):
     seen, wish = observed(seed), np.array([x, y])
     caution = WindowCosts(near=1.7, contact=0.0, wall=3.0, facing=0.6)  # the jump at a contact is tested below
-    start = _Start(seen.heading, seen.twist.forward, seen.twist.turn, 0.3, STEP, 3.0 * STEP)
-    fast = _cost(forward, turn, start, wish, _people(seen), _walls(seen), caution)
-    assert fast == pytest.approx(slow_cost(forward, turn, seen, wish, caution), abs=0.02)
+    start = Start(seen.heading, seen.twist.forward, seen.twist.turn, 0.3, STEP, 3.0 * STEP)
+    fast = cost_of(forward, turn, start, wish, people_of(seen), walls_of(seen), caution)
+    assert fast == pytest.approx(slowcost_of(forward, turn, seen, wish, caution), abs=0.02)
 
 
 def test_a_contact_costs_the_more_the_sooner():
@@ -80,8 +81,8 @@ def test_a_contact_costs_the_more_the_sooner():
     for away in (0.8, 1.0, 1.3, 4.0):
         person = VisiblePeople(np.array([[away, 0.0]]), np.zeros((1, 2)), np.array([0.3]))
         seen = Observation(pose=(0, 0, 0), goal=(9, 0), radius=0.3, limits=LIMITS, dt=0.1, people=person)
-        start = _Start(0.0, 1.0, 0.0, 0.3, STEP, 3.0 * STEP)
-        costs.append(_cost(1.0, 0.0, start, np.array([1.0, 0.0]), _people(seen), _walls(seen), WindowCosts()))
+        start = Start(0.0, 1.0, 0.0, 0.3, STEP, 3.0 * STEP)
+        costs.append(cost_of(1.0, 0.0, start, np.array([1.0, 0.0]), people_of(seen), walls_of(seen), WindowCosts()))
     assert sorted(costs, reverse=True) == costs
     assert costs[0] > 8.0
     assert costs[-1] == pytest.approx(0.0, abs=1e-12)
@@ -131,3 +132,21 @@ def test_with_unknown_accelerations_it_works_too():
 def test_same_input_same_twist():
     one, two = (dynamic_window_twist(observed(11, count=20), (0.7, 0.4), speed=1.0) for _ in range(2))
     assert one == two
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_search_finds_the_bits_of_trying_every_candidate(seed):
+    rng = stream(seed, "search")
+    for k in range(60):
+        seen = observed(1000 * seed + k, count=int(rng.integers(0, 15)))
+        wish, speed = (float(rng.normal()), float(rng.normal())), float(rng.uniform(0.2, 1.2))
+        low, high = [0.3, 0.05, 0.1, 0.0, 0.1, 0.02, 0.1, 0.0], [3.0, 0.5, 2.0, 0.2, 10.0, 0.5, 20.0, 1.0]
+        caution = WindowCosts(*rng.uniform(low, high).tolist()) if k % 2 else None
+        assert dynamic_window_twist(seen, wish, speed, caution) == exhaustive_twist(seen, wish, speed, caution)
+
+
+def test_negative_weights_are_searched_completely():
+    reward = WindowCosts(near=-0.5, wall=-0.1)
+    for seed in range(20):
+        seen = observed(seed)
+        assert dynamic_window_twist(seen, (0.6, 0.3), 1.0, reward) == exhaustive_twist(seen, (0.6, 0.3), 1.0, reward)

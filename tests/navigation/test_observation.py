@@ -80,7 +80,7 @@ def test_it_slows_near_the_goal():
 
 @pytest.mark.parametrize("goal", [(4.0, 0.0), (-3.0, 1.0), (0.0, -2.0), (0.05, 0.4), (-0.3, 0.0)])
 def test_the_drive_arrives_and_stops_there(goal):
-    drive = DifferentialDrive(*LIMITS)
+    drive = DifferentialDrive(*LIMITS[:4])
     pose, twist = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1)
     for _ in range(150):
         here = (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0]))
@@ -123,3 +123,24 @@ def test_wrong_values_are_explained(changes, message):
 def test_nobody_is_an_empty_crowd():
     assert len(VisiblePeople.none()) == 0
     assert VisiblePeople.none().position.shape == (0, 2)
+
+
+def test_people_have_ids_and_the_waypoint_is_the_goal_by_default():
+    seen = Observation.of(crowd(), 0, LIMITS, dt=0.1)
+    assert seen.people.ids.tolist() == [1, 2]
+    numbered = Observation.of(crowd(), 0, LIMITS, dt=0.1, ids=np.array([10, 21, 35, 4]))
+    assert numbered.people.ids.tolist() == [21, 35]
+    assert VisiblePeople(np.zeros((2, 2)), np.zeros((2, 2)), np.ones(2)).ids.tolist() == [0, 1]
+    assert (alone().waypoint, alone().remaining) == ((4.0, 0.0), 4.0)
+    assert (alone().readings, alone().odometry, alone().scan, alone().tracks) == ({}, None, None, None)
+
+
+def test_it_drives_to_the_waypoint_and_slows_by_the_length_of_the_path():
+    aside = alone(waypoint=(0.0, 0.4))
+    assert aside.bearing == 0.0
+    assert aside.direction_to(aside.waypoint) == pytest.approx(math.pi / 2)
+    assert aside.remaining == pytest.approx(0.4 + math.hypot(4.0, 0.4))
+    assert aside.towards_goal(0.8) == Twist(0.0, 2.0, 0.0)
+    assert alone(waypoint=(0.1, 0.0)).towards_goal(0.8).forward == 0.8
+    with pytest.raises(InputError, match="observation: waypoint = \\(nan, 0.0\\) is not finite"):
+        alone(waypoint=(math.nan, 0.0))

@@ -90,13 +90,13 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     with Recorder(path, tally) as recorder:
         for k in range(8):
             frame = physical(
-                simulation.frame(due=k % 2 == 0),
+                simulation.record(due=k % 2 == 0),
                 forces=(FORCE, FORCE._replace(second=WALL, limb="", part="")) if k == 3 else (),
                 collisions=(HIT, GRAZED) if k == 6 else (),
             )
             tally.take(frame)
             recorder.take(frame)
-            simulation.step()
+            simulation.advance()
         recorder.complete("collision", 8)
     return path, tally.digest.hexdigest("collision")
 
@@ -133,10 +133,10 @@ def test_they_count_for_the_digest_and_a_world_without_them_is_as_before() -> No
     sums = []
     for more in ({}, {"forces": (FORCE,)}, {"forces": (FORCE._replace(force=85.6),)}, {"collisions": (HIT,)}):
         digest = EpisodeDigest()
-        digest.take(physical(simulation.frame(), **more))
+        digest.take(physical(simulation.record(), **more))
         sums.append(digest.hexdigest("x"))
     plain = EpisodeDigest()
-    plain.take(simulation.frame())
+    plain.take(simulation.record())
     assert len(set(sums)) == 4
     assert plain.hexdigest("x") == sums[0]
 

@@ -22,7 +22,7 @@ from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import branch, export, open_run, read_episode, record, repair, replay
 from crowdbot.rendering import ImageWriter, RenderedImage
 from crowdbot.sensors import Scan, Sensor, SensorView
-from crowdbot.simulation import RunFailureWarning, Simulation, run_batch, simulate
+from crowdbot.simulation import RunFailureWarning, Simulation, simulate, simulate_seeds
 from crowdbot.trials import Mount, Trial, parse_trial
 from trial_texts import GOOD
 
@@ -60,9 +60,10 @@ class Stuck(CrowdModel):
 
 
 class Broken:
-    def exchange(self, simulation: Simulation, readings: Any) -> None:
+    def orders(self, simulation: Simulation) -> Any:
         if simulation.tick == 5:
             raise OSError("connection lost")
+        return []
 
 
 def line_of(text: str) -> int:
@@ -255,13 +256,13 @@ def test_every_exception_ends_an_episode(changes: dict[str, Any], message: str, 
     assert "Traceback" in episode.failure.trace
     assert len(episode.times) >= 1
     with pytest.warns(RunFailureWarning):
-        together = run_batch(trial, [3, 4])
+        together = simulate_seeds(trial, [3, 4])
     assert together[0].digest == episode.digest
     assert together[0].failure == episode.failure
 
 
-def test_an_exception_of_a_bridge(tmp_path: Path) -> None:
-    with open_run(TRIAL, out=tmp_path, bridges=[Broken()]) as running:
+def test_an_exception_of_a_source(tmp_path: Path) -> None:
+    with open_run(TRIAL, out=tmp_path, sources=[Broken()]) as running:
         while running.outcome is None:
             running.step()
     assert running.outcome == "error"

@@ -235,7 +235,7 @@ WRONG = {
     ),
     "rate": (
         ["--to", "0.4", "--fps", "30"],
-        r"the rate 30 Hz gives a period of 0.0333333 s, which is not a multiple of the time step 0.04 s; the nearest",
+        r"the rate 30 Hz gives a period of 0.0333333 s, which is shorter than the time step 0.04 s; the highest",
     ),
     "negative rate": (["--to", "0.4", "--fps", "-5"], r"the rate -5 Hz must be finite and above 0"),
     "no world": (["--world", "physic"], r"--world physic must be planar or physics, did you mean 'physics'\?"),

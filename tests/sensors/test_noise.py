@@ -126,3 +126,56 @@ def test_noise_needs_a_generator():
         apply_noise(np.ones((1, 2)), (Gaussian(0.1),), None)
     with pytest.raises(InputError, match="2 generators were given for 3 environments"):
         apply_noise(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])
+
+
+class Louder(Gaussian):
+    """Gaussian noise with its own rule."""
+
+    def apply(self, values, rng):
+        return values + 2.0 * self.draw(values.shape, rng)
+
+
+NOISES = (
+    (Gaussian(0.1),),
+    (Gaussian(0.0),),
+    (Peak(0.3, 1.0),),
+    (Peak(0.3, 1.0, 0.2),),
+    (Dropout(0.3),),
+    (Louder(0.1),),
+    (Gaussian(0.1), Offset(-0.2), Peak(0.2, 0.5), Peak(0.2, 0.5, 0.1), Dropout(0.2), Quantised(0.125)),
+)
+
+
+@pytest.mark.parametrize("noise", NOISES, ids=str)
+@pytest.mark.parametrize("shape", [(4,), (4, 7), (4, 3, 5), (1, 9), (4, 0), (0, 3)], ids=str)
+@pytest.mark.parametrize("shared", ["none", "all", "two"])
+def test_a_batch_draws_the_streams_of_its_environments(noise, shape, shared):
+    """The bytes and the later draws equal those of :meth:`Noise.apply`, environment by environment."""
+
+    def generators():
+        own = [stream(4, "noise", e) for e in range(shape[0])]
+        return own if shared == "none" else own[:1] * shape[0] if shared == "all" else own[:2] * (shape[0] // 2 + 1)
+
+    values = stream(5).normal(size=shape)
+    values[values > 1.0] = np.inf
+    values[values < -1.0] = -0.0
+    slow, ours, theirs = values.copy(), generators()[: shape[0]], generators()[: shape[0]]
+    for row, rng in enumerate(theirs):
+        for part in noise:
+            slow[row] = part.apply(slow[row], rng)
+    before = values.tobytes()
+    fast = apply_noise(values, noise, ours)
+    assert fast.tobytes() == slow.tobytes()
+    assert values.tobytes() == before
+    assert [rng.random() for rng in ours] == [rng.random() for rng in theirs]
+
+
+def test_normal_draws_equal_scaled_standard_draws():
+    for seed, sd in enumerate([0.0, 1e-300, 0.02, 0.1, 1.0, 3.7]):
+        scaled = abs(sd) * stream(seed).standard_normal(10_000) + 0.0
+        assert stream(seed).normal(0.0, sd, 10_000).tobytes() == scaled.tobytes()
+
+
+def test_a_number_of_generators_that_does_not_fit_is_rejected():
+    with pytest.raises(InputError, match="2 generators were given for 3 environments"):
+        apply_noise(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])

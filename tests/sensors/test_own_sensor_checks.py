@@ -11,6 +11,7 @@ import pytest
 
 from crowdbot.core import InputError
 from crowdbot.sensors import IMU, Bumper, GroundTruthPeople, Lidar2D, Sensor, SensorView, WheelOdometry, check_sensor
+from crowdbot.sensors.noise import normals
 from crowdbot.sensors.sensor import Reading
 
 Rule = Callable[[SensorView, Any, np.random.Generator], Any]
@@ -67,6 +68,12 @@ class Chance:
         (lambda view, state, rng: (Count(view.time, view.pose, count(view)[:1] + len(view.scene.active)), state),
          r"count has shape \[1\] in 2 environments; the first axis must be the environments"),
         (lambda view, state, rng: (reading(view, len(view.scene.active)), state), "the same values"),
+        (lambda view, state, rng: (reading(view, rng.random()), state), "fails with a list of one random generator"),
+        (lambda view, state, rng: (reading(view, float(view.time)), state), "or with a time for each environment"),
+        (lambda view, state, rng: (Count(np.max(view.time), view.pose, count(view)), state),
+         r"the time of the reading is 5.0 s, it must be \[0. 5.\] s"),
+        (lambda view, state, rng: (reading(view, np.max(state)), state + 1), "count of an environment differs"),
+        (lambda view, state, rng: (reading(view), {1, 2}), "state of Own is a set, which has no environments"),
     ],
 )  # fmt: skip
 def test_a_sensor_that_breaks_a_rule_is_told_which(rule: Rule, message: str) -> None:
@@ -79,7 +86,10 @@ def test_a_sensor_that_breaks_a_rule_is_told_which(rule: Rule, message: str) -> 
     [
         sensor(plain),
         sensor(
-            lambda view, state, rng: (Count(view.time, view.pose, count(view) + rng.integers(9), f"{state}"), state + 1)
+            lambda view, state, rng: (
+                Count(view.time, view.pose, count(view) + normals((view.environments,), rng), f"{state}"),
+                state + 1,
+            )
         ),
         sensor(lambda view, state, rng: (Count(view.time, view.pose, np.array(3.0)), state)),
     ],

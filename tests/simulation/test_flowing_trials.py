@@ -251,7 +251,7 @@ def test_people_of_a_source_walk_by_the_model_of_their_crowd() -> None:
     one = SourceSpec(zone=box(0, 0), goal=box(9, 0), rate=1.0, timing="regular", crowd="hurried", max_count=3)
     simulation = Simulation(trial(crowd=crowds, sources=[one]), 0)
     for _ in range(60):
-        simulation.step()
+        simulation.advance()
     scene = simulation.world.scene
     assert scene.memory["model"][0, scene.active[0]].tolist() == [1.0, 1.0, 1.0]
 

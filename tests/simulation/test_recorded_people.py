@@ -63,7 +63,7 @@ def farthest(trial: Trial) -> tuple[float, int]:
         assert np.array_equal(scene.active[0, : len(walks)], inside)
         if simulation.tick >= trial.ticks:
             return worst, seen
-        simulation.step()
+        simulation.advance()
 
 
 WHOLE = [("zara", 1, 5153), ("eth", 2, 8908), ("juelich", 1, 63110)]
@@ -85,7 +85,7 @@ def test_everybody_is_where_the_whole_recording_has_them_at_every_frame(
 def test_velocity_and_heading_are_those_of_the_recording(track: Path) -> None:
     simulation = Simulation(recorded_trial(track, fps=25.0), 0)
     for _ in range(30):
-        simulation.step()
+        simulation.advance()
     scene = simulation.world.scene
     assert np.allclose(scene.velocity[0], [[1.25, 0.0], [1.25, 0.0]])
     assert np.allclose(scene.heading, 0.0)
@@ -145,7 +145,7 @@ def test_reactive_people_of_real_recordings_end_where_they_ended(name: str, reco
     last = np.full((len(walks), 2), np.nan)
     for _ in range(trial.ticks):
         before = simulation.world.scene
-        simulation.step()
+        simulation.advance()
         gone = before.active[0] & ~simulation.world.scene.active[0]
         for agent in np.flatnonzero(gone[: len(walks)]):
             last[agent] = before.position[0, agent]

@@ -20,6 +20,7 @@ from crowdbot.simulation import (
     simulate,
     start_scene,
 )
+from crowdbot.simulation.simulation import SUCCESS
 from crowdbot.trials import Trial, parse_trial, place
 from trial_texts import GOOD
 
@@ -79,7 +80,7 @@ def test_a_robot_with_a_new_goal_has_not_arrived_yet(x: float, ended: str) -> No
     running = SimulationRun(simulation)
     while running.step() is None and simulation.tick < 2 * PERIOD:
         pass
-    assert simulation.event == "success"
+    assert simulation.event.tolist() == [SUCCESS]
     apply_overrides(simulation, with_goal(trial, x))
     assert run_to_end(simulation, [], StopRequest()) == ended
 

@@ -18,7 +18,7 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import open_run, read_episode, record
 from crowdbot.sensors import Lidar2D, SensorView
-from crowdbot.simulation import EpisodeStatistics, Simulation, SimulationRun, StepRecord
+from crowdbot.simulation import EpisodeStatistics, Order, Simulation, SimulationRun, StepRecord, VelocityOrder
 from crowdbot.trials import Trial, parse_trial
 from crowdbot.world import DifferentialDrive
 from trial_texts import BRIEF_FLOW, GOOD
@@ -62,11 +62,11 @@ class Pilot(Navigator):
 
 
 class Wire:
-    """A bridge that gives every robot another command."""
+    """A source that gives every robot another command."""
 
-    def exchange(self, simulation: Simulation, readings: Any) -> None:
-        EVENTS.append(("bridges", simulation.world.scene.time))
-        simulation.ask("robot", Twist(0.25))
+    def orders(self, simulation: Simulation) -> list[Order]:
+        EVENTS.append(("orders", simulation.world.scene.time))
+        return [VelocityOrder(robot="robot", forward=0.25)]
 
 
 class Book:
@@ -101,7 +101,7 @@ def watched(monkeypatch: pytest.MonkeyPatch, world: str) -> Simulation:
     return simulation
 
 
-BEGIN = [("sensors", 0.0), ("navigators", 0.0), ("bridges", 0.0), ("recorder", 0.0)]
+BEGIN = [("sensors", 0.0), ("navigators", 0.0), ("orders", 0.0)]
 OLD, NEW = 0.0, 0.05
 
 
@@ -119,6 +119,7 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
     EVENTS.clear()
     running.step()
     assert [
+        ("recorder", OLD),
         ("time", OLD),
         ("crowd", OLD),
         ("robots", 0.0),
@@ -126,8 +127,7 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
         ("people's bodies", NEW),
         ("sensors", NEW),
         ("navigators", NEW),
-        ("bridges", NEW),
-        ("recorder", NEW),
+        ("orders", NEW),
     ] == EVENTS
 
 
@@ -161,6 +161,7 @@ def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatc
         running.step()
         new = round(old + 0.05, 9)
         assert [
+            ("recorder", old),
             ("time", old),
             ("crowd", old),
             ("robots", old),
@@ -169,10 +170,9 @@ def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatc
             ("people's bodies", new),
             ("sensors", new),
             ("navigators", new),
-            ("bridges", new),
-            ("recorder", new),
+            ("orders", new),
         ] == [(what, round(time, 9)) for what, time in EVENTS]
-    assert asked == [0.25, 0.25, 0.25], "the bridge spoke after the navigator, and was obeyed in the next step"
+    assert asked == [0.25, 0.25, 0.25], "the order came after the navigator, and was obeyed in the next step"
 
 
 def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path | None = None) -> str:
@@ -205,11 +205,10 @@ def test_however_time_comes_the_digest_is_the_same(pauses: list[int]) -> None:
     assert driven(TRIAL, ExternalClock(0.05), times) == driven(TRIAL, None, None)
 
 
-def test_a_paced_run_gives_the_same_bytes_and_takes_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_paced_run_gives_the_same_bytes_and_takes_its_time() -> None:
     slept: list[float] = []
-    monkeypatch.setattr("crowdbot.core.clock.time.monotonic", lambda: sum(slept))
-    monkeypatch.setattr("crowdbot.core.clock.time.sleep", slept.append)
-    assert driven(TRIAL, PacedClock(0.05, rate=8.0), None) == driven(TRIAL, None, None)
+    clock = PacedClock(0.05, rate=8.0, monotonic=lambda: sum(slept), sleep=slept.append)
+    assert driven(TRIAL, clock, None) == driven(TRIAL, None, None)
     assert sum(slept) == pytest.approx(TRIAL.ticks * 0.05 / 8.0)
 
 
@@ -224,7 +223,7 @@ def test_clocks_that_do_not_fit_are_refused() -> None:
     with pytest.raises(InputError, match="external time went back"):
         running.until(100_000_000)
     with pytest.raises(InputError, match="there is no robot 'rob'; the trial has robot"):
-        running.simulation.ask("rob", Twist())
+        running.step([VelocityOrder(robot="rob")])
 
 
 def test_a_run_that_has_ended_is_not_stepped_on() -> None:
@@ -246,10 +245,10 @@ def test_who_closes_a_run_early_interrupts_it(tmp_path: Path) -> None:
 
 def test_a_bridge_steers_and_contacts_are_recorded(tmp_path: Path) -> None:
     class Ram:
-        def exchange(self, simulation: Simulation, readings: Any) -> None:
-            simulation.ask("robot", Twist(1.0, 0.0))
+        def orders(self, simulation: Simulation) -> list[Order]:
+            return [VelocityOrder(robot="robot", forward=1.0)]
 
-    with open_run(TRIAL, out=tmp_path, bridges=[Ram()]) as running:
+    with open_run(TRIAL, out=tmp_path, sources=[Ram()]) as running:
         while running.outcome is None:
             running.step()
     read = read_episode(tmp_path / "episode.mcap")

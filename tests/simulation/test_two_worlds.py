@@ -12,7 +12,8 @@ import pytest
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
 from crowdbot.recording import branch, open_run, read_episode, record, replay, run
 from crowdbot.sensors import Lidar2D, RgbImage, TrackedPeople
-from crowdbot.simulation import Simulation, SimulationRun, run_to_end
+from crowdbot.simulation import Order, Simulation, SimulationRun, run_to_end
+from crowdbot.simulation.simulation import COLLISION
 from crowdbot.trials import (
     Trial,
     builtin_trials,
@@ -124,12 +125,13 @@ def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
     arrived = []
 
     class Listener:
-        def exchange(self, simulation: Simulation, readings: object) -> None:
-            for _, mount, reading in readings:  # type: ignore[attr-defined]
+        def orders(self, simulation: Simulation) -> list[Order]:
+            for _, mount, reading in simulation.new_readings():
                 if mount.name == "wheels":
                     arrived.append((simulation.tick, round(reading.time / 0.04)))
+            return []
 
-    running = SimulationRun(simulation, bridges=[Listener()])
+    running = SimulationRun(simulation, sources=[Listener()])
     while simulation.tick < 6:
         running.step()
     assert arrived == [(k + 2, k) for k in range(5)]
@@ -178,7 +180,7 @@ def test_a_ray_above_a_cube_passes_over_it(world: str) -> None:
     simulation = Simulation(parse_trial(room(world, LEAN, bodies="limbs")), 4)
     robot = simulation.robots[0].agent
     low, high = (
-        Lidar2D(rays=1).read(simulation.around.space.without(robot), simulation.world.pose(robot).to_spatial(height))
+        Lidar2D(rays=1).read(simulation.around.space(0).without(robot), simulation.world.pose(robot).to_spatial(height))
         for height in (0.3, 1.2)
     )
     assert low.ranges[0, 0] == pytest.approx(1.7)  # from x = 2 m to the cube of 0.6 m around x = 4 m
@@ -197,9 +199,9 @@ def test_a_cube_is_pushed_in_physics() -> None:
         running.step()
     world: object = simulation.world
     assert world.prop(0)[0, 3] > 4.3  # type: ignore[attr-defined]
-    scan = simulation.robots[0].readings["scan"]
+    scan = next(sensor for sensor in simulation.robots[0].sensors if sensor.name == "scan").reading(0)
     assert scan.ranges[0, 30] < 0.7  # type: ignore[attr-defined]
-    wall = [touch for touch in simulation.touches if touch.other == -2]
+    wall = [contact for contact in simulation.contacts() if contact.other == -2]
     assert not wall
 
 
@@ -229,7 +231,7 @@ def test_collisions_and_forces_are_told_once() -> None:
         assert min(abs(stamp - one.begin) for stamp in forced) <= trial.step + 1e-9
         assert any(one.begin < stamp <= one.end + trial.step for stamp in forced)
     assert max(one.end for one in told) > max(forced) - trial.step - 1e-9
-    assert simulation.event == "collision"
+    assert simulation.event.tolist() == [COLLISION]
 
 
 WRONG = {
@@ -270,12 +272,6 @@ WRONG = {
     ),
     "a link of nobody": ('robot="pepper" link="Head"', 'link="Head"', r"link=\"Head\" needs robot"),
     "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is already used by another camera"),
-    "a rate of a type": (
-        'sensor-rates="nearest" ',
-        'sensor-rates="exact" ',
-        r"sensors of its type that do not measure after whole time steps of 0.04 s: base_laser_front 6.66667 Hz, .*",
-    ),
-    "a delay": ('delay="0.08"', 'delay="0.07"', r"delay 0.07 s is not a whole number of time steps"),
     "a prop": ('size="0.3"', 'size="0"', r"<cube> size=\"0\" must be at least 0.001 m"),
     "in a prop": ('x="7" y="2.2"', 'x="9" y="6.5"', r"<agent> stands at 9,6.5, 0.00 m from a wall"),
 }

@@ -132,7 +132,9 @@ KINDS = (
     Kind('safety="0.1"', 'safety="-0.1"', "<navigator> .* must be finite and at least 0 m, without an upper limit"),
     Kind('rays="90"', 'rays="0"', "<sensor> .* must be a whole number of at least 1 and at most 1000000"),
     Kind('type="bumper"', "", "<sensor> needs the attribute 'type'"),
-    Kind('rate="10"', 'rate="7"', "<sensor> rate 7 Hz: 0.142857 s is not a whole number of time steps", ('rays="90"',)),
+    Kind(
+        'rate="10"', 'rate="40"', "<sensor> rate 40 Hz: 0.025 s is shorter than the time step of 0.05 s", ('rays="90"',)
+    ),
     Kind('type="straight"', 'type="strait"', "<navigator> unknown navigator 'strait', did you mean 'straight'"),
     Kind('width="24"', 'width="fast"', "<sensor> width: 'fast' is not a int"),
     Kind('type="pepper"', 'type="peper"', "<robot> type=.peper. is not a robot, did you mean 'pepper'"),
@@ -178,8 +180,10 @@ KINDS = (
     ),
     Kind('<goal x="-4" y="3"', '<goal x="0" y="-4.5"', "<robot> has its goal at 0,-4.5 inside obstacle 2", back=1),
     # periods, elements, sweeps
-    Kind('control-period="0.1"', 'control-period="0.07"', "<robot> control-period 0.07 s is not a whole number"),
-    Kind('period="0.2"', 'period="0.12"', "<recording> recording period 0.12 s is not a whole number"),
+    Kind(
+        'control-period="0.1"', 'control-period="0.03"', "<robot> control-period 0.03 s is shorter than the time step"
+    ),
+    Kind('period="0.2"', 'period="0.02"', "<recording> recording period 0.02 s is shorter than the time step"),
     Kind('markers="1"', 'markers="0"', "<recording> markers=.0. must be above 0 s and at most 1000000 s"),
     Kind("<contact ", "<contct ", "<contct> is not an element of <trial>, did you mean 'contact'"),
     Kind('<source name="west"', '<sorce name="west"', "<sorce> is not an element of <trial>, did you mean 'source'"),

@@ -224,15 +224,15 @@ MISTAKES = {
     "noise": ("gaussian(0.01)", "gausian(0.01)", r":14: <sensor> .*unknown noise 'gausian'.*did you mean 'gaussian'"),
     "period": (
         "<end ",
-        '<recording period="0.12"/><end ',
-        r"<recording> recording period 0.12 s is not a whole number",
+        '<recording period="0.02"/><end ',
+        r"<recording> recording period 0.02 s is shorter than the time step of 0.05 s; take at least 0.05 s",
     ),
     "sensor rate": (
         'rays="90"',
-        'rate="7"',
-        r":14: <sensor> rate 7 Hz: 0.142857 s is not a whole number",
+        'rate="40"',
+        r":14: <sensor> rate 40 Hz: 0.025 s is shorter than the time step of 0.05 s; take at least 0.05 s, or a",
     ),
-    "control period": ('x="-2"', 'x="-2" control-period="0.07"', r":10: <robot> control-period 0.07 s is not a whole"),
+    "control period": ('x="-2"', 'x="-2" control-period="0.03"', r":10: <robot> control-period 0.03 s is shorter"),
     "zone in an obstacle": (
         "-5,-2 -3,-2 -3,1 -5,1",
         "0.2,1.7 0.8,1.7 0.8,2.3",

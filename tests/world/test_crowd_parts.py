@@ -119,7 +119,7 @@ def test_replayed_people_are_between_their_rows(seed: int, time: float) -> None:
         rows = np.sort(rng.choice(np.arange(0.0, 5.0, 0.25), int(rng.integers(1, 8)), replace=False))
         tracks.append(ReplayedTrack(agent, rows, rng.normal(size=(len(rows), 2))))
     replayed = ReplayedPeople(tracks)
-    place, pace = replayed._rows.at(time)
+    (place,), (pace,) = replayed._rows.at(np.array([time]))
     for k, track in enumerate(tracks):
         expected = [np.interp(time, track.time, track.position[:, axis]) for axis in (0, 1)]
         np.testing.assert_allclose(place[k], expected, atol=1e-6)

@@ -65,19 +65,6 @@ def test_a_step_advances_scene_and_clock(kind):
 
 
 @each_world
-def test_a_step_as_a_generator_is_the_same_step(kind):
-    one, other = build(kind), build(kind)
-    for _ in range(3):
-        scene = one.step({0: Twist(0.5, 0.2)})
-        asking = other.step_requests({0: Twist(0.5, 0.2)})
-        request = next(asking)
-        with pytest.raises(StopIteration) as done:
-            asking.send(request.model.step(request.scene, request.dt, request.rng))
-        assert done.value.value is other.scene
-        assert scene.digest() == other.scene.digest()
-
-
-@each_world
 def test_without_contact_there_are_no_forces(kind):
     world = build(kind)
     for _ in range(3):

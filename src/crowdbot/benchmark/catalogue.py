@@ -114,9 +114,9 @@ def _first_line(thing: Any) -> str:
 
 
 def _trials() -> dict[str, str]:
-    from crowdbot.trials import PRESETS, builtin_trials, load_trial
+    from crowdbot.trials import trial_titles
 
-    return {name: (PRESETS.get(name) or load_trial(name)).about for name in builtin_trials()}
+    return trial_titles()
 
 
 def _experiments() -> dict[str, str]:

@@ -42,15 +42,16 @@ from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
 from .system_errors import explain_write_errors
+from .tick_schedule import TickSchedule, whole_ticks
 from .version import source_digest
 from .walls import Walls
-from .workers import each, run_saved_jobs
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling
     from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .neighbors import CHUNK, SMALL, Neighbors
+    from .workers import each, run_saved_jobs
 
 __getattr__, __dir__ = lazy_exports(
     __name__,
@@ -58,6 +59,7 @@ __getattr__, __dir__ = lazy_exports(
         "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
+        "workers": ["each", "run_saved_jobs"],
         "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
     },
 )
@@ -94,6 +96,7 @@ __all__ = [
     "Scene",
     "Skins",
     "SpatialPose",
+    "TickSchedule",
     "TrialError",
     "Twist",
     "UnknownName",
@@ -140,6 +143,7 @@ __all__ = [
     "sources_of",
     "stream",
     "unread_fields",
+    "whole_ticks",
     "without_running_code",
     "wrap_angle",
 ]

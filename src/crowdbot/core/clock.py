@@ -5,14 +5,19 @@ The wall clock never affects the result of a simulation; :class:`PacedClock` rea
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from .errors import InputError
+from .tick_schedule import SECOND, TickSchedule
 
-__all__ = ["Clock", "ExternalClock", "FreeClock", "PacedClock"]
+__all__ = ["MAX_LAG", "Clock", "ExternalClock", "FreeClock", "PacedClock"]
 
-SECOND = 1_000_000_000
+MAX_LAG = 0.25
+"""Longest delay [s] that a paced clock catches up."""
 
 
 @dataclass
@@ -55,6 +60,19 @@ class Clock:
             raise InputError(f"period {period} s is not a whole number of time steps of {self.dt} s")
         return ticks
 
+    def schedule(self, period: float) -> TickSchedule:
+        """Return the ticks at which something with a period [s] is due.
+
+        Raises:
+            InputError: the period is not finite, or shorter than the time step.
+
+        >>> FreeClock(0.05).schedule(0.12).next_due(1)
+        3
+        """
+        if not math.isfinite(period):
+            raise InputError(f"period {period} s must be finite and at least the time step of {self.dt:g} s")
+        return TickSchedule(self.step_ns, round(period * SECOND))
+
     def advance(self) -> None:
         """Advance by one tick."""
         self.tick += 1
@@ -66,25 +84,66 @@ class FreeClock(Clock):
 
 @dataclass
 class PacedClock(Clock):
-    """Limits simulated time to ``rate`` times real time by waiting."""
+    """Limits simulated time to ``rate`` times real time by waiting.
+
+    A late tick is caught up, without waiting, if it is at most ``MAX_LAG`` late; after a longer gap, the schedule
+    starts anew from there. The rate may change while the clock runs; it applies from the next tick on.
+
+    Args:
+        rate: simulated seconds per real second, above 0.
+        monotonic: source of real time [s].
+        sleep: function that waits for a time [s].
+
+    >>> clock = PacedClock(0.05, rate=50.0)
+    >>> clock.pause()
+    >>> clock.advance()
+    >>> clock.resume()
+    >>> clock.tick, clock.paused
+    (1, False)
+    """
 
     rate: float = 1.0
-    _begin: float | None = field(default=None, init=False, repr=False)
+    monotonic: Callable[[], float] = field(default=time.monotonic, compare=False, repr=False)
+    sleep: Callable[[float], None] = field(default=time.sleep, compare=False, repr=False)
+    _due: float | None = field(default=None, init=False, compare=False, repr=False)
+    _lag: float | None = field(default=None, init=False, compare=False, repr=False)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not self.rate > 0.0:
-            raise InputError(f"rate {self.rate} of a paced clock must be above 0")
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set a field; the rate must be above 0 and finite."""
+        if name == "rate" and not 0.0 < value < math.inf:
+            raise InputError(f"rate {value} of a paced clock must be above 0 and finite")
+        super().__setattr__(name, value)
+
+    @property
+    def paused(self) -> bool:
+        """Whether the clock is paused."""
+        return self._lag is not None
+
+    def pause(self) -> None:
+        """Stop the schedule until :meth:`resume`; without effect if paused."""
+        if self._lag is None:
+            self._lag = 0.0 if self._due is None else self.monotonic() - self._due
+
+    def resume(self) -> None:
+        """Continue the schedule where it was paused; without effect if not paused."""
+        if self._lag is not None:
+            self._due = self.monotonic() - self._lag
+            self._lag = None
 
     def advance(self) -> None:
-        """Advance by one tick and sleep until it is due."""
-        now = time.monotonic()
-        if self._begin is None:
-            self._begin = now - self.time / self.rate
+        """Advance by one tick and sleep until it is due; a paused clock advances immediately, for single steps."""
+        if self._lag is not None:
+            super().advance()
+            return
+        if self._due is None:
+            self._due = self.monotonic()
         super().advance()
-        ahead = self._begin + self.time / self.rate - time.monotonic()
-        if ahead > 0.0:
-            time.sleep(ahead)
+        self._due += self.step_ns / SECOND / self.rate
+        now = self.monotonic()
+        if now < self._due:
+            self.sleep(self._due - now)
+        elif now - self._due > MAX_LAG:
+            self._due = now
 
 
 class ExternalClock(Clock):

@@ -16,7 +16,19 @@ from numpy.typing import NDArray
 from .bounds import Bounds
 from .errors import InputError
 
-__all__ = ["Parameter", "PerAgent", "check_parameters", "parameter", "parameters", "per_agent"]
+__all__ = [
+    "BOOL",
+    "FLOAT",
+    "Parameter",
+    "PerAgent",
+    "check_parameters",
+    "dense",
+    "parameter",
+    "parameters",
+    "per_agent",
+]
+
+FLOAT, BOOL = np.dtype(np.float64), np.dtype(np.bool_)
 
 PerAgent = float | NDArray[np.float64]
 """A number for all agents, or an array that broadcasts to ``[E, A]``."""
@@ -97,7 +109,32 @@ def per_agent(value: PerAgent, shape: tuple[int, int], name: str = "parameter") 
     [[0.5, 0.5, 0.5]]
     """
     try:
-        return np.ascontiguousarray(np.broadcast_to(np.asarray(value, dtype=np.float64), shape))
+        return dense(value, shape, FLOAT)
     except ValueError:
         got = np.shape(value)
         raise InputError(f"{name} has shape {got}, which does not broadcast to [E, A] = {list(shape)}") from None
+
+
+def dense(value: Any, shape: tuple[int, ...], kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return a value as an array that kernels accept: C-contiguous, aligned and writeable; a copy only if necessary.
+
+    Args:
+        value: a number or an array.
+        shape: shape of the result, to which the value is broadcast.
+        kind: data type of the result.
+
+    Raises:
+        ValueError: the value does not broadcast to the shape.
+
+    >>> dense(2.0, (1, 3), np.dtype(np.int32)).tolist()
+    [[2, 2, 2]]
+    """
+    if type(value) is np.ndarray:
+        if value.dtype is kind and value.shape == shape and value.flags.carray:
+            return value
+    elif type(value) is float or type(value) is bool or type(value) is int:
+        array = np.empty(shape, dtype=kind)
+        array.fill(value)
+        return array
+    # writeable: numba has a separate type for read-only arrays
+    return np.require(np.broadcast_to(np.asarray(value, dtype=kind), shape), requirements=["C", "A", "W"])

@@ -8,19 +8,21 @@ distant agents require no additional memory, and agents in the same cell due to 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, did_you_mean
 from .kernels import kernel, prange
+from .model_parameter import BOOL, FLOAT, dense
 
-__all__ = ["CHUNK", "SMALL", "Neighbors", "nearest"]
+__all__ = ["BOOL", "CHUNK", "FLOAT", "SMALL", "Neighbors", "dense", "nearest"]
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int32]
 
+COUNT = np.dtype(np.int32)
 METHODS = ("auto", "brute", "grid")
 CHUNK = 64
 """Number of agents in one work item of a thread."""
@@ -32,6 +34,8 @@ PER_CELL = 2.0
 """Average number of agents in a cell."""
 SPARE = 32
 """Size of the candidate buffer beyond twice the number of neighbours."""
+FEW = 16
+"""Maximum number of candidates for which an insertion sort is faster than counting ranks (measured)."""
 GUESS = 0.25
 """Initial squared search radius per neighbour, in squared cell widths."""
 SLACK = 1e-12
@@ -46,7 +50,7 @@ class _Grid(NamedTuple):
     size: Array
     """``[E]`` width of a cell [m]."""
     first: Rows
-    """``[E, C + 1]``; brute force is a grid of one cell."""
+    """``[E, C + 1]``."""
     order: Rows
     """``[E * A]`` rows of the agents, sorted."""
     place: Array
@@ -105,45 +109,101 @@ def nearest(
     if method not in METHODS:
         near = did_you_mean(method, METHODS)
         raise InputError(f"unknown neighbour search {method!r}{near}; choose {', '.join(METHODS)}")
-    E, A = position.shape[:2]
+    E, A = shape = position.shape[:2]
     seekers = _Seekers(
-        np.require(position, np.float64, ["C", "W"]).reshape(E * A, 2),
-        _rows(reach, (E, A), np.float64),
-        _rows(max_count, (E, A), np.int32),
-        _rows(asking, (E, A), np.bool_),
+        dense(position, (E, A, 2), FLOAT).reshape(-1, 2),
+        dense(reach, shape, FLOAT).reshape(-1),
+        dense(max_count, shape, COUNT).reshape(-1),
+        dense(asking, shape, BOOL).reshape(-1),
     )
-    grid = _sort_into_grid(
-        seekers, _rows(seen, (E, A), np.bool_), E, method == "grid" or (method == "auto" and A >= CROWD)
-    )
-    widest = max(0, min(int(seekers.max_count.max(initial=0)), A - 1))
+    visible = dense(seen, shape, BOOL).reshape(-1)
+    most = max_count if isinstance(max_count, float | int) else seekers.max_count.max(initial=0)
+    widest = max(0, min(int(most), A - 1)) if E else 0
     agent = np.empty((E * A, widest), dtype=np.int32)
     number = np.empty(E * A, dtype=np.int32)
-    if len(number) <= SMALL:
-        _search_part(0, len(number), seekers, grid, agent, number)
+    if method == "grid" or (method == "auto" and A >= CROWD):
+        order = _search_in_grid(seekers, visible, E, agent, number)
     else:
-        _search(seekers, grid, agent, number)
-    return Neighbors(agent.reshape(E, A, widest), number.reshape(E, A), grid.order)
+        order = np.arange(E * A, dtype=np.int32)
+        if len(order) <= SMALL:
+            _compare_part(0, E * A, *seekers, visible, A, agent, number)
+        else:
+            _compare(*seekers, visible, A, agent, number)
+    return Neighbors(agent.reshape(E, A, widest), number.reshape(E, A), order)
 
 
-def _rows(value: ArrayLike, shape: tuple[int, int], kind: Any) -> NDArray[Any]:
-    # writeable: numba has a separate type for read-only arrays
-    return np.require(np.broadcast_to(np.asarray(value, dtype=kind), shape), requirements=["C", "W"]).reshape(-1)
-
-
-def _sort_into_grid(seekers: _Seekers, seen: NDArray[np.bool_], E: int, in_cells: bool) -> _Grid:
-    """Sort all agents into cells, or keep their order in one large cell per environment."""
+def _search_in_grid(seekers: _Seekers, seen: NDArray[np.bool_], E: int, agent: Rows, number: Rows) -> Rows:
+    """Sort all agents into cells and write their neighbours; return the spatial order of the agents."""
     rows = len(seen)
-    shape, size = np.ones((E, 2), dtype=np.int64), np.full(E, 1e100)
+    A = rows // max(E, 1)
+    shape, size = np.ones((E, 2), dtype=np.int64), np.empty(E)
     order = np.arange(rows, dtype=np.int32)
     place = np.where(seen[:, None], seekers.place, np.nan)
-    A = rows // max(E, 1)
-    if not in_cells:
-        begin = np.arange(E, dtype=np.int32)[:, None] * A
-        return _Grid(shape, size, np.concatenate([begin, begin + A], axis=1, dtype=np.int32), order, place)
     first = np.zeros((E, 2 * A + 17), dtype=np.int32)
     there = (seen | seekers.asking) & np.isfinite(seekers.place[:, 0]) & np.isfinite(seekers.place[:, 1])
     _sort(seekers.place, there, float(seekers.reach.max(initial=0.0)), shape, size, first, order)
-    return _Grid(shape, size, first, order, place[order])
+    grid = _Grid(shape, size, first, order, place[order])
+    if rows <= SMALL:
+        _search_part(0, rows, seekers, grid, agent, number)
+    else:
+        _search(seekers, grid, agent, number)
+    return order
+
+
+@kernel(parallel=True)
+def _compare(
+    place: Array, reach: Array, capacity: Rows, asking: NDArray[np.bool_], seen: NDArray[np.bool_], A: int,
+    agent: Rows, number: Rows,
+) -> None:  # fmt: skip
+    for part in prange((len(number) + CHUNK - 1) // CHUNK):
+        end = min((part + 1) * CHUNK, len(number))
+        _compare_part(part * CHUNK, end, place, reach, capacity, asking, seen, A, agent, number)
+
+
+@kernel
+def _compare_part(
+    begin: int, end: int, place: Array, reach: Array, capacity: Rows, asking: NDArray[np.bool_],
+    seen: NDArray[np.bool_], A: int, agent: Rows, number: Rows,
+) -> None:  # fmt: skip
+    """Search the neighbours of the rows from ``begin`` to ``end`` among all ``A`` agents of their environment."""
+    widest = agent.shape[1]
+    room = min(2 * widest + SPARE, A) + 2
+    near, near2, sorted_ = np.empty(room, dtype=np.int32), np.empty(room), np.empty(room, dtype=np.int32)
+    for row in range(begin, end):
+        x, y, most = place[row, 0], place[row, 1], min(capacity[row], widest)
+        first = row // A * A
+        held = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
+        if asking[row] and most > 0 and reach[row] > 0.0 and math.isfinite(x) and math.isfinite(y):
+            reach2, limit2 = reach[row] * reach[row], math.inf
+            for k in range(first, first + A):
+                if held == room - 1:
+                    held, limit2 = _keep_nearest(near, near2, held, most, sorted_)
+                dx, dy = place[k, 0] - x, place[k, 1] - y
+                d2 = dx * dx + dy * dy
+                near[held], near2[held] = k, d2
+                # no branch: none could foresee it
+                held += 1 if (d2 <= limit2) & (d2 < reach2) & seen[k] & (k != row) else 0
+            if held <= FEW:
+                _sort_few(near2, held, sorted_)
+            else:
+                _sort_by_distance(near, near2, held, sorted_)
+            held = min(held, most)
+        number[row] = held
+        for n in range(held):
+            agent[row, n] = near[sorted_[n]] - first
+        for n in range(held, widest):
+            agent[row, n] = -1
+
+
+@kernel(inline=True)
+def _sort_few(near2: Array, held: int, sorted_: Rows) -> None:
+    """Write the indices of candidates that are in the order of agents, by distance (stable insertion)."""
+    for i in range(held):
+        n = i
+        while n > 0 and near2[i] < near2[sorted_[n - 1]]:
+            sorted_[n] = sorted_[n - 1]
+            n -= 1
+        sorted_[n] = i
 
 
 @kernel

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .bodies import Bodies
 from .errors import InputError
+from .kernels import kernel
+from .model_parameter import BOOL, FLOAT, dense
 from .walls import Walls
 
 __all__ = ["Scene"]
@@ -24,6 +26,7 @@ PERSON_HEIGHT = 1.7
 """Default height [m] of an agent."""
 WALL_HEIGHT = 3.0
 """Default height [m] of walls."""
+INTEGER = np.dtype(np.int64)
 TURNING_SPEED = 0.05
 """Speed [m/s] below which an agent keeps its heading."""
 
@@ -46,7 +49,7 @@ class Scene:
         group: ``[E, A]`` int, number of the group; -1 for none.
         walls: shared by all environments.
         preferred_velocity: ``[E, A, 2]`` [m/s]; None derives it from goal and preferred speed.
-        time: [s].
+        time: [s], a number for all environments or ``[E]`` if they are at different times.
         memory: state of a model between steps, by name, each ``[E, A, ...]``.
         bodies: limbs, props and skins at this instant, or None. An agent without limbs is an upright cylinder.
         height: ``[E, A]`` [m], height of these cylinders; None for 1.7 m.
@@ -70,7 +73,7 @@ class Scene:
     group: NDArray[np.int64]
     walls: Walls
     preferred_velocity: Floats | None = None
-    time: float = 0.0
+    time: float | Floats = 0.0
     memory: Mapping[str, Floats] = field(default_factory=dict)
     bodies: Bodies | None = None
     height: Floats | None = None
@@ -93,7 +96,7 @@ class Scene:
         external: ArrayLike = False,
         group: ArrayLike = -1,
         walls: Any = (),
-        time: float = 0.0,
+        time: ArrayLike = 0.0,
         bodies: Bodies | None = None,
         height: ArrayLike | None = None,
         wall_height: float = WALL_HEIGHT,
@@ -104,11 +107,12 @@ class Scene:
         speed (Helbing & Molnar 1995).
 
         Raises:
-            InputError: a shape is wrong, a value of an active agent is not finite, or a radius is not positive.
+            InputError: a shape is wrong, a value of an active agent or the time is not finite, or a radius is not
+                positive.
         """
         place = _vectors("position", position, None)
         shape = place.shape[:2]
-        here = np.broadcast_to(np.asarray(active, dtype=np.bool_), shape).copy()
+        here = _spread(active, shape, BOOL)
         move = np.zeros_like(place) if velocity is None else _vectors("velocity", velocity, shape)
         wish = None if preferred_velocity is None else _vectors("preferred_velocity", preferred_velocity, shape)
         speed = _numbers("preferred_speed", preferred_speed, shape)
@@ -122,12 +126,12 @@ class Scene:
             preferred_speed=speed,
             max_speed=1.3 * speed if max_speed is None else _numbers("max_speed", max_speed, shape),
             active=here,
-            visible=np.broadcast_to(np.asarray(visible, dtype=np.bool_), shape).copy(),
-            external=np.broadcast_to(np.asarray(external, dtype=np.bool_), shape).copy(),
-            group=np.broadcast_to(np.asarray(group, dtype=np.int64), shape).copy(),
+            visible=_spread(visible, shape, BOOL),
+            external=_spread(external, shape, BOOL),
+            group=_spread(group, shape, INTEGER),
             walls=Walls.of(walls),
             preferred_velocity=wish,
-            time=float(time),
+            time=_time(time, shape[0]),
             bodies=bodies,
             height=None if height is None else _numbers("height", height, shape),
             wall_height=float(wall_height),
@@ -142,6 +146,28 @@ class Scene:
 
     def check(self) -> None:
         """Raise :class:`InputError` if a value of an active agent is not finite or has the wrong sign."""
+        shape = self.shape
+        pairs = (*shape, 2)
+        if not _is_valid(
+            dense(self.position, pairs, FLOAT),
+            dense(self.velocity, pairs, FLOAT),
+            dense(self.heading, shape, FLOAT),
+            dense(self.radius, shape, FLOAT),
+            dense(self.goal, pairs, FLOAT),
+            dense(self.preferred_speed, shape, FLOAT),
+            dense(self.max_speed, shape, FLOAT),
+            dense(self.active, shape, BOOL),
+        ):
+            self._raise_first_error()
+        if self.height is not None and not np.all(self.height[self.active] > 0.0):
+            raise InputError(f"scene: height {self.height[self.active].min()} m is not above 0")
+        if not self.wall_height > 0.0:
+            raise InputError(f"scene: wall_height {self.wall_height} m is not above 0")
+        if self.bodies is not None and self.bodies.batch != len(self.position):
+            raise InputError(f"scene: bodies of {self.bodies.batch} environments for {len(self.position)} environments")
+
+    def _raise_first_error(self) -> None:
+        """Raise :class:`InputError` for the first field with a value that is not allowed."""
         for name in ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed"):
             value = getattr(self, name)[self.active]
             if not np.all(np.isfinite(value)):
@@ -151,12 +177,6 @@ class Scene:
         for name in ("preferred_speed", "max_speed"):
             if np.any(getattr(self, name)[self.active] < 0.0):
                 raise InputError(f"scene: {name} {getattr(self, name)[self.active].min()} m/s is below 0")
-        if self.height is not None and not np.all(self.height[self.active] > 0.0):
-            raise InputError(f"scene: height {self.height[self.active].min()} m is not above 0")
-        if not self.wall_height > 0.0:
-            raise InputError(f"scene: wall_height {self.wall_height} m is not above 0")
-        if self.bodies is not None and self.bodies.batch != len(self.position):
-            raise InputError(f"scene: bodies of {self.bodies.batch} environments for {len(self.position)} environments")
 
     def desired_velocity(self, dt: float) -> Floats:
         """Return ``[E, A, 2]`` [m/s]: the given preferred velocity, or the preferred speed towards the goal.
@@ -176,25 +196,48 @@ class Scene:
         External and absent agents ignore the new velocity; external agents keep their own. Bodies of agents are
         removed (limbs must be posed again), bodies of the stage are kept.
         """
-        own = self.active & ~self.external
-        moved = np.where(own[..., None], velocity, self.velocity)
-        speed = np.sqrt(moved[..., 0] ** 2 + moved[..., 1] ** 2)
-        turned = np.where(own & (speed > TURNING_SPEED), np.arctan2(moved[..., 1], moved[..., 0]), self.heading)
-        place = np.where(self.active[..., None], self.position + moved * dt, self.position)
-        bodies = None if self.bodies is None else self.bodies.stage_bodies()
-        return dataclasses.replace(
-            self, position=place, velocity=moved, heading=turned, time=self.time + dt, bodies=bodies
+        shape = self.shape
+        pairs = (*shape, 2)
+        chosen = dense(velocity, pairs, FLOAT)
+        # the arctan2 of numpy: that of the compiler differs in the last bit on some processors
+        turned = np.arctan2(chosen[..., 1], chosen[..., 0])
+        place, moved = np.empty(pairs), np.empty(pairs)
+        _advance(
+            dense(self.position, pairs, FLOAT),
+            dense(self.velocity, pairs, FLOAT),
+            chosen,
+            dense(self.heading, shape, FLOAT),
+            dense(self.active, shape, BOOL),
+            dense(self.external, shape, BOOL),
+            float(dt),
+            place,
+            moved,
+            turned,
         )
+        later = self._copy()
+        later.__dict__.update(position=place, velocity=moved, heading=turned, time=self.time + dt)
+        if self.bodies is not None:
+            later.__dict__["bodies"] = self.bodies.stage_bodies()
+        return later
 
     def replace(self, **changes: Any) -> Scene:
-        """Return a copy with some fields changed."""
-        return dataclasses.replace(self, **changes)
+        """Return a copy with some fields changed.
+
+        Raises:
+            TypeError: a field is unknown.
+        """
+        later = self._copy()
+        later.__dict__.update(changes)
+        if len(later.__dict__) != len(self.__dict__):
+            unknown = sorted(changes.keys() - self.__dict__.keys())
+            raise TypeError(f"Scene has no field {unknown[0]!r}")
+        return later
 
     def without(self, agent: int) -> Scene:
         """Return the scene without ``agent``, as its own sensors see it."""
         active = self.active.copy()
         active[:, agent] = False
-        return dataclasses.replace(self, active=active)
+        return self.replace(active=active)
 
     def environments(self, chosen: ArrayLike) -> Scene:
         """Return the environments with the indices ``chosen`` along E; an index may be repeated.
@@ -204,14 +247,20 @@ class Scene:
         (4, 3)
         """
         index = np.asarray(chosen, dtype=np.int64)
-        arrays: dict[str, Any] = {
-            part.name: getattr(self, part.name)[index]
-            for part in dataclasses.fields(self)
-            if isinstance(getattr(self, part.name), np.ndarray)
-        }
-        memory = {name: value[index] for name, value in self.memory.items()}
-        bodies = None if self.bodies is None else self.bodies.environments(index)
-        return dataclasses.replace(self, **arrays, memory=memory, bodies=bodies)
+        part = self._copy()
+        for name, value in self.__dict__.items():
+            if isinstance(value, np.ndarray):
+                part.__dict__[name] = value[index]
+        part.__dict__["memory"] = {name: value[index] for name, value in self.memory.items()}
+        if self.bodies is not None:
+            part.__dict__["bodies"] = self.bodies.environments(index)
+        return part
+
+    def _copy(self) -> Scene:
+        """Return a shallow copy, ten times faster than ``dataclasses.replace``."""
+        copy = object.__new__(type(self))
+        copy.__dict__.update(self.__dict__)
+        return copy
 
     def digest(self) -> str:
         """Return a hash of position, velocity, heading, activity and bodies; equal bytes give equal hashes."""
@@ -227,24 +276,88 @@ class Scene:
 
 
 def _vectors(name: str, value: ArrayLike, shape: tuple[int, int] | None) -> Floats:
-    array = np.array(value, dtype=np.float64)
+    array = np.asarray(value, dtype=np.float64)
     if array.ndim == 2:
         array = array[None]
     if array.ndim != 3 or array.shape[2] != 2:
         raise InputError(f"scene: {name} has shape {list(np.shape(value))}, it must be [A, 2] or [E, A, 2]")
     if shape is None:
-        return np.ascontiguousarray(array)
-    return np.ascontiguousarray(_broadcast(name, array, (*shape, 2)))
+        return np.array(array, order="C")
+    return _broadcast(name, array, (*shape, 2))
 
 
 def _numbers(name: str, value: ArrayLike, shape: tuple[int, int]) -> Floats:
-    return np.ascontiguousarray(_broadcast(name, np.asarray(value, dtype=np.float64), shape))
+    return _broadcast(name, np.asarray(value, dtype=np.float64), shape)
 
 
 def _broadcast(name: str, array: Floats, shape: tuple[int, ...]) -> Floats:
     try:
-        return np.broadcast_to(array, shape).copy()
+        return _spread(array, shape, FLOAT)
     except ValueError:
         raise InputError(
             f"scene: {name} has shape {list(array.shape)}, which does not fit {list(shape)} from position"
         ) from None
+
+
+def _spread(value: ArrayLike, shape: tuple[int, ...], kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return a new array that is broadcast from a value, three times faster than ``np.broadcast_to``."""
+    array = np.asarray(value, dtype=kind)
+    if array.ndim > len(shape):  # an assignment would drop leading axes of length 1
+        raise ValueError(f"an array of shape {list(array.shape)} does not broadcast to {list(shape)}")
+    out = np.empty(shape, dtype=kind)
+    out[...] = array
+    return out
+
+
+def _time(value: Any, environments: int) -> float | Floats:
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value)
+    array = np.array(value, dtype=np.float64)
+    if array.shape not in ((), (environments,)):
+        raise InputError(f"scene: time has shape {list(array.shape)}, it must be a number or [E] = [{environments}]")
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"scene: time {array[~np.isfinite(array)].flat[0]} s is not finite")
+    return array if array.ndim else float(array)
+
+
+@kernel
+def _is_valid(
+    position: Floats, velocity: Floats, heading: Floats, radius: Floats, goal: Floats, preferred_speed: Floats,
+    max_speed: Floats, active: Bools,
+) -> bool:  # fmt: skip
+    """Return whether all values of active agents are finite and have the right sign."""
+    for e in range(active.shape[0]):
+        for a in range(active.shape[1]):
+            if active[e, a] and not (
+                math.isfinite(position[e, a, 0])
+                and math.isfinite(position[e, a, 1])
+                and math.isfinite(velocity[e, a, 0])
+                and math.isfinite(velocity[e, a, 1])
+                and math.isfinite(heading[e, a])
+                and math.isfinite(goal[e, a, 0])
+                and math.isfinite(goal[e, a, 1])
+                and 0.0 < radius[e, a] < math.inf
+                and 0.0 <= preferred_speed[e, a] < math.inf
+                and 0.0 <= max_speed[e, a] < math.inf
+            ):
+                return False
+    return True
+
+
+@kernel
+def _advance(
+    position: Floats, velocity: Floats, chosen: Floats, heading: Floats, active: Bools, external: Bools, dt: float,
+    place: Floats, moved: Floats, turned: Floats,
+) -> None:  # fmt: skip
+    """Write the next positions, velocities and headings; ``turned`` contains the directions of ``chosen``."""
+    for e in range(active.shape[0]):
+        for a in range(active.shape[1]):
+            own = active[e, a] and not external[e, a]
+            x, y = (chosen[e, a, 0], chosen[e, a, 1]) if own else (velocity[e, a, 0], velocity[e, a, 1])
+            moved[e, a, 0], moved[e, a, 1] = x, y
+            if not (own and math.sqrt(x * x + y * y) > TURNING_SPEED):
+                turned[e, a] = heading[e, a]
+            if active[e, a]:
+                place[e, a, 0], place[e, a, 1] = position[e, a, 0] + x * dt, position[e, a, 1] + y * dt
+            else:
+                place[e, a, 0], place[e, a, 1] = position[e, a, 0], position[e, a, 1]

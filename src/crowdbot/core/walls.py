@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import dataclasses
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,10 @@ from numpy.typing import NDArray
 from .errors import InputError
 
 __all__ = ["Walls"]
+
+CACHE = "_derived"
+"""Name of the cache in the dictionary of walls."""
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -79,10 +84,37 @@ class Walls:
         return len(self.start)
 
     def segments(self) -> NDArray[np.float64]:
-        """Return the edges ``[N, 4]`` as x, y, x, y [m]; a thin wall is one segment."""
-        both = np.concatenate([self.start, self.end], axis=1)
-        thin = self.previous == self.next
-        return np.asarray(both[~thin | (np.arange(len(both)) < self.next)])
+        """Return the edges ``[N, 4]`` as x, y, x, y [m]; a thin wall is one segment.
+
+        All calls return the same array: copy it before you change it.
+        """
+        return self.derive(_segments)
+
+    def derive(self, make: Callable[[Walls], Value]) -> Value:
+        """Return ``make(self)``, which is computed at the first call and kept as long as the walls.
+
+        Args:
+            make: a function of the walls alone, defined at the top of a module.
+
+        >>> walls = Walls.of([[(0, 0), (2, 0)]])
+        >>> walls.derive(len), walls.segments() is walls.segments()
+        (2, True)
+        """
+        try:
+            return cast(Value, self.__dict__[CACHE][make])
+        except KeyError:
+            value = self.__dict__.setdefault(CACHE, {})[make] = make(self)
+            return value
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields: copies and pickles do not contain the derived values."""
+        return {part.name: getattr(self, part.name) for part in dataclasses.fields(self)}
+
+
+def _segments(walls: Walls) -> NDArray[np.float64]:
+    both = np.concatenate([walls.start, walls.end], axis=1)
+    thin = walls.previous == walls.next
+    return np.asarray(both[~thin | (np.arange(len(both)) < walls.next)])
 
 
 def _rings(polygon: Any) -> list[Any]:

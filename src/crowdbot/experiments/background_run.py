@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import threading
-import warnings
 from pathlib import Path
 
-from crowdbot.recording import run
-from crowdbot.simulation import Episode, RunFailureWarning
+from crowdbot.recording import open_run
+from crowdbot.simulation import Episode, EpisodeLog, SimulationRun
 from crowdbot.trials import Trial
 
 __all__ = ["Aborted", "BackgroundRun"]
@@ -20,7 +19,7 @@ class Aborted(Exception):
 class BackgroundRun:
     """Runs a trial in a thread; the episode file appears when the trial has ended.
 
-    The run can be paused at each report of progress, 100 times in its duration. A pause does not change the result.
+    The run can be paused between two steps. A pause does not change the result.
 
     >>> from crowdbot.models import ORCA
     >>> running = BackgroundRun(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
@@ -33,8 +32,8 @@ class BackgroundRun:
     def __init__(self, trial: Trial, seed: int, out: Path | None = None) -> None:
         self.share = 0.0
         """Completed share of the duration, 0 to 1."""
-        self._go = threading.Event()
-        self._go.set()
+        self._held = False
+        self._running: SimulationRun | None = None
         self._given_up = False
         self._episode: Episode | None = None
         self._error: Exception | None = None
@@ -43,16 +42,20 @@ class BackgroundRun:
 
     def hold(self) -> None:
         """Pause the run."""
-        self._go.clear()
+        self._held = True
+        if self._running is not None:
+            self._running.hold()
 
     def go(self) -> None:
         """Continue the run."""
-        self._go.set()
+        self._held = False
+        if self._running is not None:
+            self._running.go()
 
     def give_up(self) -> None:
-        """Abort the run at its next report of progress, without an episode; :meth:`wait` for the end."""
+        """Abort the run at its next step, without an episode; :meth:`wait` for the end."""
         self._given_up = True
-        self._go.set()
+        self.go()
 
     def wait(self, seconds: float) -> bool:
         """Wait at most ``seconds``; return whether the run has ended."""
@@ -72,17 +75,21 @@ class BackgroundRun:
         return self._episode
 
     def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
+        log = EpisodeLog(trial, seed)
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", RunFailureWarning)  # the failure is part of the episode
-                self._episode = run(trial, seed=seed, out=out, progress=self._report)
+            with open_run(trial, seed, out, sinks=[log]) as running:
+                self._running = running
+                if self._held:
+                    running.hold()
+                while running.advance(1) is None:
+                    self.share = min(1.0, running.simulation.tick / trial.ticks)
+                    if self._given_up:
+                        raise Aborted
+            self.share = 1.0
+            end = running.ends[0]
+            assert end is not None
+            self._episode = log.episode(*end)
         except Exception as error:  # raised again by result(), for the caller
             self._error = error
         finally:
             self._ended.set()
-
-    def _report(self, share: float) -> None:
-        self.share = share
-        self._go.wait()
-        if self._given_up:
-            raise Aborted

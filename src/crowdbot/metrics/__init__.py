@@ -3,7 +3,7 @@
 from .agent_states import AgentStates
 from .collisions import collision_mask, collision_share, neighbor_mask
 from .contact_tracker import ContactTracker
-from .contacts import ContactEvent, cause_of, contact_events
+from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
@@ -27,8 +27,10 @@ from .proximity import (
     wall_clearance,
 )
 from .score import Score, score
+from .step_clearance import step_clearance, step_wall_clearance
 
 __all__ = [
+    "HOLD",
     "NAVIGATION_METRICS",
     "AgentStates",
     "ContactEvent",
@@ -72,6 +74,8 @@ __all__ = [
     "proxemic_shares",
     "score",
     "stalled_time",
+    "step_clearance",
+    "step_wall_clearance",
     "swept_clearance",
     "swept_distance",
     "time_to_collision",

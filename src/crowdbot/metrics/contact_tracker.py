@@ -33,6 +33,9 @@ class ContactTracker:
 
     def update(self, states: AgentStates, near: NDArray[np.int64]) -> None:
         """Add a step; ``near`` are the ids of people close to the robot since the previous step."""
+        if not len(near) and not self._near:
+            self._before = states
+            return
         for person in near.tolist():
             since = [] if self._before is None else [self._pair(self._before, person)]
             radius = float(states.radius[np.searchsorted(states.ids, person)])

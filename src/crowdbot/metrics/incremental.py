@@ -29,15 +29,8 @@ from crowdbot.core import InputError
 from .agent_states import AgentStates
 from .contact_tracker import ContactTracker
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
-from .proximity import (
-    clearance,
-    local_density,
-    personal_space_compliance,
-    proxemic_shares,
-    swept_clearance,
-    time_to_collision,
-    wall_clearance,
-)
+from .proximity import personal_space_compliance, proxemic_shares
+from .record_clearance import record_clearance
 
 __all__ = ["NavigationMetrics", "NavigationOutcome"]
 
@@ -184,24 +177,10 @@ class NavigationMetrics:
         }
 
     def _measure(self, states: AgentStates, own: int) -> _Sample:
-        steps = [states] if self._before is None else [self._before, states]
-        parts = zip(*(step.at(states.ids) for step in steps), strict=True)
-        position, velocity, here = (np.stack(part) for part in parts)
-        swept = swept_clearance(np.array([step.time for step in steps]), position, states.radius, here, own)[-1]
-        now = (states.radius, here[-1:], own)
-        gap = clearance(position[-1:], *now)[0]
-        self._contacts.update(states, states.ids[np.minimum(swept, gap) < NEAR])
-        return _Sample(
-            states.time,
-            states.position[own],
-            states.velocity[own],
-            _heading(states, own),
-            float(np.min(swept)),
-            float(np.min(gap)),
-            float(local_density(position[-1:], here[-1:], own)[0]),
-            float(np.min(time_to_collision(position[-1:], velocity[-1:], *now))),
-            float(wall_clearance(position[:, own], self.radius, self.walls)[-1]),
-        )
+        found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
+        self._contacts.update(states, found.near)
+        place, velocity = states.position[own], states.velocity[own]
+        return _Sample(states.time, place, velocity, _heading(states, own), *found[1:])
 
     def _nearness(self, times: Floats) -> dict[str, float]:
         rows = [(one.swept, one.nearest, one.wall, one.density) for one in self._samples]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Scene
 
-from .model import CrowdModel, initial_velocity
+from .model import CrowdModel
 
 __all__ = ["MODEL", "Mixture"]
 
@@ -78,9 +78,9 @@ class Mixture(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each from the agent's own model."""
         own = self.of(scene)
-        out = initial_velocity(scene)
-        for k, model in enumerate(self.models):
-            out = np.where((own == k)[..., None], model.velocity(scene, dt, rng), out)
+        out = self.models[0].velocity(scene, dt, rng)
+        for k in range(1, len(self.models)):
+            out = np.where((own == k)[..., None], self.models[k].velocity(scene, dt, rng), out)
         return out
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
@@ -113,11 +113,15 @@ class Mixture(CrowdModel):
             ) from None
 
     def _check_indices(self, which: NDArray[Any]) -> Numbers:
-        whole = which.astype(np.int64) if which.dtype.kind in "iuf" and np.all(np.isfinite(which)) else None
-        if whole is None or np.any(whole != which):
+        whole: Numbers | None = None
+        if which.dtype == np.int64:
+            whole = which
+        elif which.dtype.kind in "iuf" and np.all(np.isfinite(which)):
+            whole = which.astype(np.int64)
+        if whole is None or (whole is not which and np.any(whole != which)):
             raise InputError(f"Mixture: which = {which.tolist()} must contain only whole numbers")
-        wrong = whole[(whole < 0) | (whole >= len(self.models))]
-        if wrong.size:
+        if whole.size and not 0 <= whole.min() <= whole.max() < len(self.models):
+            wrong = whole[(whole < 0) | (whole >= len(self.models))]
             raise InputError(
                 f"Mixture: which = {wrong.flat[0]} is out of range, it must be from 0 to {len(self.models) - 1}"
             )

@@ -6,19 +6,31 @@ import abc
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import SMALL, Bounds, InputError, Neighbors, Paper, PerAgent, Scene, check_parameters, per_agent
-from crowdbot.core.neighbors import nearest
+from crowdbot.core import (
+    SMALL,
+    Bounds,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    check_parameters,
+    kernel,
+    per_agent,
+)
+from crowdbot.core.neighbors import BOOL, FLOAT, dense, nearest
 
 __all__ = [
     "CrowdModel",
+    "StepStart",
+    "begin_step",
     "check_limit",
     "desired_velocity",
-    "initial_velocity",
     "launch",
     "movable",
     "neighbors_of",
@@ -30,6 +42,23 @@ LARGEST = 1e9
 """Upper limit of positions [m], speeds [m/s] and parameters, against overflow."""
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+class StepStart(NamedTuple):
+    """Checked values with which most models begin a step.
+
+    Fields:
+        desired: ``[E, A, 2]`` desired velocity [m/s], 0 for absent agents.
+        walking: ``[E, A]`` bool, whether the model moves the agent: active and not external.
+        seen: ``[E, A]`` bool, whether others react to the agent: active and visible.
+        velocity: ``[E, A, 2]`` [m/s], output array of the model: the velocity of external agents, 0 for all others.
+    """
+
+    desired: Floats
+    walking: Bools
+    seen: Bools
+    velocity: Floats
 
 
 @dataclass(frozen=True)
@@ -78,9 +107,38 @@ class CrowdModel(abc.ABC):
         return scene.advance(self.velocity(scene, dt, rng), dt)
 
 
-def movable(scene: Scene) -> NDArray[np.bool_]:
-    """Return the mask ``[E, A]`` of agents that a model moves: active and not external."""
-    return np.asarray(scene.active & ~scene.external)
+def begin_step(scene: Scene, dt: float) -> StepStart:
+    """Check the values that models read; return them together with the desired velocities.
+
+    Raises:
+        InputError: ``dt`` is not positive, or a value of an active agent is not finite or larger than 1e9.
+    """
+    if not (math.isfinite(dt) and dt > 0.0):
+        raise InputError(f"time step {dt} s is not allowed, it must be above 0 and finite")
+    shape = scene.shape
+    pairs = (*shape, 2)
+    given = scene.preferred_velocity is not None
+    start = StepStart(np.empty(pairs), np.empty(shape, BOOL), np.empty(shape, BOOL), np.empty(pairs))
+    fits = _begin(
+        dense(scene.position, pairs, FLOAT),
+        dense(scene.velocity, pairs, FLOAT),
+        dense(scene.radius, shape, FLOAT),
+        dense(scene.max_speed, shape, FLOAT),
+        dense(scene.preferred_velocity if given else scene.goal, pairs, FLOAT),
+        dense(scene.preferred_speed, shape, FLOAT),
+        dense(scene.active, shape, BOOL),
+        dense(scene.visible, shape, BOOL),
+        dense(scene.external, shape, BOOL),
+        given,
+        float(dt),
+        *start,
+    )
+    if not fits:
+        aim = () if given else ("goal", "preferred_speed")
+        for name in ("position", "velocity", "radius", "max_speed", *aim):
+            _check(name, getattr(scene, name), scene.active)
+        _check("preferred velocity", start.desired, scene.active)
+    return start
 
 
 def desired_velocity(scene: Scene, dt: float) -> Floats:
@@ -89,20 +147,12 @@ def desired_velocity(scene: Scene, dt: float) -> Floats:
     Raises:
         InputError: ``dt`` is not positive, or a value of an active agent is not finite or larger than 1e9.
     """
-    if not (math.isfinite(dt) and dt > 0.0):
-        raise InputError(f"time step {dt} s is not allowed, it must be above 0 and finite")
-    aim = ("goal", "preferred_speed") if scene.preferred_velocity is None else ()
-    for name in ("position", "velocity", "radius", "max_speed", *aim):
-        _check(name, getattr(scene, name), scene.active)
-    with np.errstate(invalid="ignore", over="ignore"):  # values of absent agents are arbitrary
-        desired = np.where(scene.active[..., None], scene.desired_velocity(dt), 0.0)
-    _check("preferred velocity", desired, scene.active)
-    return desired
+    return begin_step(scene, dt).desired
 
 
-def initial_velocity(scene: Scene) -> Floats:
-    """Return the output array ``[E, A, 2]`` [m/s] of a model: the velocity of external agents, 0 for all others."""
-    return np.where((scene.active & scene.external)[..., None], scene.velocity, 0.0)
+def movable(scene: Scene) -> Bools:
+    """Return the mask ``[E, A]`` of agents that a model moves: active and not external."""
+    return np.greater(scene.active, scene.external)
 
 
 def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
@@ -122,15 +172,22 @@ def speed_limit(max_speed: PerAgent | None, scene: Scene) -> Floats:
     return scene.max_speed if max_speed is None else per_agent(max_speed, scene.shape, "max_speed")
 
 
-def neighbors_of(model: Any, scene: Scene, walking: NDArray[np.bool_]) -> Neighbors:
-    """Return the neighbours of ``walking`` agents: the nearest visible agents, limited in distance and number."""
-    reach = per_agent(model.neighbor_distance, scene.shape, "neighbor_distance")
-    most = np.rint(per_agent(model.max_neighbors, scene.shape, "max_neighbors"))
-    return nearest(scene.position, reach, most, scene.active & scene.visible, walking)
+def neighbors_of(model: Any, scene: Scene, seen: Bools, walking: Bools) -> Neighbors:
+    """Return the neighbours of ``walking`` agents: the nearest ``seen`` agents, limited in distance and number."""
+    reach, most = model.neighbor_distance, model.max_neighbors
+    if not isinstance(reach, float):
+        reach = per_agent(reach, scene.shape, "neighbor_distance")
+    most = round(most) if isinstance(most, float) else np.rint(per_agent(most, scene.shape, "max_neighbors"))
+    return nearest(scene.position, reach, most, seen, walking)
 
 
 def rows(value: NDArray[Any]) -> NDArray[Any]:
     """Return ``[E, A, ...]`` as rows ``[E * A, ...]``, C-contiguous and writeable as kernels require."""
+    if value.flags.carray:
+        if value.ndim == 2:
+            return value.reshape(-1)
+        if value.ndim == 3 and value.shape[2]:
+            return value.reshape(-1, value.shape[2])
     E, A = value.shape[:2]
     return np.require(value, requirements=["C", "W"]).reshape(E * A, *value.shape[2:])
 
@@ -163,3 +220,40 @@ def _check(name: str, value: Floats, active: NDArray[np.bool_]) -> None:
             f"scene: {name} {value[e, a]} of agent {a} in environment {e} is not finite or larger than {LARGEST:g};"
             " mark absent agents active=False"
         )
+
+
+@kernel
+def _begin(
+    position: Floats, velocity: Floats, radius: Floats, max_speed: Floats, aim: Floats, preferred_speed: Floats,
+    active: Bools, visible: Bools, external: Bools, given: bool, dt: float, desired: Floats, walking: Bools,
+    seen: Bools, chosen: Floats,
+) -> bool:  # fmt: skip
+    """Fill the arrays of a :class:`StepStart`; return whether all values of active agents are allowed.
+
+    Args:
+        aim: desired velocities if they are ``given``, otherwise goals.
+    """
+    fits = True
+    for e in range(active.shape[0]):
+        for a in range(active.shape[1]):
+            here = active[e, a]
+            walking[e, a], seen[e, a] = here and not external[e, a], here and visible[e, a]
+            desired[e, a, 0] = desired[e, a, 1] = chosen[e, a, 0] = chosen[e, a, 1] = 0.0
+            if not here:
+                continue
+            x, y = aim[e, a, 0], aim[e, a, 1]
+            if not given:
+                fits &= abs(x) <= LARGEST and abs(y) <= LARGEST and abs(preferred_speed[e, a]) <= LARGEST
+                x, y = x - position[e, a, 0], y - position[e, a, 1]
+                distance = math.sqrt(x * x + y * y)
+                share = min(preferred_speed[e, a], distance / dt) / max(distance, 1e-12)
+                x, y = x * share, y * share
+            desired[e, a, 0], desired[e, a, 1] = x, y
+            if external[e, a]:
+                chosen[e, a, 0], chosen[e, a, 1] = velocity[e, a, 0], velocity[e, a, 1]
+            # False for NaN, too
+            fits &= abs(position[e, a, 0]) <= LARGEST and abs(position[e, a, 1]) <= LARGEST
+            fits &= abs(velocity[e, a, 0]) <= LARGEST and abs(velocity[e, a, 1]) <= LARGEST
+            fits &= abs(radius[e, a]) <= LARGEST and abs(max_speed[e, a]) <= LARGEST
+            fits &= abs(x) <= LARGEST and abs(y) <= LARGEST
+    return fits

@@ -2,21 +2,33 @@
 
 from .action import Action
 from .contract import check_navigator
+from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .navigator import Navigator
+from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
+from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
+from .path_planner import PathPlanner, Waypoints
 from .straight import Straight
+from .track_history import TrackHistory
 
 __all__ = [
     "Action",
+    "AgentsInView",
+    "Decisions",
     "DriveLimits",
     "Navigator",
     "ORCANavigator",
     "Observation",
+    "ObservationBatch",
+    "PathPlanner",
     "Straight",
+    "TrackHistory",
     "VisiblePeople",
+    "Waypoints",
     "WindowCosts",
     "check_navigator",
+    "copy_memory",
     "dynamic_window_twist",
 ]

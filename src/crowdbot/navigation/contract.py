@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from crowdbot.core import InputError, Walls
 
 from .action import Action
 from .navigator import Navigator
+from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
 
 __all__ = ["check_navigator"]
@@ -41,12 +40,11 @@ def check_navigator(navigator: Navigator) -> None:
 
 
 def _decisions(navigator: Navigator, observations: list[Observation]) -> list[Action]:
-    memory, actions = navigator.begin(observations[0]), []
+    memory, actions = navigator.first_memory(observations[0]), []
     for observation in observations:
         action, memory = navigator.decide(observation, memory)
-        if not all(math.isfinite(value) for value in action.twist):
-            raise InputError(f"{type(navigator).__name__} returned {action.twist}; its values must be finite")
         actions.append(action)
+    copy_memory(memory, type(navigator).__name__)
     return actions
 
 

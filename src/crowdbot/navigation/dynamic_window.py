@@ -8,31 +8,22 @@ Source of the idea: Fox, Burgard, Thrun 1997, doi:10.1109/100.580977.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Twist, kernel
-from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core import Twist
 
-from .observation import Observation
+from .observation import DriveLimits, Observation
+from .observation_batch import ObservationBatch
+from .wall_arrays import wall_arrays
+from .window_search import MATCH, STEP, choose_twists
 
-__all__ = ["WindowCosts", "dynamic_window_twist"]
+__all__ = ["WindowCosts", "dynamic_window_twist", "dynamic_window_twists"]
 
 Floats = NDArray[np.float64]
 
-STEP = 0.1
-"""Time step of the simulated paths [s]."""
-WINDOW = 0.5
-"""Candidates are the twists that the drive reaches within this time [s]."""
-MATCH = 5
-"""Number of steps after which the velocity is compared."""
-SIGHT = 5.0
-"""People and walls farther away than this are ignored [m]."""
-FORWARD, TURNS = 9, 13
-"""Number of candidate speeds and turn rates."""
 EAGER = 100.0
 """Value for unknown accelerations [m/s2], [rad/s2]."""
 
@@ -58,64 +49,7 @@ class WindowCosts(NamedTuple):
     """Penalty of not facing the desired velocity, relative to its speed."""
 
 
-class _Start(NamedTuple):
-    """Initial motion and limits of the drive."""
-
-    heading: float
-    forward: float
-    turn: float
-    radius: float
-    change: float
-    turn_change: float
-
-
-@kernel
-def _cost(
-    forward: float, turn: float, start: _Start, wish: Floats, people: Floats, walls: Floats, c: WindowCosts
-) -> float:
-    """Return the cost of a twist; people are rows x, y, vx, vy, radius relative to the robot."""
-    x, y, heading, v, w = 0.0, 0.0, start.heading, start.forward, start.turn
-    near, contact, touch, miss = 0.0, 0.0, 0.0, 0.0
-    steps = max(MATCH, round(c.look / STEP))
-    for k in range(steps):
-        v += min(max(forward - v, -start.change), start.change)
-        w += min(max(turn - w, -start.turn_change), start.turn_change)
-        before_x, before_y, t = x, y, k * STEP
-        x += v * math.cos(heading + 0.5 * w * STEP) * STEP
-        y += v * math.sin(heading + 0.5 * w * STEP) * STEP
-        heading += w * STEP
-        fade = 1.0 - k / steps
-        if k + 1 == MATCH:
-            span = MATCH * STEP
-            aside = math.sqrt(wish[0] ** 2 + wish[1] ** 2) - wish[0] * math.cos(heading) - wish[1] * math.sin(heading)
-            miss = math.sqrt((x / span - wish[0]) ** 2 + (y / span - wish[1]) ** 2) + c.facing * aside
-        for n in range(len(people)):
-            px, py = people[n, 0] + people[n, 2] * t, people[n, 1] + people[n, 3] * t
-            qx, qy = px + people[n, 2] * STEP - x, py + people[n, 3] * STEP - y
-            nx, ny = nearest_on_segment(0.0, 0.0, px - before_x, py - before_y, qx, qy)
-            gap = math.sqrt(nx * nx + ny * ny) - start.radius - people[n, 4]
-            if gap < c.margin:
-                near = max(near, fade * (c.margin - gap) / c.margin)
-            if gap < c.skin:
-                contact = max(contact, fade)
-        for n in range(len(walls)):
-            nx, ny = nearest_on_segment(x, y, walls[n, 0], walls[n, 1], walls[n, 2], walls[n, 3])
-            gap = math.sqrt((nx - x) ** 2 + (ny - y) ** 2) - start.radius
-            touch = max(touch, (c.wall_margin - gap) / c.wall_margin)
-    return miss + c.near * near + c.contact * contact + c.wall * touch
-
-
-@kernel
-def _cheapest(
-    forwards: Floats, turns: Floats, start: _Start, wish: Floats, people: Floats, walls: Floats, caution: WindowCosts
-) -> tuple[float, float]:
-    best, chosen, turning = np.inf, 0.0, 0.0
-    for forward in forwards:
-        for turn in turns:
-            cost = _cost(forward, turn, start, wish, people, walls, caution)
-            if cost < best:
-                best, chosen, turning = cost, forward, turn
-    return chosen, turning
+STANDARD = WindowCosts()
 
 
 def dynamic_window_twist(
@@ -135,33 +69,68 @@ def dynamic_window_twist(
     >>> dynamic_window_twist(still, (1.0, 0.0), speed=1.0)
     Twist(forward=0.5, turn=0.0, left=0.0)
     """
-    top = min(speed, observation.limits.max_speed)
-    push = min(observation.limits.max_acceleration, EAGER)
-    spin = min(observation.limits.max_turn_acceleration, EAGER)
-    forward, turn = observation.twist.forward, observation.twist.turn
-    forwards = np.linspace(
-        max(0.0, min(forward - push * WINDOW, top)), min(top, max(0.0, forward + push * WINDOW)), FORWARD
+    people, out = observation.people, np.zeros((1, 3))
+    choose_twists(
+        np.ones(1, np.bool_),
+        np.array([observation.pose], dtype=np.float64),
+        np.array([observation.twist], dtype=np.float64),
+        np.array([observation.radius], dtype=np.float64),
+        np.array([wish], dtype=np.float64),
+        _row(people.position),
+        _row(people.velocity),
+        _row(people.radius),
+        np.ones((1, len(people)), np.bool_),
+        wall_arrays(observation.walls).segments,
+        _limits(observation.limits, speed),
+        *_weights(caution or STANDARD),
+        out,
     )
-    most = observation.limits.max_turn_rate
-    turns = np.linspace(max(-most, turn - spin * WINDOW), min(most, turn + spin * WINDOW), TURNS)
-    start = _Start(observation.heading, forward, turn, observation.radius, push * STEP, spin * STEP)
-    chosen, turning = _cheapest(
-        forwards, turns, start, np.array(wish), _people(observation), _walls(observation), caution or WindowCosts()
+    return Twist(*out[0].tolist())
+
+
+def dynamic_window_twists(
+    batch: ObservationBatch,
+    asking: NDArray[np.bool_],
+    wish: Floats,
+    speed: float,
+    out: Floats,
+    caution: WindowCosts | None = None,
+) -> None:
+    """Write the reachable twists with the smallest cost, the same as :func:`dynamic_window_twist` for each row.
+
+    Args:
+        batch: what the robot knows in N environments; its arrays are C-contiguous and writeable.
+        asking: ``[N]`` rows to fill.
+        wish: ``[N, 2]`` desired velocities in the world [m/s].
+        speed: largest speed [m/s].
+        out: ``[N, 3]`` twists.
+        caution: weights of the cost.
+    """
+    people = batch.people
+    choose_twists(
+        asking, batch.pose, batch.twist, batch.radius, wish,
+        people.position, people.velocity, people.radius, people.seen, wall_arrays(batch.walls).segments,
+        _limits(batch.limits, speed), *_weights(caution or STANDARD), out,
+    )  # fmt: skip
+
+
+def _row(values: Floats) -> Floats:
+    return np.require(values, np.float64, ["C", "W"])[None]
+
+
+def _limits(limits: DriveLimits, speed: float) -> Floats:
+    return np.array(
+        [
+            min(speed, limits.max_speed),
+            limits.max_turn_rate,
+            min(limits.max_acceleration, EAGER),
+            min(limits.max_turn_acceleration, EAGER),
+        ]
     )
-    return Twist(float(chosen), float(turning))
 
 
-def _people(observation: Observation) -> Floats:
-    people = observation.people
-    away = people.position - observation.position
-    rows = np.concatenate([away, people.velocity, people.radius[:, None]], axis=1)
-    return np.ascontiguousarray(rows[np.hypot(away[:, 0], away[:, 1]) < SIGHT])
-
-
-def _walls(observation: Observation) -> Floats:
-    walls = observation.walls.segments() - np.tile(observation.position, 2)
-    along = walls[:, 2:] - walls[:, :2]
-    length2 = np.maximum(along[:, 0] ** 2 + along[:, 1] ** 2, 1e-300)
-    share = np.clip(-(walls[:, 0] * along[:, 0] + walls[:, 1] * along[:, 1]) / length2, 0.0, 1.0)
-    foot = walls[:, :2] + share[:, None] * along
-    return np.ascontiguousarray(walls[np.hypot(foot[:, 0], foot[:, 1]) < SIGHT])
+def _weights(caution: WindowCosts) -> tuple[Floats, int, bool]:
+    """Return the weights for kernels, the number of steps, and whether no weight is negative."""
+    weights = np.array(caution[1:], dtype=np.float64)
+    steps = max(MATCH, round(caution.look / STEP))
+    return weights, steps, min(caution.near, caution.contact, caution.wall) >= 0.0 < caution.wall_margin

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
+import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError, Twist
 
 from .action import Action
+from .decisions import Decisions
+from .navigator_memory import copy_memory
 from .observation import Observation
+from .observation_batch import ObservationBatch
 
 __all__ = ["Navigator"]
 
@@ -56,7 +62,7 @@ class Navigator(ABC):
             robot: name of the robot, for error messages.
 
         Raises:
-            InputError: :meth:`act` returned something else, or asks for joints.
+            InputError: :meth:`act` returned something else or a twist that is not finite, or asks for joints.
         """
         name = type(self).__name__ + (f" of robot {robot!r}" if robot else "")
         plain = not _takes_memory(type(self))
@@ -71,9 +77,81 @@ class Navigator(ABC):
             raise InputError(
                 f"navigator {name}: joints = {dict(action.joints)} cannot be commanded yet; leave them empty"
             )
+        if not all(math.isfinite(value) for value in action.twist):
+            raise InputError(
+                f"navigator {name} returned {action.twist} at {observation.time:g} s; its values must be finite"
+            )
         return action, answer[1]
 
+    def first_memory(self, observation: Observation, *, robot: str = "") -> Any:
+        """Return the memory before the first decision, from :meth:`begin`.
 
+        Raises:
+            InputError: the memory cannot be copied.
+        """
+        memory = self.begin(observation)
+        copy_memory(memory, type(self).__name__ + (f" of robot {robot!r}" if robot else ""))
+        return memory
+
+    def first_memories(self, batch: ObservationBatch, *, robot: str = "") -> tuple[list[Any], dict[int, Exception]]:
+        """Return the memories before the first decision in each environment, and what failed there."""
+        memories: list[Any] = [None] * len(batch)
+        failures: dict[int, Exception] = {}
+        if type(self).begin is not Navigator.begin:
+            for k in range(len(batch)):
+                try:
+                    memories[k] = self.first_memory(batch.environment(k), robot=robot)
+                except Exception as error:  # the other environments go on
+                    failures[k] = error
+        return memories, failures
+
+    def decide_batch(
+        self,
+        batch: ObservationBatch,
+        memories: Sequence[Any],
+        robot: str = "",
+        timer: Callable[[], float] | None = None,
+    ) -> Decisions:
+        """Return the decisions in N environments, the same as :meth:`decide` for each.
+
+        The default calls :meth:`decide` for each environment. An exception is stored as the failure of its
+        environment; the other environments are not affected.
+
+        Args:
+            batch: what the robot knows in each environment.
+            memories: N memories from :meth:`first_memories` or from the previous decisions.
+            robot: name of the robot, for error messages.
+            timer: clock such as ``time.perf_counter``, which measures the compute time of each decision; a navigator
+                reads no clock otherwise.
+        """
+        decisions = Decisions.still(memories)
+        self._decide_rows(range(len(batch)), batch, decisions, robot, timer)
+        return decisions
+
+    def _decide_rows(
+        self,
+        rows: Iterable[int],
+        batch: ObservationBatch,
+        decisions: Decisions,
+        robot: str,
+        timer: Callable[[], float] | None,
+    ) -> None:
+        """Decide in some environments, one by one."""
+        for k in rows:
+            begin = timer() if timer else 0.0
+            try:
+                action, memory = self.decide(batch.environment(k), decisions.memories[k], robot=robot)
+                decisions.twist[k], decisions.memories[k] = action.twist, memory
+            except Exception as error:  # the other environments go on
+                decisions.failures[k] = error
+            decisions.seconds[k] = timer() - begin if timer else 0.0
+
+    def _keeps(self, kind: type[Navigator], *names: str) -> bool:
+        """Return whether no subclass of ``kind`` overrides these methods, which its batch form replaces."""
+        return all(getattr(type(self), name) is getattr(kind, name) for name in ("decide", *names))
+
+
+@functools.cache
 def _takes_memory(kind: type[Navigator]) -> bool:
     """Return whether ``act`` has a second argument for the memory."""
     own = list(inspect.signature(kind.act).parameters.values())[2:]

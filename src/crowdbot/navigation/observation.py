@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -10,16 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Twist, Walls, wrap_angle
-from crowdbot.sensors import Reading
+from crowdbot.data import Forecast
+from crowdbot.prediction import Predictor
+from crowdbot.sensors import Odometry, Reading, Scan
+
+from .goal_motion import SLOWING_TIME, TURN_GAIN
+from .track_history import TrackHistory
 
 __all__ = ["DriveLimits", "Observation", "VisiblePeople"]
 
 Floats = NDArray[np.float64]
 
-TURN_GAIN = 3.0
-"""Turn rate [rad/s] per rad of heading error."""
-SLOWING_TIME = 0.5
-"""Near the goal the speed is limited to the distance over this time [s]."""
+BY_INDEX: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+"""Default of ids: people are numbered by their index."""
+AT_GOAL = (math.nan, math.nan)
+"""Default of the waypoint: the goal."""
+LIMITS = ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration")
+"""Limits of a drive that must be above 0."""
 
 
 class DriveLimits(NamedTuple):
@@ -33,6 +41,8 @@ class DriveLimits(NamedTuple):
     """Maximum acceleration [m/s2]."""
     max_turn_acceleration: float = math.inf
     """Maximum angular acceleration [rad/s2]."""
+    holonomic: bool = False
+    """Whether the drive moves in every direction without turning; the limits then apply to the velocity vector."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +53,17 @@ class VisiblePeople:
         position: ``[N, 2]`` [m].
         velocity: ``[N, 2]`` [m/s].
         radius: ``[N]`` [m].
+        ids: ``[N]`` identities; default: the indices.
     """
 
     position: Floats
     velocity: Floats
     radius: Floats
+    ids: NDArray[np.int64] = field(default_factory=lambda: BY_INDEX)
+
+    def __post_init__(self) -> None:
+        if self.ids is BY_INDEX:
+            object.__setattr__(self, "ids", np.arange(len(self.radius)))
 
     @classmethod
     def none(cls) -> VisiblePeople:
@@ -71,9 +87,12 @@ class Observation:
         twist: current velocity.
         people: visible people and other robots.
         walls: walls of the stage.
-        scan: latest scan of its first laser scanner, or None.
+        scan: latest scan of its first laser scanner, or None; default: the first scan in ``readings``.
         dt: time until the next decision [s].
         time: simulated time [s].
+        readings: latest reading of each sensor by its name; sensors without a reading yet are missing.
+        waypoint: next point x, y [m] of the planned path, in sight of the robot; default: the goal.
+        tracks: past positions of the visible people, or None.
 
     Raises:
         InputError: a number is not finite or a radius, limit or ``dt`` is not above 0.
@@ -93,15 +112,24 @@ class Observation:
     walls: Walls = field(default_factory=Walls.of)
     scan: Reading | None = None
     time: float = 0.0
+    readings: Mapping[str, Reading] = field(default_factory=dict)
+    waypoint: tuple[float, float] = AT_GOAL
+    tracks: TrackHistory | None = None
 
     def __post_init__(self) -> None:
-        for name, values in (("pose", self.pose), ("goal", self.goal), ("twist", self.twist)):
+        if self.waypoint is AT_GOAL:
+            object.__setattr__(self, "waypoint", self.goal)
+        if self.scan is None and self.readings:
+            scans = (reading for reading in self.readings.values() if isinstance(reading, Scan))
+            object.__setattr__(self, "scan", next(scans, None))
+        vectors = (("pose", self.pose), ("goal", self.goal), ("twist", self.twist), ("waypoint", self.waypoint))
+        for name, values in vectors:
             if not all(math.isfinite(value) for value in values):
                 raise InputError(f"observation: {name} = {tuple(map(float, values))} is not finite")
         for name, value in (
             ("radius", self.radius),
             ("dt", self.dt),
-            *zip(DriveLimits._fields, self.limits, strict=True),
+            *zip(LIMITS, self.limits[:4], strict=True),
         ):
             if not value > 0.0:
                 raise InputError(f"observation: {name} = {value} must be above 0")
@@ -119,6 +147,10 @@ class Observation:
         sight: float = math.inf,
         scan: Reading | None = None,
         environment: int = 0,
+        ids: NDArray[np.int64] | None = None,
+        readings: Mapping[str, Reading] | None = None,
+        waypoint: tuple[float, float] | None = None,
+        tracks: TrackHistory | None = None,
     ) -> Observation:
         """Return the observation of a robot in a scene, with the true state of the visible people.
 
@@ -132,6 +164,10 @@ class Observation:
             sight: largest distance of visible agents, centre to centre [m].
             scan: latest scan.
             environment: index of the environment.
+            ids: ``[A]`` identities of the agents; default: their indices in the scene.
+            readings: latest reading of each sensor.
+            waypoint: next point of the planned path [m]; default: the goal.
+            tracks: past positions of the visible people.
         """
         e = environment
         place, heading = scene.position[e, robot], float(scene.heading[e, robot])
@@ -149,10 +185,18 @@ class Observation:
             limits=limits,
             dt=dt,
             twist=twist,
-            people=VisiblePeople(scene.position[e, chosen], scene.velocity[e, chosen], scene.radius[e, chosen]),
+            people=VisiblePeople(
+                scene.position[e, chosen],
+                scene.velocity[e, chosen],
+                scene.radius[e, chosen],
+                np.flatnonzero(chosen) if ids is None else ids[chosen],
+            ),
             walls=scene.walls,
             scan=scan,
-            time=scene.time,
+            time=float(np.broadcast_to(scene.time, (scene.shape[0],))[e]),
+            readings={} if readings is None else readings,
+            waypoint=AT_GOAL if waypoint is None else waypoint,
+            tracks=tracks,
         )
 
     @property
@@ -180,9 +224,23 @@ class Observation:
     @property
     def bearing(self) -> float:
         """Direction to the goal in the robot frame, -pi to pi [rad]; 0 at the goal."""
-        if self.distance == 0.0:
+        return self.direction_to(self.goal)
+
+    @property
+    def remaining(self) -> float:
+        """Shortest possible length of the remaining path, through the waypoint [m]."""
+        return math.dist(self.pose[:2], self.waypoint) + math.dist(self.waypoint, self.goal)
+
+    @property
+    def odometry(self) -> Odometry | None:
+        """Latest reading of the first odometry, or None."""
+        return next((one for one in self.readings.values() if isinstance(one, Odometry)), None)
+
+    def direction_to(self, point: tuple[float, float]) -> float:
+        """Return the direction to a point x, y [m] in the robot frame, -pi to pi [rad]; 0 at the point."""
+        if math.dist(self.pose[:2], point) == 0.0:
             return 0.0
-        return wrap_angle(math.atan2(self.goal[1] - self.pose[1], self.goal[0] - self.pose[0]) - self.heading)
+        return wrap_angle(math.atan2(point[1] - self.pose[1], point[0] - self.pose[0]) - self.heading)
 
     @property
     def clearances(self) -> Floats:
@@ -196,13 +254,30 @@ class Observation:
         return float(np.min(self.clearances, initial=math.inf))
 
     def towards_goal(self, speed: float) -> Twist:
-        """Return the twist straight to the goal at up to ``speed`` [m/s].
+        """Return the twist along the path to the goal, straight to the waypoint, at up to ``speed`` [m/s].
 
-        It turns on the spot if the bearing of the goal is above 60 degrees, and slows down to stop at the goal.
+        It turns on the spot if the bearing of the waypoint is above 60 degrees, and slows down to stop at the goal.
         """
-        ahead = max(0.0, 2.0 * math.cos(self.bearing) - 1.0)
-        top = min(speed, self.limits.max_speed, self.distance / SLOWING_TIME, self.braking_speed(self.distance))
-        return Twist(top * ahead, self.turn_by(self.bearing))
+        bearing, remaining = self.direction_to(self.waypoint), self.remaining
+        ahead = max(0.0, 2.0 * math.cos(bearing) - 1.0)
+        top = min(speed, self.limits.max_speed, remaining / SLOWING_TIME, self.braking_speed(remaining))
+        return Twist(top * ahead, self.turn_by(bearing))
+
+    def forecast(self, predictor: Predictor, seconds: float, *, samples: int = 1, seed: int = 0) -> Forecast:
+        """Return where a predictor expects the people of the newest row of ``tracks``.
+
+        Args:
+            predictor: any predictor whose goal does not require the future.
+            seconds: time to predict [s], rounded up to rows of the tracks.
+            samples: number of futures.
+            seed: random seed; the stream also depends on the time.
+
+        Raises:
+            InputError: there are no tracks, or the predictor cannot use them.
+        """
+        if self.tracks is None:
+            raise InputError("observation: forecast needs tracks, but they are None")
+        return self.tracks.forecast(predictor, seconds, walls=self.walls, samples=samples, seed=seed)
 
     def turn_by(self, angle: float) -> float:
         """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad] quickly and without overshoot."""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +14,19 @@ from numpy.typing import NDArray
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
-from .dynamic_window import dynamic_window_twist
+from .batch_rows import drive_numbers, rows_for_kernels, share_time
+from .decisions import Decisions
+from .dynamic_window import dynamic_window_twist, dynamic_window_twists
+from .goal_motion import SLOWING_TIME, holonomic_twists
 from .navigator import Navigator
-from .observation import SLOWING_TIME, Observation
+from .observation import Observation
+from .observation_batch import ObservationBatch
+from .orca_search import choose_velocities
+from .wall_arrays import wall_arrays
 
 __all__ = ["ORCANavigator"]
+
+Floats = NDArray[np.float64]
 
 UNITS = {
     "speed": "m/s",
@@ -33,7 +44,8 @@ class ORCANavigator(Navigator):
     """Chooses a velocity with reciprocal collision avoidance, then the best reachable twist.
 
     The visible people are agents with constant velocity that take their part of the avoidance (``share``). The drive
-    cannot reach the chosen velocity at once: :func:`dynamic_window_twist` selects a twist within its accelerations.
+    cannot reach the chosen velocity at once: :func:`dynamic_window_twist` selects a twist within its accelerations. A
+    holonomic drive moves with the chosen velocity and turns towards it.
 
     Fields:
         speed: largest speed [m/s], limited by the drive.
@@ -79,8 +91,63 @@ class ORCANavigator(Navigator):
             raise InputError(f"ORCANavigator: share = {self.share} must be 0.5 or 1")
 
     def act(self, observation: Observation) -> Twist:
-        """Return the reachable twist that fits the chosen velocity best."""
-        return dynamic_window_twist(observation, self.velocity(observation), self.speed)
+        """Return the reachable twist that fits the chosen velocity best; for a holonomic drive, the velocity."""
+        velocity = self.velocity(observation)
+        if not observation.limits.holonomic:
+            return dynamic_window_twist(observation, velocity, self.speed)
+        pose, wish, out = np.array([observation.pose], np.float64), np.array([velocity]), np.zeros((1, 3))
+        numbers = drive_numbers(observation.limits, self.speed)
+        holonomic_twists(np.ones(1, np.bool_), pose, wish, numbers, float(observation.dt), out)
+        return Twist(*out[0].tolist())
+
+    def decide_batch(
+        self,
+        batch: ObservationBatch,
+        memories: Sequence[Any],
+        robot: str = "",
+        timer: Callable[[], float] | None = None,
+    ) -> Decisions:
+        """Return the decisions in N environments, with two kernels; see :meth:`Navigator.decide_batch`."""
+        if not self._keeps(ORCANavigator, "act", "velocity", "_wish"):
+            return super().decide_batch(batch, memories, robot, timer)
+        decisions, begin = Decisions.still(memories), timer() if timer else 0.0
+        asking = rows_for_kernels(batch, with_people=True)
+        velocity = self._velocities(batch, asking)
+        if batch.limits.holonomic:
+            numbers = drive_numbers(batch.limits, self.speed)
+            holonomic_twists(asking, batch.pose, velocity, numbers, float(batch.dt), decisions.twist)
+        else:
+            dynamic_window_twists(batch, asking, velocity, self.speed, decisions.twist)
+        share_time(decisions, asking, begin, timer)
+        if not asking.all():
+            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer)
+        return decisions
+
+    def _velocities(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> Floats:
+        """Return the velocities ``[N, 2]`` [m/s] chosen by ORCA in the asking environments."""
+        try:
+            _model(self.neighbor_distance, self.max_neighbors, self.time_horizon, self.time_horizon_walls)
+        except InputError:  # each decision reports it
+            asking[:] = False
+        out, people, limits = np.zeros((len(batch), 2)), batch.people, batch.limits
+        numbers = np.array(
+            [
+                min(self.speed, limits.max_speed),
+                limits.max_acceleration,
+                self.safety,
+                1.0 if self.share == 1.0 else 0.5,
+                self.time_horizon,
+                self.time_horizon_walls,
+                self.neighbor_distance,
+                max(self.reaction, batch.dt),
+            ]
+        )
+        choose_velocities(
+            asking, batch.pose, batch.goal, batch.waypoint, batch.twist, batch.radius,
+            people.position, people.velocity, people.radius, people.seen,
+            *wall_arrays(batch.walls).edges, numbers, round(self.max_neighbors), out,
+        )  # fmt: skip
+        return out
 
     def velocity(self, observation: Observation) -> tuple[float, float]:
         """Return the velocity [m/s] in the world chosen by ORCA, without the limits of the drive."""
@@ -98,15 +165,21 @@ class ORCANavigator(Navigator):
             external=external,
             walls=observation.walls,
         )
-        model = models.ORCA(self.neighbor_distance, self.max_neighbors, self.time_horizon, self.time_horizon_walls)
+        model = _model(self.neighbor_distance, self.max_neighbors, self.time_horizon, self.time_horizon_walls)
         vx, vy = model.velocity(scene, max(self.reaction, observation.dt))[0, 0].tolist()
         return vx, vy
 
-    def _wish(self, observation: Observation, top: float) -> NDArray[np.float64]:
-        distance = observation.distance
-        speed = min(top, distance / SLOWING_TIME, observation.braking_speed(distance))
-        return np.asarray((np.array(observation.goal) - observation.position) * (speed / max(distance, 1e-9)))
+    def _wish(self, observation: Observation, top: float) -> Floats:
+        remaining = observation.remaining
+        speed = min(top, remaining / SLOWING_TIME, observation.braking_speed(remaining))
+        away = np.array(observation.waypoint) - observation.position
+        return np.asarray(away * (speed / max(math.dist(observation.pose[:2], observation.waypoint), 1e-9)))
 
 
-def _joined(own: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
+@functools.lru_cache(maxsize=64)
+def _model(neighbor_distance: float, max_neighbors: int, time_horizon: float, time_horizon_walls: float) -> models.ORCA:
+    return models.ORCA(neighbor_distance, max_neighbors, time_horizon, time_horizon_walls)
+
+
+def _joined(own: Floats, others: Floats) -> Floats:
     return np.concatenate([own[None], others])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, overload
 
-from crowdbot.core import EpisodeError, InputError
+from crowdbot.core import EpisodeError, FreeClock, InputError
 from crowdbot.simulation import (
     Episode,
     EpisodeDigest,
@@ -27,12 +27,15 @@ from crowdbot.trials import Trial, apply_values, trial_xml
 from .attachments import unpack_attachments
 from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
-from .provenance import DigestComparison, Provenance, ProvenanceSegment, digests
+from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests
 from .recorded_run import episode_path
 
 __all__ = ["branch"]
 
 Progress = Callable[[float], None]
+
+TOLERANCE = 1000
+"""Largest difference [ns] between the time of a branch and a recorded instant."""
 
 
 @dataclass(frozen=True)
@@ -45,19 +48,21 @@ class _Options:
     out: Path | str | None
     force: bool
     progress: Progress | None
+    orders: bool
 
 
 @overload
 def branch(
     source: Episode, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
     trial: Trial | None = None, out: Path | str | None = None, force: bool = False, progress: Progress | None = None,
+    orders: bool = True,
 ) -> Episode: ...  # fmt: skip
 @overload
 def branch(
     source: Path | str | RecordedEpisode, at: float, *, seed: int | None = None,
     changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None,
     force: bool = False, folder: Path | None = None, trust: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | None = None, orders: bool = True,
 ) -> RunSummary: ...  # fmt: skip
 def branch(
     source: Path | str | RecordedEpisode | Episode,
@@ -71,6 +76,7 @@ def branch(
     folder: Path | None = None,
     trust: bool = False,
     progress: Progress | None = None,
+    orders: bool = True,
 ) -> RunSummary | Episode:
     """Continue an episode from a recorded step, with the same or with changed values.
 
@@ -89,6 +95,7 @@ def branch(
         force: whether an existing file may be overwritten.
         folder, trust: see :func:`replay`; for files only.
         progress: called with the completed fraction, 0 to 1.
+        orders: whether the recorded orders from outside after that step apply again.
 
     Returns:
         An :class:`Episode` for an episode in memory, otherwise a :class:`RunSummary`.
@@ -104,7 +111,7 @@ def branch(
     >>> float(later.times[0]), float(later.times[-1]), branch(episode, at=1.0).digest == episode.digest
     (1.5, 3.0, True)
     """
-    options = _Options(seed, changes or {}, trial, out, force, progress)
+    options = _Options(seed, changes or {}, trial, out, force, progress, orders)
     if isinstance(source, Episode):
         return _branch_of_episode(source, at, options)
     path = source.path if isinstance(source, RecordedEpisode) else Path(source)
@@ -120,17 +127,17 @@ def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, o
         tally, outcome, simulation = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
     warn_of_failure(simulation)
     written = None if out is None else episode_path(out)
-    summary: RunSummary = tally.summary(outcome, simulation.tick, written, simulation.failure)
+    summary: RunSummary = tally.summary(outcome, simulation.tick, written, simulation.failures[0])
     return summary
 
 
 def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episode:
     if episode.times[0] > 0.0:
         raise InputError("this episode is a branch; record the original to a file and branch from that")
-    course = Provenance((ProvenanceSegment(0, episode.trial, episode.seed),))
+    course = Provenance((ProvenanceSegment(0, episode.trial, episode.seed, episode.orders),))
     log, outcome, simulation = _run(course, at, {}, options, EpisodeLog, f"episode {episode.trial.name!r}")
     warn_of_failure(simulation)
-    after: Episode = log.episode(outcome, simulation.tick, simulation.failure)
+    after: Episode = log.episode(outcome, simulation.tick, simulation.failures[0])
     return after
 
 
@@ -147,7 +154,8 @@ def _run(
         simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
         apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
-        part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
+        rest = tuple(row for row in last.orders if row[0] >= simulation.tick) if options.orders else ()
+        part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed), rest)
         tally = kind(new, part.seed, comparison.digest)
         parts = (*course.parts, part)
         return tally, _record(simulation, tally, comparison, parts, options, stop), simulation
@@ -177,22 +185,26 @@ def _there(
 
 def _tick(last: ProvenanceSegment, at: float, name: str, latest: int | None) -> int:
     """Return the tick of a time; ``latest`` is the last recorded time [ns]."""
-    period, step = round(last.trial.recording.period * 1e9), round(last.trial.step * 1e9)
-    nanoseconds = round(at * 1e9)
+    clock = FreeClock(last.trial.step)
+    step, nanoseconds = clock.step_ns, round(at * 1e9)
     first, end = last.tick * step, last.trial.ticks * step
     end = end if latest is None else max(first, min(end, latest))
-    if not first <= nanoseconds <= end:
+    if not first - TOLERANCE <= nanoseconds <= end + TOLERANCE:
         raise EpisodeError(f"{name} has no step at {at:g} s; it lasts from {first / 1e9:g} s to {end / 1e9:g} s")
-    if nanoseconds % period:
-        near = round(nanoseconds / period) * period / 1e9
+    schedule = clock.schedule(last.trial.recording.period)
+    tick = (nanoseconds + step // 2) // step
+    if abs(tick * step - nanoseconds) > TOLERANCE or not schedule.is_due(tick):
+        recorded = (schedule.tick_of(schedule.index(tick) + k) * step for k in (0, 1))
+        near = min(recorded, key=lambda time: abs(time - nanoseconds)) / 1e9
         raise EpisodeError(
-            f"{name} has no step at {at:g} s: it was recorded every {period / 1e9:g} s; the nearest is {near:g} s"
+            f"{name} has no step at {at:g} s: it was recorded every {last.trial.recording.period:g} s; the nearest is"
+            f" {near:.9g} s"
         )
-    return nanoseconds // step
+    return tick
 
 
 def _check_period(simulation: Simulation, new: Trial, at: float) -> None:
-    if simulation.tick % simulation.world.clock.every(new.recording.period):
+    if not simulation.world.clock.schedule(new.recording.period).is_due(simulation.tick):
         raise InputError(f"a recording period of {new.recording.period:g} s has no step at {at:g} s")
 
 
@@ -211,13 +223,14 @@ def _record(
     tally.keep(frame)
     rest = None if progress is None else lambda share: progress(0.5 + 0.5 * share)
     sinks: list[Sink] = [tally]
+    steering = [OrderReplay(parts[-1].orders)]
     if out is None:
-        return run_to_end(simulation, sinks, stop, rest)
+        return run_to_end(simulation, sinks, stop, rest, sources=steering)
     course, earlier = Provenance(parts), [part.trial for part in parts[:-1]]
     with Recorder(
         episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier, force=options.force
     ) as recorder:
         recorder.take(frame)
-        outcome = run_to_end(simulation, [tally, recorder], stop, rest)
-        recorder.complete(outcome, simulation.tick, simulation.failure)
+        outcome = run_to_end(simulation, [tally, recorder], stop, rest, sources=steering)
+        recorder.complete(outcome, simulation.tick, simulation.failures[0])
     return outcome

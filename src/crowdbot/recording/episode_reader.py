@@ -12,12 +12,12 @@ from typing import Any, BinaryIO, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, InputError, TickSchedule
 from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
-from crowdbot.simulation import RunFailure, ScanRow, tracks_of
+from crowdbot.simulation import Order, RunFailure, ScanRow, read_order, tracks_of
 
 from .episode_repair import EpisodeEnd
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -52,6 +52,7 @@ class RecordedEpisode:
         metrics: metrics by name.
         contacts: contacts of robots in all time steps.
         forces, collisions: contact forces and contact events of the physics world.
+        orders: time [s] and content of the orders from outside.
         digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
     """
 
@@ -75,6 +76,7 @@ class RecordedEpisode:
     readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
     forces: tuple[ContactForceRecord, ...] = ()
     collisions: tuple[ContactEventRecord, ...] = ()
+    orders: tuple[tuple[float, Order], ...] = ()
 
     @property
     def xml(self) -> str:
@@ -132,8 +134,18 @@ class RecordedEpisode:
 
     def _repr_svg_(self) -> str:
         """Return a drawing of walls and paths for notebooks."""
-        period = float(self.times[1] - self.times[0]) if len(self.times) > 1 else 1.0
+        period = self.schedule.period_ns / 1e9
         return tracks_of(self, f"{self.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
+
+    @property
+    def schedule(self) -> TickSchedule:
+        """Ticks of the recorded steps; without ``period_ns`` in the metadata they are regular."""
+        spacing = round(float(self.times[1] - self.times[0]) * 1e9) if len(self.times) > 1 else 0
+        try:
+            step = int(self.metadata.get("step_ns", spacing or 1))
+            return TickSchedule(step, int(self.metadata.get("period_ns", spacing or step)))
+        except (ValueError, InputError):
+            raise EpisodeError(f"{self.path}: the metadata step_ns and period_ns must be whole numbers [ns]") from None
 
 
 def read_episode(path: Path | str) -> RecordedEpisode:
@@ -283,6 +295,7 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         {topic: tuple(rows) for topic, rows in readings.items()},
         tuple(force for moment in found for force in moment.forces),
         tuple(collision for moment in found for collision in moment.collisions),
+        tuple((moment.time, read_order(text)) for moment in found for text in moment.orders),
     )
 
 

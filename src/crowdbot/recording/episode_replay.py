@@ -13,7 +13,7 @@ from crowdbot.simulation import EpisodeDigest, RunFailure, catch_interrupt, run_
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata, recorded_failure
 from .metadata import END_KEYS, versions
-from .provenance import DigestComparison, Provenance, digests
+from .provenance import DigestComparison, OrderReplay, Provenance, digests
 
 __all__ = ["Replay", "replay"]
 
@@ -132,7 +132,8 @@ def replay(
         course = Provenance.of(path, place.folder, trust)
         simulation = course.simulate_until(comparison, stop)
         ticks = int(recorded["steps"]) if recorded["outcome"] in ("interrupted", "error") else None
-        outcome = run_to_end(simulation, [comparison], stop, progress, ticks)
+        steering = [OrderReplay(course.parts[-1].orders)]
+        outcome = run_to_end(simulation, [comparison], stop, progress, ticks, steering)
         if stop.asked and simulation.tick != ticks:
             raise KeyboardInterrupt
     now = versions()
@@ -148,7 +149,7 @@ def replay(
         comparison.differs,
         complete,
         place.changed,
-        (recorded_failure(recorded), simulation.failure),
+        (recorded_failure(recorded), simulation.failures[0]),
     )
 
 

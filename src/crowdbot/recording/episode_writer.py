@@ -12,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from crowdbot.core import EpisodeError, InputError, lock_output
+from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
 from crowdbot.messages import (
     MAP,
     MeasuredReading,
@@ -24,12 +24,12 @@ from crowdbot.messages import (
     mount_pose,
 )
 from crowdbot.messages.marker_array import KIND as MARKERS
-from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, StepRecord
+from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, StepRecord, write_order
 from crowdbot.trials import Trial, trial_xml
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .mcap_writer import McapWriter
-from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
+from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
 
 __all__ = ["Recorder"]
 
@@ -49,9 +49,9 @@ class Recorder:
 
     Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
     ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
-    ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), and ``/crowdbot/contacts``
-    for contacts of a robot with people or walls; in the physics world ``/crowdbot/forces`` and
-    ``/crowdbot/collisions`` too. All time stamps are simulated time.
+    ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for contacts of a
+    robot with people or walls, and ``/crowdbot/orders`` for orders from outside; in the physics world
+    ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
 
     The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
     as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no
@@ -96,10 +96,11 @@ class Recorder:
         self.tape: McapWriter | None = None
         self.last = (0, "")
         """Number of steps until the last recorded step, and the digest of an episode that ends there."""
-        self._markers_every = round(self.trial.recording.markers * 1e9)
-        start = begin * round(self.trial.step * 1e9)
-        self._markers_due = -(-start // self._markers_every) * self._markers_every
-        self._write_due = start
+        clock = FreeClock(self.trial.step)
+        self._schedule = clock.schedule(self.trial.recording.period)
+        self._markers = clock.schedule(self.trial.recording.markers)
+        self._next_markers = self._markers.index(self._markers.next_due(begin))
+        self._write_due = begin * clock.step_ns
         self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
         self._goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in self.trial.robots]
         self._mounts = [
@@ -151,6 +152,8 @@ class Recorder:
                 self._write(f"/{told.topic}{ending}", message, now)
         if frame.touches:
             self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
+        for order in frame.orders:
+            self._write(ORDERS, make.text(write_order(order)), now)
         for topic, message in contact_messages(make, now, frame, self._names):
             self._write(topic, message, now)
         if frame.due:
@@ -190,8 +193,8 @@ class Recorder:
             name = self.trial.robots[k].name
             self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
-        if now >= self._markers_due:
-            self._markers_due = now - now % self._markers_every + self._markers_every
+        if (latest := self._markers.index(frame.tick)) >= self._next_markers:
+            self._next_markers = latest + 1
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
 
     def _fixed(self, frame: StepRecord) -> None:
@@ -252,13 +255,16 @@ class Recorder:
             }
             for k, robot in enumerate(self.trial.robots)
         ]
+        schedule = self._schedule
+        exact = schedule.period_ns == schedule.every * schedule.step_ns  # readers take the period from the times
         return {
             "format": FORMAT,
             "trial": self.xml,
             "trial_name": self.trial.name,
             "seed": str(self.seed),
             **versions(),
-            "step_ns": str(round(self.trial.step * 1e9)),
+            "step_ns": str(schedule.step_ns),
+            **({} if exact else {"period_ns": str(schedule.period_ns)}),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
             "robots": as_json(robots),
             **({"files": as_json([dataclasses.asdict(file) for file, _ in self.files])} if self.files else {}),

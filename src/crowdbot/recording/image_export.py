@@ -62,7 +62,7 @@ class ImageExport:
         """Write an image named by sensor and time [ns], and return its path relative to the table."""
         from PIL import Image
 
-        name = f"{re.sub(r'[^A-Za-z0-9_]+', '-', topic)}-{round(picture.time * 1e9):013d}.png"
+        name = f"{re.sub(r'[^A-Za-z0-9_]+', '-', topic)}-{round(float(picture.time) * 1e9):013d}.png"
         self.draft.mkdir(parents=True, exist_ok=True)
         Image.fromarray(picture.rgb[0]).save(self.draft / name, format="PNG")
         return f"{self.folder.name}/{name}"

@@ -21,6 +21,7 @@ __all__ = [
     "FORMAT",
     "KEYS",
     "METADATA",
+    "ORDERS",
     "TWIST",
     "as_json",
     "from_json",
@@ -41,6 +42,8 @@ DIGEST = "/crowdbot/digest"
 """Topic of the digest up to each recorded step, as if interrupted there."""
 TWIST = ("linear_x", "angular_z", "linear_y")
 """Columns of forward speed [m/s], turn rate [rad/s] and leftward speed [m/s], named as in ROS."""
+ORDERS = "/crowdbot/orders"
+"""Topic of the orders from outside, as JSON."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
 

@@ -2,30 +2,61 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, InputError
 from crowdbot.data import McapReader
-from crowdbot.simulation import EpisodeDigest, Simulation, SimulationRun, StepRecord, StopRequest, apply_overrides
+from crowdbot.simulation import (
+    EpisodeDigest,
+    Order,
+    Simulation,
+    SimulationRun,
+    StepRecord,
+    StopRequest,
+    apply_overrides,
+    read_order,
+    write_order,
+)
 from crowdbot.trials import Trial, parse_trial, trial_xml
 
 from .episode_reader import read_metadata
-from .metadata import DIGEST
+from .metadata import DIGEST, ORDERS
 
-__all__ = ["DigestComparison", "Provenance", "ProvenanceSegment", "digests"]
+__all__ = ["DigestComparison", "OrderReplay", "Provenance", "ProvenanceSegment", "digests", "recorded_orders"]
 
 
 @dataclass(frozen=True)
 class ProvenanceSegment:
-    """A trial and a seed that apply from a tick on."""
+    """A trial and a seed that apply from a tick on, and the orders from outside since then.
+
+    Fields:
+        tick: first tick.
+        trial, seed: the trial and its seed.
+        orders: tick and order, in the order of their application.
+    """
 
     tick: int
     trial: Trial
     seed: int
+    orders: tuple[tuple[int, Order], ...] = ()
+
+
+class OrderReplay:
+    """Repeats recorded orders, as an :class:`crowdbot.simulation.OrderSource`."""
+
+    def __init__(self, orders: Iterable[tuple[int, Order]]) -> None:
+        self._by_tick: dict[int, list[Order]] = {}
+        for tick, order in orders:
+            self._by_tick.setdefault(tick, []).append(order)
+
+    def orders(self, simulation: Simulation) -> list[Order]:
+        """Return the orders of the current step."""
+        return self._by_tick.get(simulation.tick, [])
 
 
 class DigestComparison:
@@ -72,16 +103,26 @@ class Provenance:
 
         try:
             origin = json.loads(known.get("origin", "[]"))
-            rows = [(int(one["tick"]), str(one["trial"]), int(one["seed"])) for one in origin]
-            rows.append((int(known.get("begin", "0")), known["trial"], int(known["seed"])))
-        except (ValueError, TypeError, KeyError) as error:
+            rows = [
+                (int(one["tick"]), str(one["trial"]), int(one["seed"]), _orders(one.get("orders", ())))
+                for one in origin
+            ]
+            rows.append(
+                (int(known.get("begin", "0")), known["trial"], int(known["seed"]), recorded_orders(path, known))
+            )
+        except (ValueError, TypeError, KeyError, InputError) as error:
             raise EpisodeError(f"{path} has an invalid record of its origin: {error}") from None
-        return cls(tuple(ProvenanceSegment(tick, parsed(xml), seed) for tick, xml, seed in rows))
+        return cls(tuple(ProvenanceSegment(tick, parsed(xml), seed, orders) for tick, xml, seed, orders in rows))
 
     @property
     def origin(self) -> list[dict[str, Any]]:
         """Metadata of the segments before the last."""
-        return [{"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed} for part in self.parts[:-1]]
+        found = []
+        for part, following in itertools.pairwise(self.parts):
+            row: dict[str, Any] = {"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed}
+            orders = [[tick, write_order(order)] for tick, order in part.orders if tick <= following.tick]
+            found.append(row | ({"orders": orders} if orders else {}))
+        return found
 
     def simulate_until(
         self,
@@ -105,7 +146,7 @@ class Provenance:
         simulation = Simulation(first.trial, first.seed)
         ends = [part.tick for part in self.parts[1:]] + ([] if until is None else [until])
         for number, end in enumerate(ends):
-            _on(simulation, end, sink, stop, progress)
+            _on(simulation, end, sink, stop, progress, OrderReplay(self.parts[number].orders))
             if number + 1 < len(self.parts):
                 part = self.parts[number + 1]
                 apply_overrides(simulation, part.trial, None if part.seed == self.parts[number].seed else part.seed)
@@ -118,9 +159,10 @@ def _on(
     sink: DigestComparison,
     stop: StopRequest,
     progress: Callable[[float], None] | None,
+    orders: OrderReplay,
 ) -> None:
     """Continue to a tick."""
-    running = SimulationRun(simulation, [sink])
+    running = SimulationRun(simulation, [sink], [orders])
     told = -1
     while simulation.tick < end:
         if running.outcome is not None:
@@ -134,6 +176,7 @@ def _on(
         if progress is not None and (share := simulation.tick * 100 // end) > told:
             told = share
             progress(simulation.tick / end)
+    running.flush()
 
 
 def digests(path: Path) -> dict[int, str]:
@@ -142,14 +185,34 @@ def digests(path: Path) -> dict[int, str]:
     Raises:
         EpisodeError: the file cannot be read.
     """
+    return dict(_texts(path, DIGEST))
+
+
+def recorded_orders(path: Path, known: Mapping[str, str]) -> tuple[tuple[int, Order], ...]:
+    """Return the orders in an episode file with their ticks, in the order of their application.
+
+    Raises:
+        EpisodeError: the file cannot be read.
+        InputError: a message is not an order.
+    """
+    found = list(_texts(path, ORDERS))
+    return tuple((stamp // int(known["step_ns"]), read_order(text)) for stamp, text in found)
+
+
+def _orders(rows: Iterable[Any]) -> tuple[tuple[int, Order], ...]:
+    return tuple((int(tick), read_order(str(text))) for tick, text in rows)
+
+
+def _texts(path: Path, topic: str) -> Iterable[tuple[int, str]]:
+    """Return time [ns] and content of the text messages of a topic."""
     from crowdbot.messages import Messages
 
-    messages, found = Messages(), {}
+    messages, found = Messages(), []
     try:
         with path.open("rb") as stream:
             for heard in McapReader(stream).messages():
-                if heard.topic.topic == DIGEST:
-                    found[heard.stamp] = str(messages.decode_message(heard.data, heard.topic.kind).data)
+                if heard.topic.topic == topic:
+                    found.append((heard.stamp, str(messages.decode_message(heard.data, heard.topic.kind).data)))
     except Exception as error:  # damaged files cause many kinds of exceptions
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
     return found

@@ -9,10 +9,10 @@ from typing import TypeVar
 
 from crowdbot.core import Clock, InputError
 from crowdbot.simulation import (
-    Bridge,
     Episode,
     EpisodeLog,
     EpisodeStatistics,
+    OrderSource,
     RunSummary,
     Simulation,
     SimulationRun,
@@ -70,7 +70,7 @@ def run(
         return simulate(trial, seed, progress, clock)
     log, outcome, simulation = _record(EpisodeLog, trial, seed, out, progress, clock, force)
     warn_of_failure(simulation)
-    return log.episode(outcome, simulation.tick, simulation.failure)
+    return log.episode(outcome, simulation.tick, simulation.failures[0])
 
 
 def record(
@@ -90,7 +90,7 @@ def record(
     tally, outcome, simulation = _record(EpisodeStatistics, trial, seed, out, progress, clock, force)
     warn_of_failure(simulation)
     path = None if out is None else episode_path(out)
-    return tally.summary(outcome, simulation.tick, path, simulation.failure)
+    return tally.summary(outcome, simulation.tick, path, simulation.failures[0])
 
 
 def _record(
@@ -113,7 +113,7 @@ def _record(
             return tally, run_to_end(simulation, sinks, stop, progress), simulation
         recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
         outcome = run_to_end(simulation, [tally, recorder], stop, progress)
-        recorder.complete(outcome, simulation.tick, simulation.failure)
+        recorder.complete(outcome, simulation.tick, simulation.failures[0])
         return tally, outcome, simulation
 
 
@@ -123,10 +123,16 @@ def open_run(
     seed: int | None = None,
     out: Path | str | None = None,
     clock: Clock | None = None,
-    bridges: Sequence[Bridge] = (),
+    sources: Sequence[OrderSource] = (),
     force: bool = False,
+    sinks: Sequence[Sink] = (),
 ) -> Iterator[SimulationRun]:
     """Open a run that the caller advances; leaving the context before its end interrupts it.
+
+    Args:
+        trial, seed, out, clock, force: see :func:`run`.
+        sources: programs that steer the simulation.
+        sinks: further consumers of the step records.
 
     >>> from crowdbot.models import ORCA
     >>> with open_run(Trial(name="empty", duration=1.0, crowd=ORCA())) as running:
@@ -139,13 +145,14 @@ def open_run(
     check_trial(trial, chosen)
     tally = EpisodeStatistics(trial, chosen)
     with contextlib.ExitStack() as stack:
-        sinks: list[Sink] = [tally]
+        takers: list[Sink] = [tally, *sinks]
         recorder = None
         if out is not None:
             recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
-            sinks.append(recorder)
-        running = SimulationRun(Simulation(trial, chosen, clock), sinks, bridges)
+            takers.append(recorder)
+        running = SimulationRun(Simulation(trial, chosen, clock), takers, sources)
         yield running
+        running.close()
         if recorder is not None:
             recorder.complete(running.outcome or "interrupted", running.simulation.tick, running.failure)
 

@@ -29,7 +29,7 @@ from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, heading_of
+from .metadata import CONTACTS, DIGEST, ORDERS, heading_of
 
 __all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
 
@@ -69,6 +69,7 @@ class RecordedStep:
         scans: scans of planar laser scanners, by ``robot/sensor``.
         forces, collisions: contact forces of this step, and contact events that ended, in the physics world.
         contacts: contacts of this step.
+        orders: orders from outside in this step, as JSON.
         digest: digest of the episode as if it was interrupted here; empty in files of format 1.
     """
 
@@ -81,6 +82,7 @@ class RecordedStep:
     forces: list[ContactForceRecord] = field(default_factory=list)
     collisions: list[ContactEventRecord] = field(default_factory=list)
     contacts: list[RecordedContact] = field(default_factory=list)
+    orders: list[str] = field(default_factory=list)
     digest: str = ""
 
     @property
@@ -165,6 +167,8 @@ def _take(
         moment.people = _people(moment.time, message.people)
     elif topic == DIGEST:
         moment.digest = str(message.data)
+    elif topic == ORDERS:
+        moment.orders.append(str(message.data))
     elif topic == CONTACTS:
         moment.contacts = [RecordedContact(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
     elif topic == FORCES:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, import_optional, stream
 from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spatial_pose
-from crowdbot.simulation import RobotRuntime, Simulation, SimulationRun
+from crowdbot.simulation import RobotControl, Simulation, SimulationRun
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
 __all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
@@ -99,16 +99,17 @@ def render_images(
         raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
     _check_drawing()
     simulation = Simulation(trial, chosen, posed=True)
-    first, last, every = _ticks(simulation, take)
+    ticks = _ticks(simulation, take)
+    first, last = ticks[0], ticks[-1]
     running = SimulationRun(simulation)
     lens = _Lens(simulation, name, chosen, depth, segmentation)
-    for tick in range(first, last + 1, every):
+    for tick in ticks:
         while simulation.tick < tick and running.outcome is None:
             running.step()
             if progress is not None:
                 progress(simulation.tick / max(1, last))
-        if simulation.failure is not None:
-            raise InputError(f"cannot render {trial.name}: the trial ended with an error: {simulation.failure}")
+        if simulation.failures[0] is not None:
+            raise InputError(f"cannot render {trial.name}: the trial ended with an error: {simulation.failures[0]}")
         if simulation.tick < tick:
             break
         yield lens.shot()
@@ -120,29 +121,30 @@ f" {take.begin:g} s; give an earlier time")  # fmt: skip
         progress(1.0)
 
 
-def _ticks(simulation: Simulation, take: RenderRequest) -> tuple[int, int, int]:
+def _ticks(simulation: Simulation, take: RenderRequest) -> Sequence[int]:
+    """Return the ticks of the images; image k of a video is at the first tick at or after its time."""
     clock, lasts = simulation.world.clock, simulation.trial.duration
     for value in (take.begin, take.begin if take.end is None else take.end):
         if not 0.0 <= value <= lasts:
             raise InputError(f"there is no image at {value:g} s: {simulation.trial.name} lasts from 0 to {lasts:g} s")
     first = round(take.begin / clock.dt)
     if take.end is None:
-        return first, first, 1
+        return (first,)
     if take.end < take.begin:
         raise InputError(f"the end of the video ({take.end:g} s) must be after its start ({take.begin:g} s)")
+    last = round(take.end / clock.dt)
     if take.rate is None:
-        return first, round(take.end / clock.dt), max(1, math.ceil(SMOOTH / clock.dt - 1e-9))
+        return range(first, last + 1, max(1, math.ceil(SMOOTH / clock.dt - 1e-9)))
     if not 0.0 < take.rate < math.inf:
         raise InputError(f"the rate {take.rate:g} Hz must be finite and above 0")
     try:
-        return first, round(take.end / clock.dt), clock.every(1.0 / take.rate)
+        schedule = clock.schedule(1.0 / take.rate)
     except InputError:
-        steps = max(1, round(1.0 / (take.rate * clock.dt)))
         raise InputError(
-            f"the rate {take.rate:g} Hz gives a period of {1.0 / take.rate:g} s, which is not a multiple of the "
-            f"time step"
-            f" {clock.dt:g} s; the nearest possible rate is {1.0 / (steps * clock.dt):g} Hz"
+            f"the rate {take.rate:g} Hz gives a period of {1.0 / take.rate:g} s, which is shorter than the time step"
+            f" {clock.dt:g} s; the highest possible rate is {1.0 / clock.dt:g} Hz"
         ) from None
+    return [first + schedule.tick_of(k) for k in range(schedule.index(last - first) + 1)]
 
 
 def _check_drawing() -> None:
@@ -160,11 +162,11 @@ class _Lens:
     def __init__(self, simulation: Simulation, name: str, seed: int, depth: bool, segmentation: bool) -> None:
         self.simulation, self.depth, self.segmentation = simulation, depth, segmentation
         self.rng = stream(seed, "render", name)
-        self.runtime: RobotRuntime | None = None
+        self.control: RobotControl | None = None
         own = {camera.name: camera for camera in simulation.trial.cameras}
         robot, _, self.sensor = name.partition("/")
         if self.sensor:
-            self.runtime = next(one for one in simulation.robots if one.robot.name == robot)
+            self.control = next(one for one in simulation.robots if one.robot.name == robot)
             return
         scene = simulation.world.scene
         self.camera: Camera = own[name] if name in own else overview(
@@ -173,14 +175,14 @@ class _Lens:
 
     def shot(self) -> RenderedImage:
         """Return the current image."""
-        rgb, depth, who = self._by_sensor() if self.runtime else self._standing()
-        ids = self.simulation.ids
+        rgb, depth, who = self._by_sensor() if self.control else self._standing()
+        ids = self.simulation.world.ids[0]
         named = None if who is None else np.where(who >= 0, ids[np.maximum(who, 0)], who)
         return RenderedImage(self.simulation.world.clock.time, rgb, depth, named)
 
     def _standing(self) -> tuple[Any, Any, Any]:
         view = self.camera.view(self.agent)
-        images = self.simulation.around.studio.images(view, depth=self.depth, segmentation=self.segmentation)
+        images = self.simulation.world.renderer.images(view, depth=self.depth, segmentation=self.segmentation)
         return (
             images.rgb,
             None if images.depth is None else images.depth.astype(np.float64),
@@ -188,15 +190,15 @@ class _Lens:
         )
 
     def _by_sensor(self) -> tuple[Any, Any, Any]:
-        assert self.runtime is not None
+        assert self.control is not None
         around = self.simulation.around
-        probe = next(one for one in self.runtime.probes if one.mount.name == self.sensor)
+        probe = next(one for one in self.control.sensors if one.mount.name == self.sensor)
         sensor: Any = probe.mount.sensor
         camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
             width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
             near=max(0.05, 0.25 * sensor.range_min),  # clip the housing around the lens
         )  # fmt: skip
-        pose, studio = probe.pose(self.runtime.agent, around), around.studio
+        pose, studio = probe.pose(self.control.agent, around), self.simulation.world.renderer
         picture = camera.read(around.flat, pose, self.rng, studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None

@@ -16,7 +16,8 @@ from .range_reading import RangeReading
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .rgb_camera import RGBCamera, RgbImage
 from .schedule import SensorSchedule
-from .sensor import Reading, Sensor, planar_pose, spatial_pose
+from .sensor import Reading, Sensor, join_readings, planar_pose, spatial_pose
+from .state_rows import StateGroups, measure_rows, put_state_rows, take_state_rows
 from .ultrasound import Ultrasound
 from .view import SensorView
 
@@ -57,13 +58,18 @@ __all__ = [
     "SensorPreset",
     "SensorSchedule",
     "SensorView",
+    "StateGroups",
     "TrackedPeople",
     "Ultrasound",
     "WheelOdometry",
     "apply_noise",
     "check_sensor",
     "distort_image",
+    "join_readings",
+    "measure_rows",
     "planar_pose",
     "preset",
+    "put_state_rows",
     "spatial_pose",
+    "take_state_rows",
 ]

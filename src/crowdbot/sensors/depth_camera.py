@@ -39,6 +39,7 @@ class DepthImage(Reading):
         lens: the intrinsics.
     """
 
+    shared_fields: ClassVar[tuple[str, ...]] = ("lens",)
     depth: Floats
     hit: Ints
     part: Ints
@@ -152,7 +153,7 @@ class DepthCamera(Sensor):
         return self._finished(scene.time, pose, depth, hit, part, rng), None
 
     def from_image(
-        self, source: ImageSource, time: float, pose: SpatialPose, rng: Randomness | None = None
+        self, source: ImageSource, time: float | Floats, pose: SpatialPose, rng: Randomness | None = None
     ) -> DepthImage:
         """Return depth and labels from images of ``source`` (``depth``, ``hit``, ``part``), without distortion."""
         images = source.render(self, pose)
@@ -162,7 +163,13 @@ class DepthCamera(Sensor):
         return self._finished(time, pose, depth, np.asarray(hit), np.asarray(part), rng)
 
     def _finished(
-        self, time: float, pose: Pose | SpatialPose, depth: Floats, hit: Ints, part: Ints, rng: Randomness | None
+        self,
+        time: float | Floats,
+        pose: Pose | SpatialPose,
+        depth: Floats,
+        hit: Ints,
+        part: Ints,
+        rng: Randomness | None,
     ) -> DepthImage:
         near = depth < self.range_min
         measured = np.where(depth <= self.range_max, depth, np.inf)

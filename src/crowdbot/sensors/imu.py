@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -47,14 +46,14 @@ class ImuState:
     """State of an IMU after a measurement, in E environments.
 
     Fields:
-        time: time of the measurement [s].
+        time: time of the measurement [s], a number or ``[E]``.
         pose: pose of the unit.
         velocity: ``[E, 3]`` mean velocity since the previous measurement [m/s], NaN after the first.
         acceleration_bias: ``[E, 3]`` [m/s^2].
         turn_bias: ``[E, 3]`` [rad/s].
     """
 
-    time: float
+    time: float | Floats
     pose: Pose | SpatialPose
     velocity: Floats
     acceleration_bias: Floats
@@ -110,7 +109,8 @@ class IMU(Sensor):
         here = spatial_pose(view.pose)
         shape = here.position.shape
         if state is None:
-            dt, velocity = 1.0 / self.rate, np.full(shape, np.nan)
+            dt: float | Floats = 1.0 / self.rate
+            velocity = np.full(shape, np.nan)
             change, turn = np.zeros(shape), np.zeros(shape)
         else:
             dt, before = elapsed_time(self, view, state), spatial_pose(state.pose)
@@ -128,19 +128,19 @@ class IMU(Sensor):
         return reading, ImuState(view.time, view.pose, velocity, *biases)
 
     def _biases(
-        self, shape: tuple[int, ...], dt: float, rng: Randomness | None, state: ImuState | None
+        self, shape: tuple[int, ...], dt: float | Floats, rng: Randomness | None, state: ImuState | None
     ) -> tuple[Floats, Floats]:
         if state is None:
             start = (self.acceleration_offset, self.turn_offset)
             return _scaled(start[0], shape, rng), _scaled(start[1], shape, rng)
-        root = math.sqrt(dt)
+        root = np.sqrt(dt)
         return (
             state.acceleration_bias + _scaled(self.acceleration_walk * root, shape, rng),
             state.turn_bias + _scaled(self.turn_walk * root, shape, rng),
         )
 
-    def _white(self, density: float, shape: tuple[int, ...], dt: float, rng: Randomness | None) -> Floats:
-        return _scaled(density / math.sqrt(dt), shape, rng)
+    def _white(self, density: float, shape: tuple[int, ...], dt: float | Floats, rng: Randomness | None) -> Floats:
+        return _scaled(density / np.sqrt(dt), shape, rng)
 
 
 FIELDS = (
@@ -155,8 +155,9 @@ FIELDS = (
 )
 
 
-def _scaled(sd: float, shape: tuple[int, ...], rng: Randomness | None) -> Floats:
-    return np.zeros(shape) if sd == 0.0 else sd * normals(shape, rng)
+def _scaled(sd: float | Floats, shape: tuple[int, ...], rng: Randomness | None) -> Floats:
+    """Return normal draws with standard deviation ``sd``, a number or ``[E, 1]``; zeros without a draw if it is 0."""
+    return np.asarray(np.zeros(shape) if not np.any(sd) else sd * normals(shape, rng))
 
 
 def _limited(values: Floats, limit: float) -> Floats:
@@ -167,32 +168,34 @@ class TimedState(Protocol):
     """A state with the time [s] and the pose of the previous measurement."""
 
     @property
-    def time(self) -> float:
-        """Time of the previous measurement [s]."""
+    def time(self) -> float | Floats:
+        """Time of the previous measurement [s], a number or one for each environment ``[E]``."""
 
     @property
     def pose(self) -> Pose | SpatialPose:
         """Pose of the sensor at the previous measurement."""
 
 
-def elapsed_time(sensor: Sensor, view: SensorView, state: TimedState) -> float:
-    """Return the time since the previous measurement [s].
+def elapsed_time(sensor: Sensor, view: SensorView, state: TimedState) -> float | Floats:
+    """Return the time since the previous measurement [s]: a number, or ``[E, 1]`` if environments have own times.
 
     Raises:
         InputError: time did not increase, or the numbers of environments differ.
     """
-    dt = view.time - state.time
-    if not dt > 0.0:
-        raise InputError(
-            f"{type(sensor).__name__}: the previous measurement is at {state.time} s and this one at {view.time} s;"
-            " time must increase"
-        )
     if len(state.pose.position) != view.environments:
         raise InputError(
             f"{type(sensor).__name__}: the state has {len(state.pose.position)} environments,"
             f" but the view has {view.environments}"
         )
-    return dt
+    dt = view.time - state.time
+    if not np.all(dt > 0.0):
+        before, now = np.broadcast_arrays(state.time, view.time)
+        worst = int(np.argmin(np.ravel(now > before)))
+        raise InputError(
+            f"{type(sensor).__name__}: the previous measurement is at {np.ravel(before)[worst]} s and this one at"
+            f" {np.ravel(now)[worst]} s; time must increase"
+        )
+    return dt[:, None] if isinstance(dt, np.ndarray) else dt
 
 
 def rotation_vector(before: Floats, after: Floats) -> Floats:

@@ -5,18 +5,19 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel
-from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange
+from crowdbot.core.geometry import nearest_on_segment
 
 from .beams import Beams, sort_beams, unit_vectors
 from .noise import Randomness
-from .ranging import Ranging, apply_limits, end_points, incidence_of
+from .ranging import Ranging, apply_limits, end_points, incidence_of, settle_ranges
 from .ray_casting import cast_rays
-from .ray_shapes import FLOOR, NOTHING, OVERLAP, PROP, extend_segments
+from .ray_shapes import FLOOR, NOTHING, OVERLAP, PROP, wall_segments
 from .ray_shapes import WALLS as WALL
 from .sensor import Reading, spatial_pose
 from .view import SensorView
@@ -27,6 +28,10 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 TURN = 2.0 * math.pi
+CHUNK = 4
+"""Number of environments that one thread scans in sequence."""
+PARALLEL = 16384
+"""Smallest number of beams for several threads: below, starting them takes longer than the scan."""
 
 
 @kernel
@@ -41,31 +46,77 @@ def _stretches(low: float, width: float, first: float, step: float, count: int) 
 
 
 @kernel
+def _aim(heading: float, angles: Floats, ux: Floats, uy: Floats) -> None:
+    """Compute the missing directions of beams; most time of a scan is spent on cosines and sines."""
+    for k in range(len(ux)):
+        if np.isnan(ux[k]):
+            angle = heading + angles[k]
+            cos, sin = math.cos(angle), math.sin(angle)  # one call of the C library for both
+            ux[k], uy[k] = cos, sin
+
+
+@kernel
+def _meet_disc(
+    rx: float, ry: float, radius: float, ux: Floats, uy: Floats, number: int, distance: Floats, hit: Indices,
+) -> None:  # fmt: skip
+    """Shorten beams at a disc at rx, ry, as :func:`ray_to_disc`, without branches."""
+    gap = rx * rx + ry * ry - radius * radius
+    if gap <= 0.0:
+        for k in range(len(ux)):
+            if distance[k] > 0.0:
+                distance[k] = 0.0
+                hit[k] = number
+        return
+    for k in range(len(ux)):
+        along = rx * ux[k] + ry * uy[k]
+        across = rx * uy[k] - ry * ux[k]
+        inside = radius * radius - across * across
+        reach = gap / (along + math.sqrt(inside if inside > 0.0 else 0.0))
+        nearer = (along > 0.0) & (inside >= 0.0) & (reach < distance[k])
+        distance[k] = reach if nearer else distance[k]
+        hit[k] = number if nearer else hit[k]
+
+
+@kernel
+def _meet_segment(
+    rx: float, ry: float, ex: float, ey: float, ux: Floats, uy: Floats, number: int, distance: Floats, hit: Indices,
+) -> None:  # fmt: skip
+    """Shorten beams at a segment from rx, ry along ex, ey, as :func:`ray_to_segment`, without branches."""
+    area = rx * ey - ry * ex
+    for k in range(len(ux)):
+        cross = ux[k] * ey - uy[k] * ex
+        reach = area / cross
+        place = rx * uy[k] - ry * ux[k]  # over cross it is the share of the segment; the limits need no division
+        place = place if cross > 0.0 else -place
+        nearer = (cross != 0.0) & (reach >= 0.0) & (place >= 0.0) & (place <= abs(cross)) & (reach < distance[k])
+        distance[k] = reach if nearer else distance[k]
+        hit[k] = number if nearer else hit[k]
+
+
+@kernel
 def _see_disc(
-    x: float, y: float, first: float, step: float, ux: Floats, uy: Floats,
-    cx: float, cy: float, radius: float, agent: int, distance: Floats, cos_incidence: Floats, hit: Indices,
+    x: float, y: float, heading: float, angles: Floats, step: float, ux: Floats, uy: Floats,
+    cx: float, cy: float, radius: float, agent: int, distance: Floats, hit: Indices,
 ) -> None:  # fmt: skip
     count = len(ux)
     away = math.sqrt((cx - x) ** 2 + (cy - y) ** 2)
     begin, end, before, after = 0, count, 0, 0
     if away > radius:
         half = math.asin(radius / away)
-        begin, end, before, after = _stretches(math.atan2(cy - y, cx - x) - half, 2.0 * half, first, step, count)
+        low = math.atan2(cy - y, cx - x) - half
+        begin, end, before, after = _stretches(low, 2.0 * half, heading + angles[0], step, count)
     for part in range(2):
-        for k in range(begin if part == 0 else before, end if part == 0 else after):
-            reach = ray_to_disc(x, y, ux[k], uy[k], cx, cy, radius)
-            if reach < distance[k]:
-                distance[k] = reach
-                hit[k] = agent
-                cos_incidence[k] = 1.0
-                if reach > 0.0:
-                    cos_incidence[k] = ((cx - x - reach * ux[k]) * ux[k] + (cy - y - reach * uy[k]) * uy[k]) / radius
+        start, stop = (begin, end) if part == 0 else (before, after)
+        if start < stop:
+            vx, vy = ux[start:stop], uy[start:stop]
+            _aim(heading, angles[start:stop], vx, vy)
+            _meet_disc(cx - x, cy - y, radius, vx, vy, agent, distance[start:stop], hit[start:stop])
 
 
 @kernel
 def _see_wall(
-    x: float, y: float, first: float, step: float, ux: Floats, uy: Floats,
-    wall: Floats, limit: float, distance: Floats, cos_incidence: Floats, hit: Indices,
+    x: float, y: float, heading: float, angles: Floats, step: float, ux: Floats, uy: Floats,
+    wall: Floats, limit: float, number: int, distance: Floats, hit: Indices,
 ) -> None:  # fmt: skip
     ax, ay, bx, by = wall[0], wall[1], wall[2], wall[3]
     nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
@@ -78,40 +129,80 @@ def _see_wall(
         low = math.atan2(ay - y, ax - x)
         width = (math.atan2(by - y, bx - x) - low + math.pi) % TURN - math.pi
         if abs(width) < math.pi - 1e-6:
-            begin, end, before, after = _stretches(low + min(width, 0.0), abs(width), first, step, count)
-    length = math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+            low, first = low + min(width, 0.0), heading + angles[0]
+            begin, end, before, after = _stretches(low, abs(width), first, step, count)
     for part in range(2):
-        for k in range(begin if part == 0 else before, end if part == 0 else after):
-            reach = ray_to_segment(x, y, ux[k], uy[k], ax, ay, bx, by)
-            if reach < distance[k]:
-                distance[k] = reach
-                hit[k] = WALL
-                cos_incidence[k] = abs(ux[k] * (by - ay) - uy[k] * (bx - ax)) / length
+        start, stop = (begin, end) if part == 0 else (before, after)
+        if start < stop:
+            vx, vy = ux[start:stop], uy[start:stop]
+            _aim(heading, angles[start:stop], vx, vy)
+            _meet_segment(ax - x, ay - y, bx - ax, by - ay, vx, vy, number, distance[start:stop], hit[start:stop])
 
 
 @kernel
-def _scan(
-    place: Floats, heading: Floats, angles: Floats, step: float, centre: Floats, radius: Floats,
-    active: NDArray[np.bool_], walls: Floats, limit: float,
-) -> tuple[Floats, Floats, Indices]:  # fmt: skip
-    """Return the distance to the nearest surface, its cosine of incidence and its object."""
-    environments, count = len(place), len(angles)
-    distance = np.full((environments, count), np.inf)
-    cos_incidence = np.ones((environments, count))
-    hit = np.full((environments, count), NOTHING)
+def _find_cosines(
+    x: float, y: float, ux: Floats, uy: Floats, centre: Floats, radius: Floats, walls: Floats, distance: Floats,
+    hit: Indices, cos_incidence: Floats,
+) -> None:  # fmt: skip
+    """Write the cosines of incidence, and replace the numbers of walls by their label."""
+    agents = len(radius)
+    for k in range(len(ux)):
+        n, cosine = hit[k], 1.0
+        if n >= agents:
+            ex, ey = walls[n - agents, 2] - walls[n - agents, 0], walls[n - agents, 3] - walls[n - agents, 1]
+            cosine = abs(ux[k] * ey - uy[k] * ex) / math.sqrt(ex**2 + ey**2)
+            hit[k] = WALL
+        elif n >= 0 and distance[k] > 0.0:
+            rx, ry = centre[n, 0] - x - distance[k] * ux[k], centre[n, 1] - y - distance[k] * uy[k]
+            cosine = (rx * ux[k] + ry * uy[k]) / radius[n]
+        cos_incidence[k] = cosine
+
+
+@kernel
+def _scan_rows(
+    begin: int, end: int, place: Floats, heading: Floats, angles: Floats, step: float, centre: Floats, radius: Floats,
+    active: NDArray[np.bool_], walls: Floats, limits: tuple[float, float, float, float], exact: bool,
+    distance: Floats, cos_incidence: Floats, hit: Indices, part: Indices,
+) -> None:  # fmt: skip
+    """Scan some environments: distance to the nearest surface, its cosine of incidence and its object.
+
+    Without noise (``exact``) the limits of the sensor apply too, so that the distances become ranges.
+    """
+    limit = limits[2]
+    count, agents = len(angles), centre.shape[1]
     ux, uy = np.empty(count), np.empty(count)
-    for e in range(environments):
-        x, y, first = place[e, 0], place[e, 1], heading[e] + angles[0]
-        for k in range(count):
-            ux[k] = math.cos(heading[e] + angles[k])
-            uy[k] = math.sin(heading[e] + angles[k])
-        for a in range(centre.shape[1]):
+    for e in range(begin, end):
+        x, y, turn = place[e, 0], place[e, 1], heading[e]
+        found, object_ = distance[e], hit[e]
+        ux[:] = np.nan
+        found[:] = np.inf
+        object_[:] = NOTHING
+        part[e] = -1
+        for a in range(agents):
             cx, cy, r = centre[e, a, 0], centre[e, a, 1], radius[e, a]
             if active[e, a] and (cx - x) ** 2 + (cy - y) ** 2 <= (limit + r) ** 2:
-                _see_disc(x, y, first, step, ux, uy, cx, cy, r, a, distance[e], cos_incidence[e], hit[e])
+                _see_disc(x, y, turn, angles, step, ux, uy, cx, cy, r, a, found, object_)
         for m in range(len(walls)):
-            _see_wall(x, y, first, step, ux, uy, walls[m], limit, distance[e], cos_incidence[e], hit[e])
-    return distance, cos_incidence, hit
+            _see_wall(x, y, turn, angles, step, ux, uy, walls[m], limit, agents + m, found, object_)
+        _find_cosines(x, y, ux, uy, centre[e], radius[e], walls, found, object_, cos_incidence[e])
+        if exact:
+            settle_ranges(found, found, cos_incidence[e], object_, part[e], limits, found)
+
+
+@kernel(parallel=True)
+def _scan_parallel(
+    place: Floats, heading: Floats, angles: Floats, step: float, centre: Floats, radius: Floats,
+    active: NDArray[np.bool_], walls: Floats, limits: tuple[float, float, float, float], exact: bool,
+    distance: Floats, cos_incidence: Floats, hit: Indices, part: Indices,
+) -> None:  # fmt: skip
+    """Scan all environments on all threads."""
+    environments = len(place)
+    for chunk in prange((environments + CHUNK - 1) // CHUNK):
+        begin, end = chunk * CHUNK, min(environments, (chunk + 1) * CHUNK)
+        _scan_rows(
+            begin, end, place, heading, angles, step, centre, radius, active, walls, limits, exact, distance,
+            cos_incidence, hit, part,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -127,6 +218,7 @@ class Scan(Reading):
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
+    shared_fields: ClassVar[tuple[str, ...]] = ("angles",)
     ranges: Floats
     angles: Floats
     hit: Indices
@@ -212,16 +304,12 @@ class Lidar2D(Ranging):
     @property
     def step(self) -> float:
         """Angle between adjacent beams [rad]."""
-        if self.field_of_view >= TURN - 1e-9:
-            return TURN / self.rays
-        return self.field_of_view / max(1, self.rays - 1)
+        return _step(self.rays, self.field_of_view)
 
     @property
     def angles(self) -> Floats:
         """Angles of the beams ``[R]`` [rad] in the sensor frame."""
-        if self.rays == 1:
-            return np.zeros(1)
-        return np.asarray(-0.5 * min(self.field_of_view, TURN) + self.step * np.arange(self.rays))
+        return beam_angles(self.rays, self.field_of_view).copy()
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Scan, None]:
         """Return the scan from the pose of the view.
@@ -232,26 +320,55 @@ class Lidar2D(Ranging):
         self.check(view)
         scene, pose = view.scene, view.pose
         if isinstance(pose, Pose) and scene.bodies is None and not self.skins:
-            distance, cos_incidence, hit = self._from_above(scene, pose)
-            part = np.full(hit.shape, -1)
+            ranges, cos_incidence, hit, part = self._from_above(scene, pose)
+            if self.noises:
+                ranges = apply_limits(self, ranges, cos_incidence, hit, part, rng)
         else:
             hits = cast_rays(scene, spatial_pose(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
-            distance, cos_incidence, hit, part = hits.distance, hits.cos_incidence, hits.hit, hits.part
-        ranges = apply_limits(self, distance, cos_incidence, hit, part, rng)
-        return Scan(scene.time, pose, ranges, self.angles, hit, cos_incidence, part), None
+            cos_incidence, hit, part = hits.cos_incidence, hits.hit, hits.part
+            ranges = apply_limits(self, hits.distance, cos_incidence, hit, part, rng)
+        angles = beam_angles(self.rays, self.field_of_view)
+        return Scan(scene.time, pose, ranges, angles, hit, cos_incidence, part), None
 
-    def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices]:
-        return _scan(
+    def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices, Indices]:
+        angles, environments = beam_angles(self.rays, self.field_of_view), scene.shape[0]
+        # One block of memory: the system reuses it for the next scan, whereas it has to clear new pages for each array.
+        block = np.empty((4, environments, self.rays))
+        labels = block.view(np.int64)
+        rows = (
             np.ascontiguousarray(pose.position, dtype=np.float64),
             np.ascontiguousarray(pose.heading, dtype=np.float64),
-            self.angles,
+            angles,
             self.step,
             np.ascontiguousarray(scene.position),
             np.ascontiguousarray(scene.radius),
             np.ascontiguousarray(scene.active),
-            extend_segments(scene.walls.segments()),
-            self.range_max,
+            wall_segments(scene.walls),
+            self.limits,
+            not self.noises,
+            block[0],
+            block[1],
+            labels[2],
+            labels[3],
         )
+        if environments < CHUNK or environments * self.rays < PARALLEL:
+            _scan_rows(0, environments, *rows)
+        else:
+            _scan_parallel(*rows)
+        return rows[-4:]
+
+
+def _step(rays: int, field_of_view: float) -> float:
+    return TURN / rays if field_of_view >= TURN - 1e-9 else field_of_view / max(1, rays - 1)
+
+
+@functools.lru_cache(maxsize=64)
+def beam_angles(rays: int, field_of_view: float) -> Floats:
+    """Return the angles of the beams ``[R]`` [rad] in the sensor frame; the array is read-only and shared by scans."""
+    first = 0.0 if rays == 1 else -0.5 * min(field_of_view, TURN)
+    angles = first + _step(rays, field_of_view) * np.arange(rays)
+    angles.flags.writeable = False
+    return np.asarray(angles)
 
 
 def _beams(lidar: Lidar2D) -> Beams:

@@ -40,6 +40,7 @@ class PointCloud(Reading):
         cos_incidence: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
     """
 
+    shared_fields: ClassVar[tuple[str, ...]] = ("elevation", "azimuth")
     ranges: Floats
     elevation: Floats
     azimuth: Floats

@@ -42,14 +42,14 @@ class OdometryState:
     """State of wheel odometry after a measurement, in E environments.
 
     Fields:
-        time: time of the measurement [s].
+        time: time of the measurement [s], a number or ``[E]``.
         pose: true pose of the robot.
         estimate: pose from the wheels.
         travelled: ``[E, 3]`` distance of the left wheel, the right wheel and sideways, with errors [m].
         ticks: ``[E, 3]`` counts of the encoders.
     """
 
-    time: float
+    time: float | Floats
     pose: Pose | SpatialPose
     estimate: Pose
     travelled: Floats

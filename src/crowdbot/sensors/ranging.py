@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose, check_number, kernel
 
-from .noise import Randomness, apply_noise
+from .noise import Randomness, add_noise
 from .ray_shapes import NOTHING
 from .sensor import Sensor
 
-__all__ = ["Ranging", "apply_limits", "end_points", "incidence_of"]
+__all__ = ["Ranging", "apply_limits", "end_points", "incidence_of", "settle_ranges"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -68,46 +68,74 @@ class Ranging(Sensor):
         check_number(owner, name, getattr(self, name), min=1, max=MOST_BEAMS, whole=True)
 
     @property
+    def limits(self) -> tuple[float, float, float, float]:
+        """Smallest cosine of incidence, smallest and largest range [m], resolution [m]."""
+        return self.min_cos_incidence, float(self.range_min), float(self.range_max), float(self.resolution)
+
+    @property
     def min_cos_incidence(self) -> float:
         """Smallest cosine of incidence with a return; the limit is inclusive despite rounding."""
         return math.cos(self.max_incidence) - 1e-12 if self.max_incidence < math.pi / 2 else -2.0
 
 
 @kernel
-def _settle(
-    distance: Floats, measured: Floats, cos_incidence: Floats, hit: Ints, part: Ints, least: float, low: float,
-    high: float, step: float, ranges: Floats,
+def settle_ranges(
+    distance: Floats, measured: Floats, cos_incidence: Floats, hit: Ints, part: Ints,
+    limits: tuple[float, float, float, float], ranges: Floats,
 ) -> None:  # fmt: skip
-    """Write the ranges; clear ``hit`` and ``part`` without a return."""
+    """Write the ranges of beams ``[R]``; clear ``hit`` and ``part`` without a return.
+
+    ``limits`` are the smallest cosine of incidence, the smallest and largest range [m] and the resolution [m];
+    ``ranges`` may be one of the other arrays.
+    """
+    least, low, high, step = limits
     first, last = 0.0, 0.0
     if step > 0.0:
         first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    for k in range(len(distance)):
+        true, value = distance[k], measured[k]
+        back = true <= high and cos_incidence[k] >= least and value < np.inf
+        if back and (true < low or value < low):
+            ranges[k] = -np.inf
+        elif back and value <= high:
+            ranges[k] = value if step == 0.0 else min(max(np.rint(value / step), first), last) * step
+        else:
+            ranges[k] = np.inf
+            hit[k] = NOTHING
+            part[k] = -1
+
+
+@kernel
+def _settle(
+    distance: Floats, measured: Floats, cos_incidence: Floats, hit: Ints, part: Ints,
+    limits: tuple[float, float, float, float],
+) -> None:  # fmt: skip
+    for e in range(len(distance)):
+        settle_ranges(distance[e], measured[e], cos_incidence[e], hit[e], part[e], limits, distance[e])
+
+
+@kernel
+def _hide_far(distance: Floats, cos_incidence: Floats, least: float, high: float, shown: Floats) -> None:
+    """Write the distances with a return; the others are infinite."""
     for e in range(distance.shape[0]):
         for k in range(distance.shape[1]):
-            true, value = distance[e, k], measured[e, k]
-            back = true <= high and cos_incidence[e, k] >= least and value < np.inf
-            if back and (true < low or value < low):
-                ranges[e, k] = -np.inf
-            elif back and value <= high:
-                ranges[e, k] = value if step == 0.0 else min(max(np.rint(value / step), first), last) * step
-            else:
-                ranges[e, k] = np.inf
-                hit[e, k] = NOTHING
-                part[e, k] = -1
+            back = (distance[e, k] <= high) & (cos_incidence[e, k] >= least)
+            shown[e, k] = distance[e, k] if back else np.inf
 
 
 def apply_limits(
     sensor: Ranging, distance: Floats, cos_incidence: Floats, hit: Ints, part: Ints, rng: Randomness | None
 ) -> Floats:
-    """Return the ranges ``[E, R]`` [m] from true distances; clear ``hit`` and ``part`` without a return."""
+    """Return the ranges ``[E, R]`` [m] from true distances, which they replace; clear ``hit`` and ``part`` without a
+    return.
+    """
     measured = distance
     if sensor.noises:
-        back = (distance <= sensor.range_max) & (cos_incidence >= sensor.min_cos_incidence)
-        measured = apply_noise(np.where(back, distance, np.inf), sensor.noises, rng)
-    ranges = np.empty(distance.shape)
-    limits = (sensor.min_cos_incidence, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
-    _settle(distance, measured, cos_incidence, hit, part, *limits, ranges)
-    return ranges
+        measured = np.empty(distance.shape)
+        _hide_far(distance, cos_incidence, sensor.min_cos_incidence, float(sensor.range_max), measured)
+        add_noise(measured, sensor.noises, rng)
+    _settle(distance, measured, cos_incidence, hit, part, sensor.limits)
+    return distance
 
 
 def incidence_of(cos_incidence: Floats, hit: Ints) -> Floats:

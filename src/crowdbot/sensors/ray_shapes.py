@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+import weakref
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, kernel
+from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, Walls, kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments", "wall_segments"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -198,3 +199,25 @@ def extend_segments(walls: Floats) -> Floats:
     along = walls[:, 2:] - walls[:, :2]
     along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]
     return np.ascontiguousarray(np.concatenate([walls[:, :2] - along, walls[:, 2:] + along], axis=1))
+
+
+def wall_segments(walls: Walls) -> Floats:
+    """Return the segments of walls ``[N, 4]``, extended at both ends; they are computed once for each object."""
+    known = _segments.get(id(walls))
+    if known is not None and known[0]() is walls:
+        return known[1]
+    segments = extend_segments(walls.segments())
+    segments.flags.writeable = False
+    key = id(walls)
+    _segments[key] = (weakref.ref(walls, lambda gone: _forget(key, gone)), segments)
+    return segments
+
+
+_segments: dict[int, tuple[weakref.ReferenceType[Walls], Floats]] = {}
+"""Extended segments by the identity of the walls."""
+
+
+def _forget(key: int, gone: weakref.ReferenceType[Walls]) -> None:
+    """Remove the segments of walls that no longer exist, unless new walls have their identity."""
+    if key in _segments and _segments[key][0] is gone:
+        del _segments[key]

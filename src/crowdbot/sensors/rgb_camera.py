@@ -39,6 +39,7 @@ class RgbImage(Reading):
         lens: the intrinsics.
     """
 
+    shared_fields: ClassVar[tuple[str, ...]] = ("lens",)
     rgb: NDArray[np.uint8]
     hit: Ints | None
     lens: Lens

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
 from .lens import ImageSource
 from .noise import Noise, Randomness
+from .rows import check_rows, environment_index, join_rows, take_rows
 from .view import SensorView
 
-__all__ = ["Reading", "Sensor"]
+__all__ = ["Reading", "Sensor", "join_readings"]
 
+ReadingKind = TypeVar("ReadingKind", bound="Reading")
 Reading_co = TypeVar("Reading_co", bound="Reading", covariant=True)
 
 
@@ -25,13 +29,47 @@ Reading_co = TypeVar("Reading_co", bound="Reading", covariant=True)
 class Reading:
     """The result of one measurement in E environments. Each sensor adds its own arrays.
 
+    The first axis of every array is the environments, except for ``shared_fields``.
+
     Fields:
-        time: simulated time of the measurement [s].
+        time: simulated time of the measurement [s], a number or one for each environment ``[E]``.
         pose: pose of the sensor, planar or in space, as given.
+
+    Class attributes:
+        shared_fields: names of the fields that belong to all environments, such as the angles of beams. Numbers and
+            texts always do.
+
+    >>> reading = Reading(0.5, Pose.of([[0.0, 0.0], [3.0, 1.0]], 0.0))
+    >>> reading.environment(1).pose.position.tolist()
+    [[3.0, 1.0]]
     """
 
-    time: float
+    time: float | NDArray[np.float64]
     pose: Pose | SpatialPose
+    shared_fields: ClassVar[tuple[str, ...]] = ()
+
+    def select(self, index: ArrayLike) -> Self:
+        """Return the reading of the environments ``index``, in this order.
+
+        Raises:
+            InputError: an environment does not exist, or the first axis of an array is not the environments.
+        """
+        name = type(self).__name__
+        check_rows(self, len(self.pose.position), name)
+        return take_rows(self, environment_index(index, len(self.pose.position), name))
+
+    def environment(self, number: int) -> Self:
+        """Return the reading of one environment, with arrays ``[1, ...]`` and the time as a number.
+
+        Raises:
+            InputError: the environment does not exist, or the first axis of an array is not the environments.
+        """
+        count, name = len(self.pose.position), type(self).__name__
+        if not 0 <= number < count:
+            raise InputError(f"{name}: the environment is {number}, it must be from 0 to {count - 1}")
+        check_rows(self, count, name)
+        alone = take_rows(self, slice(number, number + 1))
+        return dataclasses.replace(alone, time=float(alone.time[0])) if isinstance(alone.time, np.ndarray) else alone
 
 
 class _Measures(Protocol[Reading_co]):
@@ -47,8 +85,10 @@ class Sensor(ABC):
     """A sensor: a frozen specification and two pure functions.
 
     :meth:`begin` returns the state before the first measurement. :meth:`measure` takes a view of the scene and the
-    state, and returns a reading and the next state. The state carries the E environments of the view. Most sensors
-    have no state: it is None.
+    state, and returns a reading and the next state. Most sensors have no state: it is None. Otherwise it is an array
+    ``[E, ...]``, a number, or a dataclass, tuple, list or dict of these, so that a simulation can let some
+    environments measure (:func:`take_state_rows`, :func:`put_state_rows`). A dataclass lists arrays that belong to all
+    environments in the class variable ``shared_fields``. An environment gives the same reading alone and with others.
 
     Fields:
         rate: measurements per second [Hz].
@@ -120,8 +160,9 @@ class Sensor(ABC):
 
         Args:
             view: scene without the robot that carries the sensor (``scene.without(robot)``), and pose of the sensor.
+                Its time is a number or ``[E]``.
             state: from :meth:`begin` or from the previous call.
-            rng: random generator, or one for each environment; needed only if there is noise.
+            rng: random generator, or a sequence of one for each environment; needed only if there is noise.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -144,6 +185,34 @@ class Sensor(ABC):
     def check(self, view: SensorView) -> None:
         """Raise :class:`InputError` if the pose of ``view`` is not finite or does not fit its scene."""
         view.check(type(self).__name__)
+
+
+def join_readings(readings: Sequence[ReadingKind], environments: Sequence[ArrayLike]) -> ReadingKind:
+    """Return one reading of E environments from readings of some of them, for example of those that are due.
+
+    Args:
+        readings: readings of one class.
+        environments: the environments of each reading; together 0 to E - 1, each once.
+
+    Raises:
+        InputError: an environment is missing or occurs twice, or the readings have different fields.
+
+    >>> parts = [Reading(0.5, Pose.of((2.0, 0.0), 0.0)), Reading(0.5, Pose.of((1.0, 0.0), 0.0))]
+    >>> join_readings(parts, [[1], [0]]).pose.position.tolist()
+    [[1.0, 0.0], [2.0, 0.0]]
+    """
+    name = type(readings[0]).__name__ if readings else "readings"
+    places = [environment_index(index, None, name) for index in environments]
+    every = np.concatenate(places) if places else np.zeros(0, dtype=np.int64)
+    if not readings or not np.array_equal(np.sort(every), np.arange(len(every))):
+        raise InputError(f"{name}: the environments are {every.tolist()}, they must be 0 to E - 1, each once")
+    for reading, place in zip(readings, places, strict=True):
+        check_rows(reading, len(place), name)
+    try:
+        joined: ReadingKind = join_rows(readings, places, len(every))
+    except TypeError:
+        raise InputError(f"{name}: the readings have different classes, fields or shapes") from None
+    return joined
 
 
 def spatial_pose(pose: Pose | SpatialPose) -> SpatialPose:

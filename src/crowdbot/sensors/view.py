@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
 
 from .lens import ImageSource
+from .rows import environment_index, take_rows
 
 __all__ = ["SensorView"]
 
@@ -32,8 +36,8 @@ class SensorView:
     renderer: ImageSource | None = None
 
     @property
-    def time(self) -> float:
-        """Simulated time [s]."""
+    def time(self) -> float | NDArray[np.float64]:
+        """Simulated time [s], a number or one for each environment ``[E]``."""
         return self.scene.time
 
     @property
@@ -41,11 +45,42 @@ class SensorView:
         """Number of environments E."""
         return self.scene.shape[0]
 
+    def select(self, index: ArrayLike) -> SensorView:
+        """Return the view of the environments ``index``, in this order; each occurs at most once.
+
+        Raises:
+            InputError: an environment does not exist.
+        """
+        chosen = environment_index(index, self.environments, "SensorView")
+        pose = take_rows(self.pose, chosen)
+        images = None if self.renderer is None else _Selection(self.renderer, chosen, self.environments)
+        return SensorView(self.scene.environments(chosen), pose, images)
+
     def check(self, sensor: str) -> None:
         """Raise :class:`InputError` if the pose is not finite or does not have one row for each environment."""
         pose = self.pose
-        turn = pose.rotation if isinstance(pose, SpatialPose) else pose.heading[:, None]
+        turn = pose.rotation if isinstance(pose, SpatialPose) else pose.heading
         if len(pose.position) != self.environments or len(turn) != self.environments:
             raise InputError(f"{sensor}: the pose has {len(pose.position)} rows for {self.environments} environments")
         if not (np.isfinite(pose.position).all() and np.isfinite(turn).all()):
             raise InputError(f"{sensor}: the pose of the sensor is not finite")
+        if isinstance(self.time, np.ndarray) and self.time.shape != (self.environments,):
+            raise InputError(
+                f"{sensor}: the time has shape {list(self.time.shape)}, it must be a number or"
+                f" [{self.environments}], one for each environment"
+            )
+
+
+@dataclass(frozen=True)
+class _Selection:
+    """Images of some environments of a renderer; it renders all, the others from the first pose."""
+
+    renderer: ImageSource
+    index: NDArray[np.int64]
+    environments: int
+
+    def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
+        places = np.zeros(self.environments, dtype=np.int64)
+        places[self.index] = np.arange(len(self.index))
+        images = self.renderer.render(camera, take_rows(pose, places))
+        return {name: np.asarray(image)[self.index] for name, image in images.items()}

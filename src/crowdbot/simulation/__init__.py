@@ -1,25 +1,38 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
-from .batch import run_batch
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .failure import RunFailure, RunFailureWarning
+from .orders import Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
-from .runner import Bridge, SimulationRun, Sink, StopRequest, catch_interrupt, run_to_end, simulate, warn_of_failure
-from .simulation import WALL, RobotContact, RobotRuntime, Simulation, StepRecord
+from .parameter_order import ParameterOrder
+from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .robot_control import RobotControl
+from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
+from .simulation import Simulation
+from .simulation_run import OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
 from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
+from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
 
 __all__ = [
     "WALL",
-    "Bridge",
+    "AddPersonOrder",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",
     "EpisodeStatistics",
+    "MoveOrder",
+    "Order",
+    "OrderSource",
+    "ParameterOrder",
+    "RedirectOrder",
+    "RemoveOrder",
     "RobotContact",
-    "RobotRuntime",
+    "RobotControl",
+    "RunEnd",
     "RunFailure",
     "RunFailureWarning",
+    "RunSnapshot",
     "RunSummary",
     "ScanRow",
     "Simulation",
@@ -27,14 +40,18 @@ __all__ = [
     "Sink",
     "StepRecord",
     "StopRequest",
+    "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
+    "order_kinds",
+    "read_order",
     "robot_metrics",
-    "run_batch",
     "run_to_end",
     "scan_row",
     "simulate",
+    "simulate_seeds",
     "start_scene",
     "tracks_of",
     "warn_of_failure",
+    "write_order",
 ]

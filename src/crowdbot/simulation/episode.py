@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import FreeClock, InputError, TickSchedule
 from crowdbot.data import Trajectories
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 
 from .failure import RunFailure
-from .simulation import StepRecord
+from .orders import Order
 from .statistics import EpisodeDigest, EpisodeStatistics, present
+from .step_record import StepRecord
 
 __all__ = ["Episode", "EpisodeDigest", "EpisodeLog", "ScanRow", "scan_row", "tracks_of"]
 
@@ -67,6 +68,7 @@ class Episode:
         metrics: metrics of the first robot; those of others are named ``name.metric``. See ``NAVIGATION_METRICS``.
         digest: hash of all recorded arrays, readings and commands and of the outcome.
         failure: the exception that ended the run, for the outcome ``error``.
+        orders: orders from outside with their ticks, in the order of their application.
     """
 
     trial: Trial
@@ -87,6 +89,7 @@ class Episode:
     metrics: Mapping[str, float]
     digest: str
     failure: RunFailure | None = None
+    orders: tuple[tuple[int, Order], ...] = ()
 
     @property
     def walls(self) -> tuple[Floats, ...]:
@@ -105,6 +108,9 @@ class Episode:
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories; frame k is k times ``dt`` after the first.
 
+        If the recording period is not a whole number of time steps, a frame is the recorded step at or after its
+        time, by less than one time step.
+
         Raises:
             InputError: ``dt`` is not a multiple of the recording period.
         """
@@ -112,17 +118,25 @@ class Episode:
 
     def _repr_svg_(self) -> str:
         """Return a drawing of walls and paths for notebooks."""
-        period = float(self.times[1] - self.times[0]) if len(self.times) > 1 else self.trial.step
-        return tracks_of(self, f"{self.trial.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
+        name = f"{self.trial.name}, seed {self.seed}, {self.outcome}"
+        return tracks_of(self, name, self.trial.recording.period)._repr_svg_()
+
+    @property
+    def schedule(self) -> TickSchedule:
+        """Ticks of the recorded steps."""
+        return FreeClock(self.trial.step).schedule(self.trial.recording.period)
 
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     """Return the trajectories of an episode."""
-    begin = float(view.times[0])  # above 0 if it continues another episode
-    wanted = begin + np.arange(math.floor((float(view.times[-1]) - begin) / dt + 1e-9) + 1) * dt
-    rows = np.clip(np.searchsorted(view.times, wanted - 1e-6), 0, len(view.times) - 1)
-    if np.any(np.abs(view.times[rows] - wanted) > 1e-6):
-        period = float(view.times[1] - view.times[0])
+    schedule = view.schedule
+    ticks = np.rint(view.times * 1e9 / schedule.step_ns).astype(np.int64)
+    times = schedule.index(ticks) * (schedule.period_ns / 1e9)  # at or less than one step before those of the steps
+    begin = float(times[0])  # above 0 if it continues another episode
+    wanted = begin + np.arange(math.floor((float(times[-1]) - begin) / dt + 1e-9) + 1) * dt
+    rows = np.clip(np.searchsorted(times, wanted - 1e-6), 0, len(times) - 1)
+    if np.any(np.abs(times[rows] - wanted) > 1e-6):
+        period = schedule.period_ns / 1e9
         raise InputError(f"tracks every {dt} s: the episode was recorded every {period:g} s, dt must be a multiple")
     frame, agent = np.nonzero(view.active[rows])
     place = view.position[rows[frame], agent]
@@ -153,10 +167,12 @@ class EpisodeLog(EpisodeStatistics):
         self.times: list[float] = []
         self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
+        self.orders: list[tuple[int, Order]] = []
 
     def keep(self, frame: StepRecord) -> None:
         """Add a step that the digest already contains."""
         super().keep(frame)
+        self.orders += [(frame.tick, order) for order in frame.orders]
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         if frame.due:
@@ -190,6 +206,7 @@ class EpisodeLog(EpisodeStatistics):
             self.metrics(outcome),
             self.digest.hexdigest(outcome),
             failure,
+            tuple(self.orders),
         )
 
 
@@ -205,4 +222,4 @@ def scan_row(scan: Scan) -> ScanRow:
     """Return a scan with E = 1 as a row."""
     pose = planar_pose(scan.pose)
     (x, y), heading = pose.position[0], pose.heading[0]
-    return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])
+    return ScanRow(float(scan.time), (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

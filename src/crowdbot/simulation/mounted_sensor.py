@@ -1,85 +1,274 @@
-"""MountedSensor: a sensor on a robot with its schedule, latency and state."""
+"""MountedSensor: a sensor on a robot with its schedule, latency and state, in all environments of a simulation."""
 
 from __future__ import annotations
 
+import copy
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, SpatialPose, stream
-from crowdbot.sensors import Reading, SensorSchedule, SensorView, TrackedPeople
+from crowdbot.core import InputError, MissingExtra, Pose, Scene, SpatialPose, stream
+from crowdbot.sensors import (
+    Reading,
+    SensorSchedule,
+    SensorView,
+    TrackedPeople,
+    measure_rows,
+    put_state_rows,
+    take_state_rows,
+)
 from crowdbot.trials import Mount, RobotSpec
 from crowdbot.world import MountPlacement, World
 
 from .world_view import WorldView
 
-__all__ = ["DeliveredReading", "MountedSensor", "mounted_sensors", "name_by_id", "spatial"]
+__all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "spatial"]
 
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 LEVEL = 1e-9
 
 
-class DeliveredReading(NamedTuple):
-    """A reading with person ids, and the ids of visible people; None for sensors that do not detect people."""
+@dataclass(frozen=True)
+class SensorReadings:
+    """Readings of one sensor in some environments, with agent indices until they are read.
 
+    Fields:
+        name: name of the sensor.
+        environments: ``[N]`` indices of the environments.
+        reading: reading with N rows.
+        ids: ``[N, A]`` ids of the agents at the time of the measurement.
+        slots: ``[N]`` number of agents of each environment.
+    """
+
+    name: str
+    environments: Ints
     reading: Reading
-    seen: Ints | None
+    ids: Ints
+    slots: Ints
+
+    def row(self, number: int) -> Reading:
+        """Return the reading in row ``number`` with person ids instead of agent indices."""
+        alone = len(self.environments) == 1
+        reading = self.reading if alone else self.reading.environment(number)
+        slots = int(self.slots[number])
+        if isinstance(reading, TrackedPeople) and reading.present.shape[1] > slots:
+            reading = _tracked_columns(reading, np.arange(slots))
+        return name_by_id(reading, self.ids[number, :slots])
+
+    def without(self, excluded: Bools) -> SensorReadings | None:
+        """Return the readings without the environments ``excluded`` ``[E]``, None if none is left."""
+        rows = np.flatnonzero(~excluded[self.environments])
+        return self.select(rows, self.environments[rows]) if len(rows) else None
+
+    def matching(self, environments: Ints) -> SensorReadings | None:
+        """Return the readings of some environments, which may be repeated and are numbered anew; None for none."""
+        rows, places = np.nonzero(self.environments[:, None] == environments[None, :])
+        return self.select(rows, places) if len(rows) else None
+
+    def renumber(self, numbers: Ints) -> SensorReadings:
+        """Return the readings with environment e as ``numbers[e]``."""
+        return dataclasses.replace(self, environments=numbers[self.environments])
+
+    def select(self, rows: Ints, environments: Ints) -> SensorReadings:
+        """Return some rows, which belong to other environments now."""
+        reading = self.reading.select(rows)
+        return SensorReadings(self.name, environments, reading, self.ids[rows], self.slots[rows])
 
 
 @dataclass
 class MountedSensor:
-    """A sensor of a running simulation.
+    """A sensor of a running simulation of E environments.
+
+    A built-in sensor in the plane measures all environments that are due in one call, any other sensor one by one.
 
     Fields:
         mount: the sensor and its mounting pose.
         placed: x, y, z [m], roll, pitch, yaw [rad] on the robot in its posture.
         schedule: sampling times and latency.
-        rng: random number generator.
+        rngs: random number generator of each environment.
         space: whether it senses bodies in space; otherwise discs in the plane.
-        state: state of the sensor, from its ``begin`` or its last measurement.
-        waiting: readings not yet delivered, with their tick of arrival.
+        together: whether one call measures all environments that are due.
+        state: state of the sensor in all environments if ``together``, otherwise a list with one for each.
+        waiting: readings not yet delivered, with their ticks of arrival ``[N]``.
+        latest, latest_row: ``[E]`` latest readings and the row of the environment in them.
+        seen, seen_ids: ``[E, A]`` agents in the latest reading, and their ids then.
     """
 
     mount: Mount
     placed: tuple[float, float, float, float, float, float]
     schedule: SensorSchedule
-    rng: np.random.Generator
+    rngs: list[np.random.Generator]
     space: bool
+    together: bool
     state: Any
-    waiting: list[tuple[int, DeliveredReading]] = field(default_factory=list)
+    waiting: list[tuple[Ints, SensorReadings]] = field(default_factory=list)
+    latest: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=object))
+    latest_row: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    seen: Bools | None = None
+    seen_ids: Ints | None = None
 
-    def work(self, tick: int, agent: int, around: WorldView, ids: Ints) -> list[DeliveredReading]:
-        """Measure if due, and return the readings that arrive now, oldest first."""
-        if self.schedule.measures(tick):
-            reading = self._measure(agent, around)
-            told = name_by_id(reading, ids)
-            self.waiting.append((self.schedule.arrives(tick), DeliveredReading(told, visible_ids(told))))
-        ready = [told for due, told in self.waiting if due <= tick]
-        self.waiting = [row for row in self.waiting if row[0] > tick]
-        return ready
+    def __post_init__(self) -> None:
+        if not len(self.latest):
+            self.latest = np.empty(len(self.rngs), dtype=object)
+            self.latest_row = np.zeros(len(self.rngs), dtype=np.int64)
 
-    def _measure(self, agent: int, around: WorldView) -> Reading:
-        scene = (around.space if self.space else around.flat).without(agent)
-        answer: Any = self.mount.sensor.measure(
-            SensorView(scene, self.pose(agent, around), around), self.state, self.rng
+    @property
+    def name(self) -> str:
+        """Name of the sensor."""
+        return self.mount.name
+
+    def work(
+        self, ticks: Ints, live: Bools, agent: int, around: WorldView
+    ) -> tuple[list[SensorReadings], list[tuple[int, Exception]]]:
+        """Measure where due, and return the readings that arrive now, oldest first, and exceptions by environment.
+
+        A measurement of several environments that raises an exception fails in all of them.
+
+        Args:
+            ticks: ``[E]`` tick of each environment.
+            live: ``[E]`` environments that run.
+            agent: index of the robot.
+            around: the world.
+        """
+        due = np.flatnonzero(live & self.schedule.measures(ticks))
+        errors: list[tuple[int, Exception]] = []
+        for part in [due] if self.together else [due[k : k + 1] for k in range(len(due))]:
+            try:
+                self.waiting += [self._measure(part, ticks, agent, around)] if len(part) else []
+            except MissingExtra:
+                raise
+            except Exception as error:  # sensors may raise anything
+                errors += [(int(e), error) for e in part]
+        if not self.waiting:
+            return [], errors
+        ready, later = [], []
+        for arrival, readings in self.waiting:
+            now = arrival <= ticks[readings.environments]
+            if now.all():
+                ready.append(readings)
+            elif not now.any():
+                later.append((arrival, readings))
+            else:
+                ready.append(readings.select(*_rows(now, readings)))
+                later.append((arrival[~now], readings.select(*_rows(~now, readings))))
+        self.waiting = later
+        for readings in ready:
+            self._keep(readings)
+        return ready, errors
+
+    def visible(self, ids: Ints) -> Bools | None:
+        """Return ``[E, A]`` the agents in the latest readings, None if the sensor does not detect people."""
+        if self.seen is None or self.seen_ids is None:
+            return None
+        seen, seen_ids = _fit(self.seen, ids.shape[1]), _fit(self.seen_ids, ids.shape[1])
+        return np.asarray(seen & (seen_ids == ids))
+
+    def reading(self, environment: int) -> Reading | None:
+        """Return the latest reading in an environment, with person ids."""
+        readings = self.latest[environment]
+        return None if readings is None else readings.row(int(self.latest_row[environment]))
+
+    def _keep(self, readings: SensorReadings) -> None:
+        index = readings.environments
+        self.latest[index] = readings
+        self.latest_row[index] = np.arange(len(index))
+        seen = visible_agents(readings.reading, readings.ids.shape[1])
+        if seen is None:
+            return
+        agents, count = readings.ids.shape[1], len(self.rngs)
+        if self.seen is None or self.seen_ids is None:
+            self.seen = np.zeros((count, agents), dtype=np.bool_)
+            self.seen_ids = np.zeros((count, agents), dtype=np.int64)
+        self.seen, self.seen_ids = _fit(self.seen, agents), _fit(self.seen_ids, agents)
+        self.seen[index], self.seen_ids[index] = seen, readings.ids
+
+    def _measure(self, due: Ints, ticks: Ints, agent: int, around: WorldView) -> tuple[Ints, SensorReadings]:
+        if not self.together:
+            return self._measure_one(int(due[0]), ticks, agent, around)
+        ids, slots = around.world.ids, around.world.slots
+        every = len(due) == len(self.rngs)
+        scene, pose = around.flat, self.pose(agent, around)
+        if not every:
+            scene, pose = scene.environments(due), _select_pose(pose, due)
+        count, rngs = len(self.rngs), [self.rngs[e] for e in due]
+        state = self.state if every or self.state is None else take_state_rows(self.state, due)
+        view = SensorView(scene.without(agent), pose)
+        reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
+        if new is not None or self.state is not None:
+            self.state = new if every else put_state_rows(self.state, due, new, count)
+        return self.schedule.arrives(ticks[due]), SensorReadings(self.name, due, reading, ids[due], slots[due])
+
+    def _measure_one(self, e: int, ticks: Ints, agent: int, around: WorldView) -> tuple[Ints, SensorReadings]:
+        index = np.array([e])
+        scene = (around.space(e) if self.space else around.flat_of(e)).without(agent)
+        pose = self.pose(agent, around, e)
+        reading, self.state[e] = self._ask(scene, pose, around.of(e), self.state[e], self.rngs[e])
+        world = around.world
+        return self.schedule.arrives(ticks[index]), SensorReadings(
+            self.name, index, reading, world.ids[index], world.slots[index]
         )
+
+    def _ask(self, scene: Scene, pose: Pose | SpatialPose, renderer: Any, state: Any, rng: Any) -> tuple[Reading, Any]:
+        answer: Any = self.mount.sensor.measure(SensorView(scene, pose, renderer), state, rng)
         if not (isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[0], Reading)):
             raise InputError(
                 f"sensor {type(self.mount.sensor).__name__} {self.mount.name!r}: measure returned a"
                 f" {type(answer).__name__}; it must return (reading, state)"
             )
-        reading: Reading = answer[0]
-        self.state = answer[1]
-        return reading
+        return answer
 
-    def pose(self, agent: int, around: WorldView) -> Pose | SpatialPose:
-        """Return the pose of the sensor, in the plane or in space."""
+    def pose(self, agent: int, around: WorldView, environment: int | None = None) -> Pose | SpatialPose:
+        """Return the pose of the sensor, in the plane or in space: in all environments, or in one."""
         mount = MountPlacement(self.mount.link, self.mount.origin, self.placed)
-        return around.world.sensor_pose(agent, mount, self.space)
+        return around.sensor_pose(agent, mount, self.space, environment)
+
+    def select(self, environments: Ints) -> MountedSensor:
+        """Return an independent sensor with some environments."""
+        other = copy.copy(self)
+        other.rngs = [copy.deepcopy(self.rngs[e]) for e in environments]
+        if self.together:
+            other.state = take_state_rows(self.state, environments)
+        else:
+            other.state = [copy.deepcopy(self.state[e]) for e in environments]
+        other.waiting = []
+        for arrival, readings in self.waiting:
+            rows, _ = np.nonzero(readings.environments[:, None] == environments[None, :])
+            if (part := readings.matching(environments)) is not None:
+                other.waiting.append((arrival[rows], part))
+        other.latest, other.latest_row = self.latest[environments], self.latest_row[environments]
+        other.seen = None if self.seen is None else self.seen[environments]
+        other.seen_ids = None if self.seen_ids is None else self.seen_ids[environments]
+        return other
+
+    def put(self, environments: Ints, other: MountedSensor) -> None:
+        """Replace some environments by those of another simulation of the same trial."""
+        if self.together:
+            self.state = put_state_rows(self.state, environments, other.state, len(self.rngs))
+        for k, e in enumerate(environments.tolist()):
+            self.rngs[e] = other.rngs[k]
+            self.latest[e], self.latest_row[e] = other.latest[k], other.latest_row[k]
+            if not self.together:
+                self.state[e] = other.state[k]
+        kept = []
+        for arrival, readings in self.waiting:
+            stays = ~np.isin(readings.environments, environments)
+            if stays.any():
+                kept.append((arrival[stays], readings.select(*_rows(stays, readings))))
+        moved = [(arrival, readings.renumber(environments)) for arrival, readings in other.waiting]
+        self.waiting = kept + moved
+        if self.seen is not None and self.seen_ids is not None:
+            agents = self.seen.shape[1]
+            new = np.zeros((len(environments), agents), dtype=np.bool_) if other.seen is None else other.seen
+            agents = max(agents, new.shape[1])
+            self.seen, self.seen_ids = _fit(self.seen, agents), _fit(self.seen_ids, agents)
+            self.seen[environments] = _fit(new, agents)
+            if other.seen_ids is not None:
+                self.seen_ids[environments] = _fit(other.seen_ids, agents)
 
 
 def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
@@ -90,33 +279,38 @@ def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
 
 
 def mounted_sensors(
-    trial: Any, robot: RobotSpec, world: World, seed: int, known: Mapping[str, MountedSensor] | None = None
+    trial: Any, robot: RobotSpec, world: World, seeds: Sequence[int], known: Mapping[str, MountedSensor] | None = None
 ) -> tuple[MountedSensor, ...]:
     """Return the sensors of a robot; those in ``known`` keep their random state and pending readings."""
     bodies = trial.bodies or world.people_shape
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
+        space = spatial(robot, mount, bodies)
+        own = type(sensor).__module__.startswith("crowdbot.sensors.")
         probe = MountedSensor(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
             robot.sensor_pose(mount),
             robot.schedule(mount, world.clock),
-            stream(seed, "sensor", robot.name, mount.name),
-            spatial(robot, mount, bodies),
-            sensor.begin(),
+            [stream(seed, "sensor", robot.name, mount.name) for seed in seeds],
+            space,
+            own and not space and not sensor.renders and not world.walls_fixed,
+            None,
         )
+        probe.state = sensor.begin() if probe.together else [sensor.begin() for _ in seeds]
         old = (known or {}).get(mount.name)
         if old is not None:
-            same = type(old.mount.sensor) is type(sensor)
-            probe = dataclasses.replace(
-                probe, rng=old.rng, state=old.state if same else probe.state, waiting=old.waiting if same else []
-            )
+            same = type(old.mount.sensor) is type(sensor) and old.together == probe.together
+            probe.rngs, probe.latest, probe.latest_row = old.rngs, old.latest, old.latest_row
+            probe.seen, probe.seen_ids = old.seen, old.seen_ids
+            if same:
+                probe.state, probe.waiting = old.state, old.waiting
         found.append(probe)
     return tuple(found)
 
 
 def name_by_id(reading: Reading, ids: Ints) -> Reading:
-    """Return a reading with person ids instead of agent indices."""
+    """Return a reading of one environment with person ids instead of agent indices."""
     if np.array_equal(ids, np.arange(len(ids))):
         return reading
     if isinstance(reading, TrackedPeople):
@@ -125,6 +319,16 @@ def name_by_id(reading: Reading, ids: Ints) -> Reading:
     if hit is None:
         return reading
     return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[np.maximum(hit, 0)], hit))  # type: ignore[call-arg]
+
+
+def visible_agents(reading: Reading, agents: int) -> Bools | None:
+    """Return ``[N, A]`` the agents in a reading; None for sensors that do not detect people."""
+    if isinstance(reading, TrackedPeople):
+        return _fit(reading.present, agents)
+    hit = getattr(reading, "hit", None)
+    if hit is None or not hasattr(reading, "visible_agents"):
+        return None
+    return np.asarray(reading.visible_agents(agents))
 
 
 def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
@@ -140,11 +344,26 @@ def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
     return dataclasses.replace(reading, **rows)
 
 
-def visible_ids(reading: Reading) -> Ints | None:
-    """Return the ids of visible people; None for sensors that do not detect people."""
-    if isinstance(reading, TrackedPeople):
-        return np.flatnonzero(reading.present[0])
-    hit = getattr(reading, "hit", None)
-    if hit is None or not hasattr(reading, "visible_agents"):
-        return None
-    return np.asarray(np.unique(hit[hit >= 0]))
+def _tracked_columns(reading: TrackedPeople, agents: Ints) -> TrackedPeople:
+    parts = ("present", "position", "velocity", "radius", "heading")
+    return dataclasses.replace(reading, **{part: getattr(reading, part)[:, agents] for part in parts})
+
+
+def _select_pose(pose: Pose | SpatialPose, index: Ints) -> Any:
+    if isinstance(pose, Pose):
+        return Pose(pose.position[index], pose.heading[index])
+    return SpatialPose(pose.position[index], pose.rotation[index])
+
+
+def _rows(chosen: Bools, readings: SensorReadings) -> tuple[Ints, Ints]:
+    rows = np.flatnonzero(chosen)
+    return rows, readings.environments[rows]
+
+
+def _fit(values: NDArray[Any], agents: int) -> NDArray[Any]:
+    """Return ``[E, A]`` with zeros for further agents, or without the last ones."""
+    if values.shape[1] == agents:
+        return values
+    if values.shape[1] > agents:
+        return values[:, :agents]
+    return np.concatenate([values, np.zeros((len(values), agents - values.shape[1]), dtype=values.dtype)], axis=1)

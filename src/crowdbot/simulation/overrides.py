@@ -5,15 +5,19 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+import numpy as np
+
 from crowdbot.core import InputError
 from crowdbot.models import Mixture
 from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
+from crowdbot.world import environment_seeds
 
 from .mounted_sensor import mounted_sensors
-from .simulation import RobotRuntime, Simulation
-from .world_builder import limits_of
+from .robot_control import RobotControl
+from .simulation import NONE, SUCCESS, Simulation
+from .world_builder import limits_of, own_walls
 
-__all__ = ["apply_overrides"]
+__all__ = ["apply_overrides", "check_overrides"]
 
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "journeys")
 """Values of a trial that cannot change during a run."""
@@ -33,14 +37,14 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
     old, world = simulation.trial, simulation.world
     if trial == old and seed is None:
         return
-    _check(old, trial, simulation.world.clock.time)
+    check_overrides(simulation, trial)
     world.reconfigure(
         _scene(simulation, trial),
         [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources],
         seed,
         model=_model(simulation, trial),
-        drives={runtime.agent: robot.drive for runtime, robot in zip(simulation.robots, trial.robots, strict=True)},
-        latency={runtime.agent: robot.latency for runtime, robot in zip(simulation.robots, trial.robots, strict=True)},
+        drives={control.agent: robot.drive for control, robot in zip(simulation.robots, trial.robots, strict=True)},
+        latency={control.agent: robot.latency for control, robot in zip(simulation.robots, trial.robots, strict=True)},
         robot_margin=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.limits(),
@@ -49,16 +53,24 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         substeps=trial.substeps,
         **_router(old, trial),
     )
-    simulation.replace_trial(trial, simulation.seed if seed is None else seed)
+    simulation.trial = trial
+    if seed is not None:
+        simulation.seeds = environment_seeds(seed, simulation.count)
+    bodies = {robot.agent: spec.body for robot, spec in zip(simulation.robots, trial.robots, strict=True)}
+    world.change_bodies(bodies, trial.stage.physical(), own_walls(trial))
     simulation.robots = [
-        _robot_runtime(simulation, runtime, robot, seed)
-        for runtime, robot in zip(simulation.robots, trial.robots, strict=True)
+        _robot_control(simulation, control, robot, seed)
+        for control, robot in zip(simulation.robots, trial.robots, strict=True)
     ]
-    if [robot.goal for robot in old.robots] != [robot.goal for robot in trial.robots] and simulation.event == "success":
-        simulation.event = None
+    if [robot.goal for robot in old.robots] != [robot.goal for robot in trial.robots]:
+        simulation.event[simulation.event == SUCCESS] = NONE
 
 
-def _check(old: Trial, new: Trial, time: float) -> None:
+def check_overrides(simulation: Any, new: Trial) -> None:
+    """Raise :class:`InputError` if a value of the new trial cannot change while a simulation runs."""
+    old, time = simulation.trial, float(simulation.world.times.max())
+    if new.stage != old.stage and simulation.world.walls_fixed:
+        raise InputError("the stage cannot change in a branch of the physics world")
     for name in FIXED:
         if getattr(old, name) != getattr(new, name):
             raise InputError(f"{name} cannot change in a branch: it only affects the start; run another trial instead")
@@ -82,17 +94,15 @@ def _check(old: Trial, new: Trial, time: float) -> None:
 def _scene(simulation: Simulation, trial: Trial) -> Any:
     scene = simulation.world.scene
     if trial.stage != simulation.trial.stage:
-        if simulation.world.walls_fixed:
-            raise InputError("the stage cannot change in a branch of the physics world")
         scene = scene.replace(walls=trial.stage.as_walls())
     columns = {
         name: getattr(scene, name).copy() for name in ("radius", "goal", "visible", "max_speed", "preferred_speed")
     }
-    for runtime, robot in zip(simulation.robots, trial.robots, strict=True):
+    for control, robot in zip(simulation.robots, trial.robots, strict=True):
         top = limits_of(robot.drive).max_speed
         values = (robot.radius, robot.goal.position, robot.visible, top, top)
         for name, value in zip(columns, values, strict=True):
-            columns[name][:, runtime.agent] = value
+            columns[name][:, control.agent] = value
     return scene.replace(**columns)
 
 
@@ -100,7 +110,8 @@ def _model(simulation: Simulation, trial: Trial) -> Any:
     """Return the crowd model; with several crowds, each person keeps theirs."""
     if not isinstance(trial.crowd, Crowds):
         return trial.crowd
-    known = simulation.world.model
+    known: Any = simulation.world
+    known = known.model
     assert isinstance(known, Mixture)
     return Mixture(trial.crowd.models, known.which)
 
@@ -111,25 +122,22 @@ def _router(old: Trial, new: Trial) -> dict[str, Any]:
     return {"router": None if new.routing is None else new.routing.router(new.stage.as_walls())}
 
 
-def _robot_runtime(simulation: Simulation, old: RobotRuntime, robot: RobotSpec, seed: int | None) -> RobotRuntime:
+def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, seed: int | None) -> RobotControl:
     """Return the state of a robot that continues with its current command and the readings of its remaining sensors."""
-    clock, names = simulation.world.clock, {mount.name for mount in robot.sensors}
-    probes = mounted_sensors(
-        simulation.trial, robot, simulation.world, simulation.seed, {one.mount.name: one for one in old.probes}
-    )
+    known = {sensor.name: sensor for sensor in old.sensors}
+    sensors = mounted_sensors(simulation.trial, robot, simulation.world, simulation.seeds, known)
     if seed is not None:
-        fresh = mounted_sensors(simulation.trial, robot, simulation.world, seed)
-        probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
+        fresh = mounted_sensors(simulation.trial, robot, simulation.world, simulation.seeds)
+        for sensor, new in zip(sensors, fresh, strict=True):
+            sensor.rngs = new.rngs
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old,
         robot=robot,
-        memory=old.memory if same else None,
-        begun=old.begun and same,
+        memories=old.memories if same else [None] * simulation.count,
+        begun=old.begun if same else np.zeros_like(old.begun),
         limits=limits_of(robot.drive),
-        control_every=clock.every(robot.control_period),
-        probes=probes,
-        readings={name: reading for name, reading in old.readings.items() if name in names},
-        seen={name: ids for name, ids in old.seen.items() if name in names},
-        arrived=old.arrived and robot.goal == old.robot.goal,
+        control=simulation.world.clock.schedule(robot.control_period),
+        sensors=sensors,
+        arrived=old.arrived if robot.goal == old.robot.goal else np.zeros_like(old.arrived),
     )

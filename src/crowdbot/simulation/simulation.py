@@ -1,4 +1,4 @@
-"""Simulation: a running trial, advanced in time steps.
+"""Simulation: the running environments of a trial, advanced together in time steps.
 
 Order of a step from tick k to tick k + 1 (see docs/concepts/steps.md):
 
@@ -8,336 +8,392 @@ Order of a step from tick k to tick k + 1 (see docs/concepts/steps.md):
 4. **physics**: overlaps are resolved and contacts during the step are detected; the scene is at k + 1;
 5. **flow**: people at their goal or in an exit leave, others enter; contacts and arrivals are evaluated;
 6. **sensors** that are due measure the new scene, then navigators that are due decide;
-7. **bridges** forward the readings and may change commands;
-8. **recorders** write scene, readings, contacts and commands that are due.
+7. **orders** from outside are applied: commands of bridges, changes of the scene;
+8. **recorders** write scene, readings, contacts, orders and commands that are due.
 
 At tick 0, only parts 6 to 8 run. Sensors, navigators and recorders are due every n-th tick.
 """
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
-from crowdbot.metrics.contacts import HOLD
-from crowdbot.navigation import DriveLimits, Observation
-from crowdbot.sensors import Reading, Scan
-from crowdbot.trials import Mount, RobotSpec, Trial, element_word, people_appearance, place
-from crowdbot.world import StepGenerator, run_step
+from crowdbot.core import Clock, InputError, Twist
+from crowdbot.metrics import HOLD
+from crowdbot.navigation import Observation
+from crowdbot.sensors import Reading
+from crowdbot.trials import Mount, RobotSpec, Trial
+from crowdbot.world import join_worlds, put_environments, select_environments, step_environments
 
 from .failure import RunFailure
-from .mounted_sensor import MountedSensor, mounted_sensors
-from .termination import end_outcome, goal_zones
-from .world_builder import build_world, limits_of, start_scene
+from .mounted_sensor import SensorReadings
+from .robot_control import RobotControl
+from .step_record import WALL, RobotContact, StepRecord
+from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones
+from .world_builder import begin_world, check_clock
 from .world_view import WorldView
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyContactEvent, ContactForce
+    from crowdbot.world import BodyContactEvent
 
-__all__ = ["RobotContact", "RobotRuntime", "Simulation", "StepRecord", "start_scene"]
+    from .orders import Order
+
+__all__ = ["COLLISION", "NONE", "SUCCESS", "Simulation"]
 
 INSTANT = 1e-9
 """Tolerance of times [s]."""
-ARRIVED = 0.3
-"""Distance [m] to the own goal point within which people in a goal zone leave."""
+NONE, COLLISION, SUCCESS = 0, 1, 2
+"""First event of an environment."""
 
-
-WALL = -2
-"""Code of a wall instead of an agent id, as in scans."""
-
-
-class RobotContact(NamedTuple):
-    """A contact of a robot during a step: ids of both agents (-2: a wall) and the smallest clearance [m], negative."""
-
-    robot: int
-    other: int
-    clearance: float
-
-
-@dataclass(frozen=True)
-class StepRecord:
-    """The record of one time step.
-
-    Fields:
-        tick: number of steps since the start.
-        nanoseconds: simulated time [ns].
-        scene: all agents, including absent ones; E = 1.
-        ids: ``[A]`` ids of the agents; an index can be reused by another person.
-        twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
-        readings: readings of this step with robot and mount; hits are person ids.
-        due: whether the scene is recorded; otherwise only readings and contacts.
-        touches: contacts of the last step.
-        forces: contact forces of the last step, in the physics world.
-        collisions: contact events that ended since the last record, in the physics world.
-    """
-
-    tick: int
-    nanoseconds: int
-    scene: Scene
-    ids: NDArray[np.int64]
-    twists: NDArray[np.float64]
-    commands: NDArray[np.float64]
-    readings: tuple[tuple[RobotSpec, Mount, Reading], ...]
-    due: bool
-    touches: tuple[RobotContact, ...] = ()
-    forces: tuple[ContactForce, ...] = ()
-    collisions: tuple[BodyContactEvent, ...] = ()
-
-
-@dataclass
-class RobotRuntime:
-    """State of a robot in a simulation: agent index, latest readings and current command."""
-
-    robot: RobotSpec
-    agent: int
-    limits: DriveLimits
-    control_every: int
-    probes: tuple[MountedSensor, ...]
-    readings: dict[str, Reading] = field(default_factory=dict)
-    seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
-    """Ids of the people in the latest reading of each sensor."""
-    command: Twist = field(default_factory=Twist)
-    memory: Any = None
-    """State of the navigator after its first decision."""
-    begun: bool = False
-    arrived: bool = False
+Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 
 class Simulation:
-    """A running simulation of a trial.
+    """The running simulation of a trial in E environments, one for each seed.
+
+    All environments advance together; each has its own people, random numbers, time, events and failure. Environment e
+    is bit-identical to a simulation of its seed alone. Single environments can be restarted at any time.
 
     Args:
-        trial, seed: the trial and its seed.
+        trial: the trial, without sweeps.
+        seeds: one seed, or one for each environment.
         clock: a clock at tick 0 with the time step of the trial; None: a free clock.
         posed: compute body poses for rendering even if no sensor needs them.
 
     Attributes:
-        around: the world for sensors and cameras.
+        trial, seeds: the trial and the seed of each environment.
         world: moves people and robots; has the clock.
-        robots: states of the robots.
-        event: ``success`` or ``collision``, whichever occurred first.
-        touches: contacts of the latest step.
-        begun: whether parts 6 to 8 of tick 0 have run.
-        ended: the outcome after another end condition of the trial.
-        failure: the exception that ended the run, or None.
+        around: the world for sensors and cameras.
+        robots: state of each robot.
+        readings: readings that arrived in the latest step, with their robots; see :meth:`new_readings`.
+        event: ``[E]`` the first of :data:`COLLISION` and :data:`SUCCESS`, :data:`NONE` before.
+        ended: ``[E]`` number of the end condition that has ended an environment, 0 for none.
+        failures: the exception that ended each environment, or None.
+        begun: ``[E]`` whether parts 6 to 8 of tick 0 have run.
+        failed: ``[E]`` whether an exception has ended an environment.
+        broken: ``[E]`` whether this happened before part 6, so that the step cannot be recorded.
 
     Raises:
-        TrialError: people cannot be placed with this seed.
+        TrialError: people cannot be placed with a seed.
         InputError: the clock has another time step, or is not at tick 0.
 
     >>> from crowdbot.models import ORCA
-    >>> simulation = Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
-    >>> simulation.step()
-    >>> simulation.frame().nanoseconds
-    50000000
+    >>> simulation = Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), seeds=[0, 1])
+    >>> simulation.advance()
+    >>> simulation.ticks.tolist(), simulation.record(1).nanoseconds
+    ([1, 1], 50000000)
     """
 
-    def __init__(self, trial: Trial, seed: int, clock: Clock | None = None, *, posed: bool = False) -> None:
-        self.trial = trial
-        self.seed = seed
-        recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
-        people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
-        if problems:
-            what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
-            raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
-        self.people = people
-        self.world, figures = build_world(trial, people, seed)
-        if posed and figures is None:
-            figures = people_appearance(trial, people, self.world.scene.shape[1], seed)
-        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
-        self.around = WorldView(trial, self.world, figures, seed, skins)
-        self.robots = [self._robot_runtime(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
-        self.event: str | None = None
-        self.touches: tuple[RobotContact, ...] = ()
-        self.begun = False
+    def __init__(
+        self, trial: Trial, seeds: int | Sequence[int] = 0, clock: Clock | None = None, *, posed: bool = False
+    ) -> None:
+        self.trial, self._posed = trial, posed
+        self.seeds = [int(seeds)] if isinstance(seeds, int | np.integer) else [int(seed) for seed in seeds]
+        if not self.seeds:
+            raise InputError("a simulation needs at least one seed, such as seeds=range(8)")
+        begun = [begin_world(trial, seed, posed) for seed in self.seeds]
+        self.people = begun[0][1]
+        self.world = join_worlds([world for world, _ in begun])
+        self._set_around()
+        count = len(self.seeds)
+        self.robots = [
+            RobotControl.of(trial, robot, trial.people + k, self.world, self.seeds)
+            for k, robot in enumerate(trial.robots)
+        ]
+        self.readings: list[tuple[RobotControl, SensorReadings]] = []
+        self.event = np.zeros(count, dtype=np.int8)
+        self.ended = np.zeros(count, dtype=np.int64)
+        self.failures: list[RunFailure | None] = [None] * count
+        self._contacts: dict[int, tuple[RobotContact, ...]] = {}
+        self.begun, self.failed, self.broken = (np.zeros(count, dtype=np.bool_) for _ in range(3))
+        self._told = np.zeros(count, dtype=np.int64)
+        self._ways_out = goal_zones(self.people)
         if clock is not None:
-            self._keep_time(clock)
-        self.ended: str | None = None
-        self.failure: RunFailure | None = None
-        self._ways_out = goal_zones(people)
-        self._told = 0
+            check_clock(clock, self.world.clock)
+            self.world.clock = clock
 
-    def step(self) -> None:
-        """Advance one step: parts 1 to 5."""
-        run_step(self.step_requests())
+    def begin(self) -> None:
+        """Run part 6 of tick 0 in the environments in which it has not run."""
+        new = ~self.begun
+        self.begun[:] = True
+        self.readings = self._observe(new & ~self.failed)
 
-    def step_requests(self) -> StepGenerator[None]:
-        """Advance one step and yield the requests to the crowd model; see :func:`crowdbot.simulation.run_batch`."""
-        before, ids = self.world.scene, self.ids.copy()
-        yield from self.world.step_requests({runtime.agent: runtime.command for runtime in self.robots})
-        self._let_leave()
-        self.world.pose_people()
-        self._judge(before, ids)
+    def advance(self) -> None:
+        """Advance all environments by one step: parts 1 to 6.
 
-    def sense(self) -> tuple[tuple[RobotSpec, Mount, Reading], ...]:
-        """Measure with due sensors and return the readings that arrive now: the first half of part 6."""
-        new = []
-        for runtime in self.robots:
-            for probe in runtime.probes:
-                name = probe.mount.name
-                for told in probe.work(self.tick, runtime.agent, self.around, self.ids):
-                    runtime.readings[name] = told.reading
-                    if told.seen is not None:
-                        runtime.seen[name] = told.seen
-                    new.append((runtime.robot, probe.mount, told.reading))
-        return tuple(new)
-
-    def decide(self) -> None:
-        """Let due navigators decide: the second half of part 6."""
-        for runtime in self.robots:
-            if self.tick % runtime.control_every == 0:
-                self._decide(runtime)
-
-    def _decide(self, runtime: RobotRuntime) -> None:
-        navigator, observation = runtime.robot.navigator, self.observation(runtime)
-        if not runtime.begun:
-            runtime.memory, runtime.begun = navigator.begin(observation), True
-        action, runtime.memory = navigator.decide(observation, runtime.memory, robot=runtime.robot.name)
-        runtime.command = action.twist
-
-    def observation(self, runtime: RobotRuntime) -> Observation:
-        """Return the observation of a robot: the people in the latest readings of its sensors.
-
-        Positions and velocities are exact, as from a perfect tracker.
+        An exception in a crowd model, sensor or navigator ends the environment in which it occurs, see
+        :attr:`failures`. Such an environment stays as it is until it is restarted.
         """
-        scene = self.around.flat
-        seen = np.zeros(scene.shape[1], dtype=np.bool_)
-        for hit in runtime.seen.values():
-            seen |= np.isin(self.ids, hit)
-        scans = [reading for reading in runtime.readings.values() if isinstance(reading, Scan)]
-        return Observation.of(
-            scene,
-            runtime.agent,
-            runtime.limits,
-            dt=runtime.robot.control_period,
-            twist=self.world.twists[runtime.agent].at(0),
-            seen=seen,
-            scan=scans[0] if scans else None,
-        )
-
-    def frame(
-        self, readings: tuple[tuple[RobotSpec, Mount, Reading], ...] = (), due: bool = True, last: bool = False
-    ) -> StepRecord:
-        """Return the record of the current step: part 8. The ``last`` one includes open contact events."""
-        twists = [self.world.twists[runtime.agent].at(0) for runtime in self.robots]
-        return StepRecord(
-            self.tick,
-            self.world.clock.nanoseconds,
-            self.world.scene,
-            self.ids.copy(),
-            _rows(twists),
-            _rows([runtime.command for runtime in self.robots]),
-            readings,
-            due,
-            self.touches,
-            self.forces,
-            self._collisions(last),
-        )
+        if not self.begun.all():
+            self.begin()
+        self._step()
+        self.readings = self._observe(~self.failed)
 
     @property
-    def forces(self) -> tuple[ContactForce, ...]:
-        """Contact forces of the last step; none in the planar world."""
-        return self.world.forces
+    def count(self) -> int:
+        """Number of environments E."""
+        return len(self.seeds)
 
     @property
-    def eventful(self) -> bool:
-        """Whether there is something to record although no scene is due."""
-        return bool(self.touches or self.forces)
+    def ticks(self) -> Ints:
+        """Number of steps of each environment since its start, ``[E]``."""
+        return self.world.ticks
 
-    def _collisions(self, last: bool) -> tuple[BodyContactEvent, ...]:
-        """Return the contact events that ended since the previous call, ordered by end."""
-        now = self.world.clock.time
-        over = [one for one in self.world.contact_events if last or now - one.end > HOLD + INSTANT]
-        over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
-        new, self._told = over[self._told :], len(over)
-        return tuple(new)
+    @property
+    def tick(self) -> int:
+        """Number of steps of the first environment since its start."""
+        return int(self.world.ticks[0])
 
-    def replace_trial(self, trial: Trial, seed: int) -> None:
-        """Continue with another trial; see :func:`crowdbot.simulation.apply_overrides`, which changes the world."""
-        self.trial, self.seed = trial, seed
-        self.around.change(trial)
-
-    def ask(self, robot: str, command: Twist) -> None:
-        """Set the command of a robot until the next decision of its navigator; used by bridges, part 7.
+    def observation(self, robot: str, environment: int = 0) -> Observation:
+        """Return the observation of a robot in one environment.
 
         Raises:
             InputError: there is no robot of this name.
         """
-        for runtime in self.robots:
-            if runtime.robot.name == robot:
-                runtime.command = Twist(*map(float, command))
-                return
-        known = ", ".join(runtime.robot.name for runtime in self.robots) or "none"
-        raise InputError(f"there is no robot {robot!r}; the trial has {known}")
+        return self._robot(robot).observation(self.around, environment)
 
-    @property
-    def tick(self) -> int:
-        """Number of steps since the start."""
-        return self.world.clock.tick
+    def agent_of(self, robot: str) -> int:
+        """Return the index of a robot in the scene.
 
-    @property
-    def ids(self) -> NDArray[np.int64]:
-        """Ids ``[A]`` of the agents."""
-        return np.asarray(self.world.ids[0])
+        Raises:
+            InputError: there is no robot of this name.
+        """
+        return self._robot(robot).agent
 
-    def _robot_runtime(self, robot: RobotSpec, agent: int) -> RobotRuntime:
-        every = self.world.clock.every
-        return RobotRuntime(
-            robot,
-            agent,
-            limits_of(robot.drive),
-            every(robot.control_period),
-            mounted_sensors(self.trial, robot, self.world, self.seed),
+    def command(self, robot: str, twist: Twist, environment: int = 0) -> None:
+        """Set the command of a robot until its navigator decides again; part 7.
+
+        Raises:
+            InputError: there is no robot of this name.
+        """
+        self._robot(robot).ask(environment, twist)
+
+    def contacts(self, environment: int = 0) -> tuple[RobotContact, ...]:
+        """Return the contacts of robots in the latest step of an environment."""
+        return self._contacts.get(environment, ())
+
+    def new_readings(self, environment: int = 0) -> tuple[tuple[RobotSpec, Mount, Reading], ...]:
+        """Return the readings that arrived in the latest step of an environment, with robot and mount."""
+        return tuple(
+            (robot.robot, robot.mount(told.name), told.row(int(row)))
+            for robot, told in self.readings
+            for row in np.flatnonzero(told.environments == environment)
         )
 
-    def _keep_time(self, clock: Clock) -> None:
-        own = self.world.clock
-        if clock.tick or clock.step_ns != own.step_ns:
-            raise InputError(
-                f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial starts at tick 0 with"
-                f" steps of {own.dt} s"
-            )
-        self.world.clock = clock
+    def record(
+        self,
+        environment: int = 0,
+        due: bool = True,
+        last: bool = False,
+        orders: tuple[Order, ...] = (),
+        number: int | None = None,
+    ) -> StepRecord:
+        """Return the record of the current step of an environment: part 8.
+
+        Args:
+            environment: index of the environment.
+            due: whether the scene is recorded.
+            last: whether open contact events are included.
+            orders: orders that were applied in this step.
+            number: number of the environment in the record; default its index.
+        """
+        world, e = self.world, environment
+        twists = [world.twists[robot.agent].at(e) for robot in self.robots]
+        return StepRecord(
+            int(world.ticks[e]),
+            int(world.ticks[e]) * world.clock.step_ns,
+            world.environment_scene(e),
+            world.ids[e, : world.slots[e]].copy(),
+            np.array([tuple(twist) for twist in twists], dtype=np.float64).reshape(-1, 3),
+            np.array([robot.command[e] for robot in self.robots], dtype=np.float64).reshape(-1, 3),
+            self.new_readings(e),
+            due,
+            self.contacts(e),
+            world.forces_of(e),
+            self._collisions(e, last),
+            orders,
+            e if number is None else number,
+        )
+
+    def is_eventful(self) -> Bools:
+        """Return ``[E]`` whether there is something to record although no scene is due."""
+        found = np.zeros(self.count, dtype=np.bool_)
+        found[list(self._contacts)] = True
+        for _, told in self.readings:
+            found[told.environments] = True
+        if self.world.walls_fixed:
+            found |= [bool(self.world.forces_of(e)) for e in range(self.count)]
+        return found & ~self.broken
+
+    def may_end(self) -> Bools:
+        """Return ``[E]`` whether :meth:`outcome` is not None."""
+        end = self.trial.end
+        found = self.failed | (self.ended > 0) | (self.ticks >= self.trial.ticks)
+        if end.collision:
+            found = found | (self.event == COLLISION)
+        return found | (self.event == SUCCESS) if end.goal else found
+
+    def outcome(self, environment: int = 0) -> str | None:
+        """Return the outcome that an environment would have if it ended now, None while it continues.
+
+        A run ends at a recorded instant, or with an error.
+        """
+        end, event, e = self.trial.end, int(self.event[environment]), environment
+        if self.failures[e] is not None:
+            return "error"
+        if event == COLLISION and end.collision:
+            return "collision"
+        if event == SUCCESS and end.goal:
+            return "success"
+        if self.ended[e]:
+            return FINISHED if self.ended[e] == 1 else end.conditions[int(self.ended[e]) - 2].outcome
+        if int(self.ticks[e]) < self.trial.ticks:
+            return None
+        return ("timeout" if self.robots else FINISHED, "collision", "success")[event]
+
+    def fail(self, environment: int, error: Exception) -> None:
+        """End an environment with an exception."""
+        self.failures[environment] = RunFailure.of(error, float(self.world.times[environment]), self.trial.folder)
+        self.failed[environment] = True
+
+    def restart(self, environments: Sequence[int] | Ints, seeds: Sequence[int]) -> None:
+        """Restart some environments of the trial with new seeds, and run part 6 of their tick 0.
+
+        Raises:
+            TrialError: people cannot be placed with a seed.
+        """
+        index = np.asarray(environments, dtype=np.int64)
+        new = Simulation(self.trial, seeds, posed=self._posed)
+        new.begin()
+        kept = np.zeros(self.count, dtype=np.bool_)
+        kept[index] = True
+        old = [(robot, told) for robot, one in self.readings if (told := one.without(kept)) is not None]
+        robots = dict(zip(map(id, new.robots), self.robots, strict=True))
+        fresh = [(robots[id(robot)], one.renumber(index)) for robot, one in new.readings]
+        self.put(index, new)
+        self.readings = old + fresh
+
+    def select(self, environments: Sequence[int] | Ints) -> Simulation:
+        """Return an independent simulation of some environments, which may be repeated, in their current state."""
+        index = np.asarray(environments, dtype=np.int64)
+        some = copy.copy(self)
+        some.seeds = [self.seeds[e] for e in index]
+        some.world = select_environments(self.world, index)
+        some._set_around()
+        some.robots = [robot.select(index) for robot in self.robots]
+        robots = dict(zip(map(id, self.robots), some.robots, strict=True))
+        some.readings = [
+            (robots[id(robot)], part) for robot, told in self.readings if (part := told.matching(index)) is not None
+        ]
+        some.failures = [self.failures[e] for e in index]
+        some.event, some.ended, some._told = self.event[index], self.ended[index], self._told[index]
+        some.begun, some.failed, some.broken = self.begun[index], self.failed[index], self.broken[index]
+        some._contacts = {k: self._contacts[e] for k, e in enumerate(index.tolist()) if e in self._contacts}
+        return some
+
+    def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
+        """Replace some environments by those of another simulation of the same trial, which must not be used again."""
+        index = np.asarray(environments, dtype=np.int64)
+        self.world = put_environments(self.world, index, other.world)
+        self._set_around()
+        for mine, new in zip(self.robots, other.robots, strict=True):
+            mine.put(index, new)
+        for k, e in enumerate(index.tolist()):
+            self.seeds[e], self.failures[e] = other.seeds[k], other.failures[k]
+            self._contacts.pop(e, None)
+            if k in other._contacts:
+                self._contacts[e] = other._contacts[k]
+        for name in ("event", "ended", "begun", "_told", "failed", "broken"):
+            getattr(self, name)[index] = getattr(other, name)
+
+    def _robot(self, name: str) -> RobotControl:
+        for robot in self.robots:
+            if robot.robot.name == name:
+                return robot
+        known = ", ".join(robot.robot.name for robot in self.robots) or "none"
+        raise InputError(f"there is no robot {name!r}; the trial has {known}")
+
+    def _set_around(self) -> None:
+        trial = self.trial
+        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
+        self.around = WorldView(self.world, skins)
+
+    def _step(self) -> None:
+        """Parts 1 to 5."""
+        ids = self.world.ids.copy()
+        commands = {robot.agent: robot.commands for robot in self.robots}
+        self.world, errors = step_environments(self.world, commands)
+        if self.around.world is not self.world:
+            self._set_around()
+        for e, error in errors.items():
+            self.fail(e, error)
+            self.broken[e] = True
+        if self.count > len(errors):
+            self._let_leave()
+            self.world.pose_people()
+            self._judge(ids)
+
+    def _observe(self, chosen: Bools) -> list[tuple[RobotControl, SensorReadings]]:
+        """Run part 6 in the environments ``chosen`` ``[E]`` and return the readings that arrive."""
+        ticks = self.ticks
+        found: list[tuple[RobotControl, SensorReadings]] = []
+        if not chosen.any():
+            return found
+        for robot in self.robots:
+            for sensor in robot.sensors:
+                told, errors = sensor.work(ticks, chosen & ~self.failed, robot.agent, self.around)
+                found += [(robot, one) for one in told]
+                for e, error in errors:
+                    self.fail(e, error)
+        if self.failed.any():
+            kept = ((robot, one.without(self.failed)) for robot, one in found)
+            found = [(robot, one) for robot, one in kept if one is not None]
+        for robot in self.robots:
+            due = np.flatnonzero(chosen & ~self.failed & robot.control.is_due(ticks))
+            for e, error in robot.decide(self.around, due).items() if len(due) else ():
+                self.fail(e, error)
+        return found
+
+    def _collisions(self, environment: int, last: bool) -> tuple[BodyContactEvent, ...]:
+        """Return the contact events that ended since the previous call, ordered by end."""
+        events = self.world.contact_events_of(environment)
+        if not events:
+            return ()
+        now = float(self.world.times[environment])
+        over = [one for one in events if last or now - one.end > HOLD + INSTANT]
+        over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
+        new, self._told[environment] = over[self._told[environment] :], len(over)
+        return tuple(new)
 
     def _let_leave(self) -> None:
-        import shapely
+        leave_goal_zones(self.world, self._ways_out)
 
-        scene = self.world.scene
-        gone = np.zeros(scene.shape[1], dtype=np.bool_)
-        for members, zone in self._ways_out:
-            there = members[scene.active[0, members] & (self.ids[members] == members)]
-            if len(there):
-                x, y = scene.position[0, there].T
-                away = np.hypot(*(scene.goal[0, there] - scene.position[0, there]).T)
-                gone[there] = shapely.contains_xy(zone, x, y) | (away < ARRIVED)
-        if np.any(gone):
-            self.world.scene = scene.replace(active=scene.active & ~gone)
-
-    def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
+    def _judge(self, ids: Ints) -> None:
         """Detect contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
-        now = self.world.scene
-        touches = [RobotContact(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
-        for runtime in self.robots:
-            gap = float(self.world.wall_clearance(runtime.agent)[0])
-            if gap < 0.0:
-                touches.append(RobotContact(int(ids[runtime.agent]), WALL, gap))
-            away = float(np.hypot(*(now.position[0, runtime.agent] - np.array(runtime.robot.goal.position))))
-            runtime.arrived |= away < runtime.robot.goal.tolerance
-        self.touches = tuple(touches)
-        collided = bool(touches)
-        if self.event is None and collided:
-            self.event = "collision"
-        elif self.event is None and self.robots and all(runtime.arrived for runtime in self.robots):
-            self.event = "success"
-        if self.ended is None:
-            robots = {runtime.robot.name: runtime.agent for runtime in self.robots}
-            self.ended = end_outcome(self.trial, self.world, self.people, robots)
-
-
-def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:
-    return np.array([tuple(twist) for twist in twists], dtype=np.float64).reshape(-1, 3)
+        found: dict[int, list[RobotContact]] = {}
+        for one in self.world.contacts:
+            robot, other = ids[one.environment, [one.robot, one.other]].tolist()
+            contact = RobotContact(robot, other, one.clearance)
+            found.setdefault(one.environment, []).append(contact)
+        arrived = np.full(self.count, bool(self.robots))
+        for control in self.robots:
+            gap = self.world.wall_clearance(control.agent)
+            for e in np.flatnonzero(gap < 0.0).tolist():
+                found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
+            control.arrive(self.world.scene.position[:, control.agent])
+            arrived &= control.arrived
+        self._contacts = {e: tuple(found) for e, found in found.items()}
+        open_ = self.event == NONE
+        collided = np.zeros(self.count, dtype=np.bool_)
+        collided[list(self._contacts)] = True
+        self.event[open_ & collided] = COLLISION
+        self.event[open_ & ~collided & arrived] = SUCCESS
+        agents = {robot.robot.name: robot.agent for robot in self.robots}
+        if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
+            self.ended = np.where(self.ended == 0, met, self.ended)

@@ -18,7 +18,8 @@ from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
 from .failure import RunFailure
-from .simulation import StepRecord
+from .orders import write_order
+from .step_record import StepRecord
 
 __all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
 
@@ -68,6 +69,8 @@ class EpisodeDigest:
                 self._sum.update(_bytes(array))
         for force in frame.forces:
             self._sum.update(f"force {_contact_text(*force)}\n".encode())
+        for order in frame.orders:
+            self._sum.update(f"order {frame.nanoseconds} {write_order(order)}\n".encode())
         for collision in frame.collisions:
             self._sum.update(f"collision {_contact_text(*dataclasses.astuple(collision))}\n".encode())
 

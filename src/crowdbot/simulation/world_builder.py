@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, TrialError
+from crowdbot.core import Clock, InputError, Scene, TrialError, Walls
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import DriveLimits
 from crowdbot.trials import (
@@ -20,15 +20,63 @@ from crowdbot.trials import (
     RobotSpec,
     Trial,
     crowd_names,
+    element_word,
     expand_sweeps,
     own,
     people_appearance,
+    place,
 )
 from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
 
 from .mounted_sensor import spatial
 
-__all__ = ["build_world", "limits_of", "start_scene"]
+__all__ = ["begin_world", "build_world", "check_clock", "limits_of", "own_walls", "start_scene"]
+
+
+def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWorld, InitialPeople]:
+    """Return the world of a trial at its start, with bodies of people where they are needed, and the people.
+
+    Args:
+        trial, seed: the trial and its seed.
+        posed: add bodies even if no sensor needs them.
+
+    Raises:
+        TrialError: people cannot be placed with this seed.
+    """
+    recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
+    people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
+    if problems:
+        what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
+        raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
+    world, figures = build_world(trial, people, seed)
+    if posed and figures is None:
+        figures = people_appearance(trial, people, world.scene.shape[1], seed)
+    if figures is not None:
+        first, stage = trial.people, trial.stage
+        world.embody(
+            {first + k: robot.body for k, robot in enumerate(trial.robots)},
+            stage.physical(),
+            figures.people,
+            riders=figures.riders,
+            activity=figures.activity,
+            walls=own_walls(trial),
+            seed=seed,
+        )
+    return world, people
+
+
+def check_clock(clock: Clock, own: Clock) -> None:
+    """Raise :class:`InputError` unless a clock is at tick 0 and has the time step of the trial."""
+    if clock.tick or clock.step_ns != own.step_ns:
+        raise InputError(
+            f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial starts at tick 0 with"
+            f" steps of {own.dt} s"
+        )
+
+
+def own_walls(trial: Trial) -> Walls | None:
+    """Return the walls without the outlines of props, None if there are no props."""
+    return trial.stage.as_walls(props=False) if trial.stage.props else None
 
 
 def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarWorld, PeopleAppearance | None]:
@@ -142,7 +190,8 @@ def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
 def limits_of(drive: Any) -> DriveLimits:
     """Return the limits of a drive by field name (default: 1 m/s and 1 rad/s)."""
     known = {name: float(getattr(drive, name)) for name in DriveLimits._fields if hasattr(drive, name)}
-    return DriveLimits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
+    values: dict[str, Any] = {"max_speed": 1.0, "max_turn_rate": 1.0} | known
+    return DriveLimits(**values)
 
 
 def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:

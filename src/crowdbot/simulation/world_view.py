@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, SpatialPose, Walls
-from crowdbot.world import World
+from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.world import MountPlacement, World
 
 if TYPE_CHECKING:
-    from crowdbot.trials import PeopleAppearance, Trial
     from crowdbot.world import Renderer
 
-__all__ = ["WorldView"]
+__all__ = ["EnvironmentView", "WorldView"]
 
 SKIN = 1
 """Level of detail of skins for ray casting."""
@@ -24,54 +24,68 @@ class WorldView:
     """A world for sensors: as discs in the plane, as bodies in space, or rendered.
 
     Args:
-        trial: trial with stage and robots.
         world: planar or physics world.
-        figures: bodies and activities of people; None if no sensor needs bodies.
-        seed: seed of the gaits.
         skins: whether rays hit the skins of people.
     """
 
-    def __init__(self, trial: Trial, world: World, figures: PeopleAppearance | None, seed: int, skins: bool) -> None:
-        self.trial, self.world, self._skins = trial, world, SKIN if skins else None
-        self._first = trial.people
-        self._space: tuple[Scene, Scene] | None = None
-        if figures is not None:
-            stage = trial.stage
-            world.embody(
-                self.bodies,
-                stage.physical(),
-                figures.people,
-                riders=figures.riders,
-                activity=figures.activity,
-                walls=_walls(trial),
-                seed=seed,
-            )
-
-    @property
-    def bodies(self) -> dict[int, Any]:
-        """The robots by agent index."""
-        return {self._first + k: robot.body for k, robot in enumerate(self.trial.robots)}
-
-    def change(self, trial: Trial) -> None:
-        """Use robots and stage of another trial."""
-        self.trial = trial
-        self.world.change_bodies(self.bodies, trial.stage.physical(), _walls(trial))
+    def __init__(self, world: World, skins: bool) -> None:
+        self.world, self._skins = world, SKIN if skins else None
+        self._known: tuple[Scene, dict[tuple[str, int], Scene]] | None = None
 
     @property
     def flat(self) -> Scene:
-        """The planar scene, with props among the walls."""
+        """The planar scene of all environments, with props among the walls."""
         return self.world.plane_scene()
 
-    @property
-    def space(self) -> Scene:
-        """The scene with bodies of people, robots and props."""
+    def flat_of(self, environment: int) -> Scene:
+        """Return the planar scene of one environment."""
+        if len(self.world.slots) == 1:
+            return self.flat
+        return self._scene("flat", environment)
+
+    def space(self, environment: int) -> Scene:
+        """Return the scene of one environment with bodies of people, robots and props."""
+        return self._scene("space", environment)
+
+    def of(self, environment: int) -> EnvironmentView:
+        """Return the view of one environment, which renders images."""
+        return EnvironmentView(self, environment)
+
+    def sensor_pose(
+        self, agent: int, mount: MountPlacement, spatial: bool, environment: int | None = None
+    ) -> Pose | SpatialPose:
+        """Return the pose of a sensor in all environments, or in one."""
+        pose = self.world.sensor_pose(agent, mount, spatial)
+        if environment is None or len(self.world.slots) == 1:
+            return pose
+        rows = slice(environment, environment + 1)
+        if isinstance(pose, Pose):
+            return Pose(pose.position[rows], pose.heading[rows])
+        return SpatialPose(pose.position[rows], pose.rotation[rows])
+
+    def _scene(self, kind: str, environment: int) -> Scene:
+        """Return a scene of the current step, computed once."""
         now = self.world.scene
-        if self._space is None or self._space[0] is not now:
-            self._space = (now, self.world.body_scene(self._skins))
-        return self._space[1]
+        if self._known is None or self._known[0] is not now:
+            self._known = (now, {})
+        scenes, key = self._known[1], (kind, environment)
+        if key not in scenes:
+            if kind == "flat":
+                scenes[key] = self.world.plane_scene(environment)
+            else:
+                scenes[key] = self.world.body_scene(self._skins, environment)
+        return scenes[key]
+
+
+@dataclass(frozen=True)
+class EnvironmentView:
+    """One environment of a world, as the renderer of a :class:`crowdbot.sensors.SensorView`."""
+
+    around: WorldView
+    environment: int
 
     def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
-        """Return current images of a camera, as the renderer of a :class:`crowdbot.sensors.SensorView`.
+        """Return current images of a camera.
 
         Raises:
             MissingExtra: mujoco is not installed.
@@ -80,14 +94,9 @@ class WorldView:
 
     @property
     def studio(self) -> Renderer:
-        """Renderer of the current world.
+        """Renderer of the environment.
 
         Raises:
             MissingExtra: mujoco is not installed.
         """
-        return self.world.renderer
-
-
-def _walls(trial: Trial) -> Walls | None:
-    """Return the walls without the outlines of props, None if there are no props."""
-    return trial.stage.as_walls(props=False) if trial.stage.props else None
+        return self.around.world.environment_renderer(self.environment)

@@ -1,44 +1,99 @@
-"""Trials: simulations as data. Dataclasses, XML, checks, built-in scenarios, placement of people, importers."""
+"""Trials: simulations as data. Dataclasses, XML, checks, built-in scenarios, placement of people, importers.
 
-from .agent import Agent, AgentParameter
-from .builtin import builtin_trials, load_trial
-from .camera import OVERVIEW, Camera, overview
-from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
-from .distribution import Distribution
-from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
-from .files.code_references import code_references, is_code
-from .files.stage_maps import is_area_file, map_files
-from .files.trial_files import resolve_file
-from .importers.original import ImportedTrial, import_original, plan_of, trials_of
-from .importers.original_order import Plan
-from .importers.recording import recorded_trial
-from .journey import Direction, Exit, Journey, Point, Portal, Zone
-from .notation import Points, plain
-from .parser import check_trial, parse_trial
-from .partial_element import has_kind, kind_of, readable, skip_unreadable
-from .people import Group, SourceSpec, Spawner
-from .placement.appearance import PeopleAppearance, people_appearance
-from .placement.expansion import expand_spawners
-from .placement.population import place
-from .placement.spawn_placement import GAP, InitialPeople
-from .props import Cube, Light, Table, Tree
-from .randomized_model import RandomizedModel, own
-from .recorded_people import RecordedPeople
-from .robot import Mount, RobotGoal, RobotSpec
-from .scenarios import PRESETS
-from .scenarios.challenge import FLOWS, SIZES
-from .scenarios.crowds import DENSITIES
-from .stage import Obstacle, Stage, Wall, area
-from .stage_contract import check_stage
-from .sweep import Sweep
-from .trial import End, EndCondition, RecordingSpec, Trial
-from .validation.rates import trial_remarks
-from .variants import apply_values, expand_sweeps
-from .xml.old_names import OldNameWarning, restore_old_names, update_names
-from .xml.reader import XmlReader
-from .xml.trial_text import parse_trial_xml, read_trial_bytes
-from .xml.writer import element_from, trial_xml
-from .xml.xsd import schema
+Names are loaded on first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
+
+if TYPE_CHECKING:
+    from .agent import Agent, AgentParameter
+    from .builtin import load_trial
+    from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
+    from .camera import OVERVIEW, Camera, overview
+    from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
+    from .distribution import Distribution
+    from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
+    from .files.code_references import code_references, is_code
+    from .files.stage_maps import is_area_file, map_files
+    from .files.trial_files import resolve_file
+    from .importers.original import ImportedTrial, import_original, plan_of, trials_of
+    from .importers.original_order import Plan
+    from .importers.recording import recorded_trial
+    from .journey import Direction, Exit, Journey, Point, Portal, Zone
+    from .notation import Points, plain
+    from .parser import check_trial, parse_trial
+    from .partial_element import has_kind, kind_of, readable, skip_unreadable
+    from .people import Group, SourceSpec, Spawner
+    from .placement.appearance import PeopleAppearance, people_appearance
+    from .placement.expansion import expand_spawners
+    from .placement.population import place
+    from .placement.spawn_placement import GAP, InitialPeople
+    from .props import Cube, Light, Table, Tree
+    from .randomized_model import RandomizedModel, own
+    from .recorded_people import RecordedPeople
+    from .robot import Mount, RobotGoal, RobotSpec
+    from .scenarios import PRESETS
+    from .scenarios.crowds import DENSITIES
+    from .stage import Obstacle, Stage, Wall, area
+    from .stage_contract import check_stage
+    from .sweep import Sweep
+    from .trial import End, EndCondition, RecordingSpec, Trial
+    from .validation.rates import trial_remarks
+    from .variants import apply_values, expand_sweeps
+    from .xml.old_names import OldNameWarning, restore_old_names, update_names
+    from .xml.reader import XmlReader
+    from .xml.trial_text import parse_trial_xml, read_trial_bytes
+    from .xml.writer import element_from, trial_xml
+    from .xml.xsd import schema
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "agent": ["Agent", "AgentParameter"],
+        "builtin": ["load_trial"],
+        "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
+        "camera": ["OVERVIEW", "Camera", "overview"],
+        "crowd": ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"],
+        "distribution": ["Distribution"],
+        "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
+        "files.code_references": ["code_references", "is_code"],
+        "files.stage_maps": ["is_area_file", "map_files"],
+        "files.trial_files": ["resolve_file"],
+        "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
+        "importers.original_order": ["Plan"],
+        "importers.recording": ["recorded_trial"],
+        "journey": ["Direction", "Exit", "Journey", "Point", "Portal", "Zone"],
+        "notation": ["Points", "plain"],
+        "parser": ["check_trial", "parse_trial"],
+        "partial_element": ["has_kind", "kind_of", "readable", "skip_unreadable"],
+        "people": ["Group", "SourceSpec", "Spawner"],
+        "placement.appearance": ["PeopleAppearance", "people_appearance"],
+        "placement.expansion": ["expand_spawners"],
+        "placement.population": ["place"],
+        "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "props": ["Cube", "Light", "Table", "Tree"],
+        "randomized_model": ["RandomizedModel", "own"],
+        "recorded_people": ["RecordedPeople"],
+        "robot": ["Mount", "RobotGoal", "RobotSpec"],
+        "scenarios": ["PRESETS"],
+        "scenarios.crowds": ["DENSITIES"],
+        "stage": ["Obstacle", "Stage", "Wall", "area"],
+        "stage_contract": ["check_stage"],
+        "sweep": ["Sweep"],
+        "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
+        "validation.rates": ["trial_remarks"],
+        "variants": ["apply_values", "expand_sweeps"],
+        "xml.old_names": ["OldNameWarning", "restore_old_names", "update_names"],
+        "xml.reader": ["XmlReader"],
+        "xml.trial_text": ["parse_trial_xml", "read_trial_bytes"],
+        "xml.writer": ["element_from", "trial_xml"],
+        "xml.xsd": ["schema"],
+    },
+)
 
 __all__ = [
     "DENSITIES",
@@ -129,6 +184,7 @@ __all__ = [
     "schema",
     "skip_unreadable",
     "trial_remarks",
+    "trial_titles",
     "trial_xml",
     "trials_of",
     "update_names",

@@ -1,4 +1,4 @@
-"""Built-in trials, and the function that loads a trial."""
+"""The function that loads a trial, from a file or a built-in one."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 from crowdbot.core import TrialError, did_you_mean
 
+from .builtin_names import builtin_trials
 from .fields import outline
 from .parser import parse_trial
 from .scenarios import PRESETS
@@ -15,18 +16,7 @@ from .trial import Trial
 from .variants import apply_values
 from .xml.trial_text import read_trial_bytes
 
-__all__ = ["builtin_trials", "load_trial"]
-
-
-def builtin_trials() -> tuple[str, ...]:
-    """Return the names of the built-in trials.
-
-    >>> {"crossing-flows", "intersection"} <= set(builtin_trials())
-    True
-    """
-    folder = importlib.resources.files("crowdbot").joinpath("assets", "trials")
-    files = (entry.name.removesuffix(".xml") for entry in folder.iterdir() if entry.name.endswith(".xml"))
-    return tuple(sorted({*files, *PRESETS}))
+__all__ = ["load_trial"]
 
 
 def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Trial:

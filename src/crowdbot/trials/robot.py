@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean, reads_only
+from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, TickSchedule, did_you_mean, reads_only
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
@@ -240,12 +240,13 @@ class RobotSpec:
         """Return the schedule of a sensor; see the attribute ``sensor_rates``.
 
         Raises:
-            InputError: the period or the delay is not a whole number of time steps.
+            InputError: the period is shorter than the time step.
         """
         if self.sensor_rates == "exact" or mount not in self.type_sensors:
             return SensorSchedule.of(mount.sensor, clock)
         period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
-        return SensorSchedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
+        every = max(1, round(period / clock.dt))
+        return SensorSchedule(TickSchedule(clock.step_ns, every * clock.step_ns), round(delay / clock.dt))
 
     @property
     def position(self) -> tuple[float, float]:

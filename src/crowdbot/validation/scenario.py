@@ -198,7 +198,7 @@ def simulate_periodic(
     for k in range(steps):
         scene = model.step(_update_copies(scene, A, length), STEP, rng)
         place = scene.position.copy()
-        _check(place[:, :A], crowd.active, scene.time)
+        _check(place[:, :A], crowd.active, float(np.max(scene.time)))
         turn = np.floor(place[:, :A, 0] / length)
         place[:, :A, 0] -= length * turn
         rounds += turn
@@ -245,7 +245,7 @@ def simulate_open(
         away = goal - scene.position
         wish = away * (scene.preferred_speed / np.maximum(np.hypot(away[..., 0], away[..., 1]), 1e-9))[..., None]
         scene = model.step(scene.replace(goal=goal, preferred_velocity=wish), STEP, rng)
-        _check(scene.position, scene.active, scene.time)
+        _check(scene.position, scene.active, float(np.max(scene.time)))
         places.append(scene.position)
         present.append(scene.active)
         scene = scene.replace(active=scene.active & ~left(scene.position))

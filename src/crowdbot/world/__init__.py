@@ -11,14 +11,26 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .crowd.contact import ContactModel
+    from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence
     from .crowd.limits import CrowdLimits
+    from .crowd.people_flow import environment_seeds
     from .crowd.portal import PortalTransfer
     from .crowd.replay import ReplayedPeople, ReplayedTrack
     from .crowd.routing import Router
     from .crowd.source import PeopleSource
-    from .crowd.walk import CrowdStepRequest, StepGenerator, compute_together, run_step
     from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
+    from .environments import join_worlds, put_environments, select_environments, step_environments
+    from .live_changes import (
+        add_person,
+        check_goal,
+        check_place,
+        check_room,
+        move_agent,
+        redirect_person,
+        remove_person,
+        slot_of,
+    )
     from .physics.body_region_limits import (
         BODY_REGION_LIMITS,
         BodyRegionLimits,
@@ -59,7 +71,6 @@ _LAZY = {
     "ContactForce": "physics.contact_events",
     "ContactModel": "crowd.contact",
     "CrowdLimits": "crowd.limits",
-    "CrowdStepRequest": "crowd.walk",
     "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
     "Drive": "robots.drive",
@@ -89,7 +100,6 @@ _LAZY = {
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
     "SteeredTwists": "robots.ackermann",
-    "StepGenerator": "crowd.walk",
     "TableBody": "physics.stage",
     "TreeBody": "physics.stage",
     "Twists": "robots.drive",
@@ -98,19 +108,31 @@ _LAZY = {
     "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
     "World": "world",
+    "add_person": "live_changes",
     "builtin_robots": "robots.robot",
+    "check_goal": "live_changes",
+    "check_place": "live_changes",
+    "check_room": "live_changes",
     "check_robot": "robot_contract",
-    "compute_together": "crowd.walk",
     "describe": "urdf",
+    "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
     "integrate_twist": "robots.drive",
+    "join_worlds": "environments",
+    "move_agent": "live_changes",
     "permitted_speed": "physics.body_region_limits",
+    "put_environments": "environments",
     "quaternion": "urdf.transforms",
     "read_urdf": "urdf",
+    "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
+    "remove_person": "live_changes",
     "roll_pitch_yaw": "urdf.transforms",
-    "run_step": "crowd.walk",
     "scene_bodies": "physics.colliders",
+    "select_environments": "environments",
+    "slot_of": "live_changes",
+    "step_environments": "environments",
+    "take_arrays": "crowd.environment_rows",
     "two_body_force": "physics.body_region_limits",
 }
 
@@ -126,7 +148,6 @@ __all__ = [
     "ContactForce",
     "ContactModel",
     "CrowdLimits",
-    "CrowdStepRequest",
     "CubeBody",
     "DifferentialDrive",
     "Drive",
@@ -156,7 +177,6 @@ __all__ = [
     "SceneCamera",
     "SensorMount",
     "SteeredTwists",
-    "StepGenerator",
     "TableBody",
     "TreeBody",
     "Twists",
@@ -165,19 +185,31 @@ __all__ = [
     "WaypointSequence",
     "Wheel",
     "World",
+    "add_person",
     "builtin_robots",
+    "check_goal",
+    "check_place",
     "check_robot",
-    "compute_together",
+    "check_room",
     "describe",
+    "environment_seeds",
     "frame",
     "integrate_twist",
+    "join_worlds",
+    "move_agent",
     "permitted_speed",
+    "put_environments",
     "quaternion",
     "read_urdf",
+    "redirect_person",
     "region_of",
+    "remove_person",
     "roll_pitch_yaw",
-    "run_step",
     "scene_bodies",
+    "select_environments",
+    "slot_of",
+    "step_environments",
+    "take_arrays",
     "two_body_force",
 ]
 

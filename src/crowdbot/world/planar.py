@@ -10,21 +10,24 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
-from crowdbot.metrics import swept_distance, wall_clearance
+from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
+from crowdbot.metrics import step_clearance, step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
 from .crowd.contact import ContactModel, ContactSurfaces
+from .crowd.departure import leave_at_goals, leave_in_zone
+from .crowd.environment_rows import stack_scenes, trim_scene, works_in_batches
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
-from .crowd.people_flow import PeopleFlow
+from .crowd.people_flow import PeopleFlow, environment_seeds
 from .crowd.portal import PortalTransfer, apply_portals
 from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
-from .crowd.walk import CrowdStepRequest, StepGenerator
 from .crowd.waypoint import PolygonZone
+from .environment_time import EnvironmentTime
+from .planar_checks import check_arguments
 from .robots.drive import Drive, Twists
 from .robots.mount import MountPlacement
 from .robots.servo import CommandDelay, Pending
@@ -43,6 +46,12 @@ __all__ = ["PlanarWorld"]
 Floats = NDArray[np.float64]
 
 
+CHANGEABLE = (
+    "model", "drives", "latency", "robot_margin", "router", "contact", "limits", "exits", "heading_jitter", "substeps",
+)  # fmt: skip
+"""Arguments that :meth:`PlanarWorld.reconfigure` can change."""
+
+
 @dataclass
 class PlanarWorld(World):
     """People and robots as discs in the plane, E environments at once.
@@ -57,8 +66,8 @@ class PlanarWorld(World):
         model: crowd model.
         drives: drive of each robot by agent index.
         dt: time step [s].
-        seed: seed of the crowd. Journeys, sources and heading offsets of environment e equal those of a world with
-            only this environment and the seed ``seed + e``.
+        seed: seed of the crowd, or one for each environment; a single seed gives environment e the seed ``seed + e``.
+            An environment equals a world with only this environment and its seed.
         leave_radius: distance to the goal [m] below which people leave (``active=False``); None: they stay. Robots
             never leave.
         robot_margin: margin that people add to the radius of a robot [m]. Crowd models pass discs at zero clearance:
@@ -79,8 +88,9 @@ class PlanarWorld(World):
         latency: delay of the commands of a robot [s], by agent, see :class:`CommandDelay`; 0 for robots left out.
 
     Attributes:
-        clock: simulation clock.
+        environment_time: time of each environment, with the clock.
         twists: current twist of each robot.
+        slots: ``[E]`` number of agents of each environment; further ones only pad the arrays.
         contacts: pairs of a robot and another agent whose clearance was negative during the last step, assuming
             straight motion.
         ids: current identities ``[E, A]``; new people have new identities.
@@ -105,7 +115,7 @@ class PlanarWorld(World):
     model: CrowdModel
     drives: Mapping[int, Drive]
     dt: float
-    seed: int = 0
+    seed: int | Sequence[int] = 0
     leave_radius: float | None = None
     robot_margin: float = 0.1
     router: Router | None = None
@@ -120,50 +130,52 @@ class PlanarWorld(World):
     substeps: int = 1
     ids: Any = None
     latency: Mapping[int, float] = field(default_factory=dict)
-    clock: Clock = field(init=False)
+    environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
 
     def __post_init__(self) -> None:
         self._check()
-        self.clock = FreeClock(self.dt)
         self.twists = {robot: self._initial_twist(robot) for robot in sorted(self.drives)}
-        self._begin = self.scene.time
-        self._rng = stream(self.seed, "crowd")
-        self._traffic = PeopleFlow.of(
-            self.scene, self.model, self.seed, self.ids, self.router, self.journeys, self.sources
-        )
+        seeds = environment_seeds(self.seed, self.scene.shape[0])
+        self.environment_time = EnvironmentTime.of(FreeClock(self.dt), self.scene.time, len(seeds))
+        self._rngs = [stream(seed, "crowd") for seed in seeds]
+        self._models: list[CrowdModel] | None = None
+        self.joined = True
+        self._traffic = PeopleFlow.of(self.scene, self.model, seeds, self.ids, self.router, self.journeys, self.sources)
         self.ids = self._traffic.ids
         external = self.scene.external
         if self.script is not None:
             self.scene = self.script.start(self.scene)
         self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
         self._surfaces: ContactSurfaces | None = None
-        self._bodies: KinematicBodies | None = None
+        self._bodies: list[KinematicBodies] | None = None
+        self.slots = np.full(len(seeds), self.scene.shape[1], dtype=np.int64)
         self._previous = self.scene
         self._segments: tuple[Walls, Floats] | None = None
         self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
 
-    def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
-        """Advance by one step and yield the steps of the crowd model; see :func:`crowdbot.world.run_step`."""
+    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
+        """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
         self._previous = self.scene
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
-        earlier, crowd = yield from self._step_crowd(before)
+        elapsed = self.environment_time.age
+        earlier, crowd = self._step_crowd(before)
         after = self._step_robots(before, crowd, asked)
-        after = self._resolve_overlaps(earlier, after).replace(external=self.scene.external)
-        after = after.replace(time=self._begin + self.clock.time)
+        after = self._resolve_overlaps(earlier, after)
+        after = after.replace(external=self.scene.external, time=self.environment_time.now)
         if self.script is not None:
-            after = self.script.place(after, self.clock.time)
+            after = self.script.place(after, elapsed)
         after.check()
         self.contacts = self._find_contacts(before, after)
         if self.leave_radius is not None:
-            after = _left(after, self.leave_radius)
+            after = leave_at_goals(after, self.leave_radius)
         for zone in self.exits:
-            after = _out(after, zone)
+            after = leave_in_zone(after, zone)
         after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = self._traffic.advance(after, self.clock.time)
+        self.scene = self._traffic.advance(after, elapsed)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -179,21 +191,9 @@ class PlanarWorld(World):
         Raises:
             InputError: the parameter cannot change in a running world, or a value is not allowed.
         """
-        known = (
-            "model",
-            "drives",
-            "latency",
-            "robot_margin",
-            "router",
-            "contact",
-            "limits",
-            "exits",
-            "heading_jitter",
-            "substeps",
-        )
         for name in how:
-            if name not in known:
-                raise InputError(f"{name} cannot change in a running world; these can: {', '.join(known)}")
+            if name not in CHANGEABLE:
+                raise InputError(f"{name} cannot change in a running world; these can: {', '.join(CHANGEABLE)}")
         if scene.shape != self.scene.shape or sorted(how.get("drives", self.drives)) != sorted(self.drives):
             raise InputError("the number of agents and the robots cannot change in a running world")
         forgotten = set() if how.get("router", self.router) is self.router else {WAY}
@@ -202,6 +202,8 @@ class PlanarWorld(World):
             forgotten |= {*self.model.memory_at_start} - {MODEL, JOURNEY, WAY}
         for name, value in how.items():
             setattr(self, name, value)
+        if "model" in how:
+            self._models = None
         self._check()
         self._traffic.reconfigure(self.router, sources, seed)
         if self._traffic.mixture is not None and isinstance(model, Mixture):
@@ -210,7 +212,8 @@ class PlanarWorld(World):
         memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
         self.scene = scene.replace(time=self.scene.time, memory=memory)
         if seed is not None:
-            self.seed, self._rng = seed, stream(seed, "crowd")
+            self.seed = seed
+            self._rngs = [stream(int(one), "crowd") for one in self._traffic.seeds]
 
     @property
     def waiting_count(self) -> NDArray[np.int64]:
@@ -232,24 +235,25 @@ class PlanarWorld(World):
         walls = self.scene.walls
         if self._segments is None or self._segments[0] is not walls:
             self._segments = (walls, walls.segments())
-        paths = np.stack([self._previous.position[:, robot], self.scene.position[:, robot]], axis=1)
-        radius = self.scene.radius[:, robot].tolist()
-        return np.array(
-            [wall_clearance(path, size, self._segments[1])[1] for path, size in zip(paths, radius, strict=True)]
-        )
+        before, now = self._previous.position[:, robot], self.scene.position[:, robot]
+        return step_wall_clearance(before, now, self.scene.radius[:, robot], self._segments[1])
 
-    def plane_scene(self) -> Scene:
+    def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
-        return self.scene
+        return self.scene if environment is None else self.environment_scene(environment)
 
-    def body_scene(self, skins: int | None = None) -> Scene:
+    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies; see :class:`World`."""
-        return self._embodied().scene(self.scene, skins)
+        return self._embodied(environment).scene(self.environment_scene(environment), skins)
 
     @property
     def renderer(self) -> Renderer:
         """Renderer of the current scene; see :class:`World`."""
-        return self._embodied().renderer(self.scene)
+        return self.environment_renderer(0)
+
+    def environment_renderer(self, environment: int) -> Renderer:
+        """Return the renderer of one environment; see :class:`World`."""
+        return self._embodied(environment).renderer(self.environment_scene(environment))
 
     def embody(
         self,
@@ -265,28 +269,38 @@ class PlanarWorld(World):
         """Add bodies for sensors and cameras; see :class:`World`."""
         from .physics.kinematic_bodies import KinematicBodies
 
-        self._bodies = KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)
-        self.people = self._bodies.people
+        if len(self.slots) > 1:
+            raise InputError(f"bodies are added to one environment at a time; this world has {len(self.slots)}")
+        self._bodies = [KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)]
+        self.people = self._bodies[0].people
         self._begin_activity(activity)
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
         """Replace robots and stage; see :class:`World`."""
-        if self._bodies is not None:
-            self._bodies.robots, self._bodies.stage, self._bodies.walls = dict(robots), stage, walls
+        for bodies in self._bodies or ():
+            bodies.robots, bodies.stage, bodies.walls = dict(robots), stage, walls
 
     def pose_people(self) -> None:
         """Move the bodies of people to the current scene; see :class:`World`."""
-        if self._bodies is not None:
-            self._bodies.people.walk(self.scene, self.dt)
+        for e, bodies in enumerate(self._bodies or ()):
+            bodies.people.walk(self.environment_scene(e), self.dt)
 
     def _begin_activity(self, activity: Sequence[str]) -> None:
         if self.people is not None and set(activity) - {"walk"}:
             self.people.begin(self.scene, activity)
 
-    def _embodied(self) -> KinematicBodies:
+    def _embodied(self, environment: int) -> KinematicBodies:
         if self._bodies is None:
             raise InputError("the world has no bodies of people and robots: call World.embody first")
-        return self._bodies
+        return self._bodies[environment]
+
+    def environment_scene(self, environment: int) -> Scene:
+        """Return the scene of one environment with its own number of agents."""
+        scene, slots = self.scene, int(self.slots[environment])
+        if len(self.slots) == 1:
+            return scene
+        one = scene.environments([environment])
+        return one if slots == scene.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene with replayed people as external agents."""
@@ -294,7 +308,7 @@ class PlanarWorld(World):
             scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
         )
 
-    def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
+    def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
         wide = before.radius.copy()
         wide[:, list(self.twists)] += self.robot_margin
@@ -304,11 +318,20 @@ class PlanarWorld(World):
             if k > 0:
                 crowd = self._resolve_overlaps(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
             earlier = crowd
-            crowd = yield CrowdStepRequest(self.model, earlier, h, self._rng)
+            crowd = self._step_model(earlier, h)
             if self.limits is not None:
                 crowd = self.limits.apply(earlier, crowd, h)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
+
+    def _step_model(self, scene: Scene, dt: float) -> Scene:
+        """Return the scene after a step of the crowd model, called once if it works in batches."""
+        models = self._models
+        if models is None or len(models) == 1 or (self.joined and works_in_batches(self.model)):
+            return self.model.step(scene, dt, self._rngs[0])
+        alone = (scene.environments([e]).replace(walls=scene.walls) for e in range(len(models)))
+        rows = [model.step(one, dt, rng) for model, one, rng in zip(models, alone, self._rngs, strict=True)]
+        return stack_scenes(rows).replace(walls=scene.walls)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Return the scene with overlaps of people resolved."""
@@ -321,20 +344,9 @@ class PlanarWorld(World):
         return self.contact.resolve_overlaps(earlier, after, self.dt / self.substeps, known)
 
     def _check(self) -> None:
-        agents = self.scene.shape[1]
-        for robot in self.drives:
-            if not 0 <= robot < agents:
-                raise InputError(f"a drive is given for agent {robot}, but the scene has agents 0 to {agents - 1}")
-            if not np.all(self.scene.external[:, robot]):
-                raise InputError(f"agent {robot} has a drive but is not external: set external=True for robots")
-        if not 0.0 <= self.robot_margin < math.inf:
-            raise InputError(f"robot_margin {self.robot_margin} m must be finite and at least 0")
-        if self.leave_radius is not None and not 0.0 < self.leave_radius < math.inf:
-            raise InputError(f"leave_radius {self.leave_radius} m must be finite and above 0, or None")
-        if not 0.0 <= self.heading_jitter <= math.pi:
-            raise InputError(f"heading_jitter {self.heading_jitter} rad must be from 0 to pi")
-        if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or not 1 <= self.substeps <= 10_000:
-            raise InputError(f"substeps = {self.substeps!r} must be a whole number from 1 to 10000")
+        check_arguments(
+            self.scene, self.drives, self.robot_margin, self.leave_radius, self.heading_jitter, self.substeps
+        )
 
     def _initial_twist(self, robot: int) -> Twists:
         heading, velocity = self.scene.heading[:, robot], self.scene.velocity[:, robot]
@@ -379,22 +391,9 @@ class PlanarWorld(World):
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         found: list[Contact] = []
         for number, robot in enumerate(self.twists):
-            start = before.position - before.position[:, robot : robot + 1]
-            end = after.position - after.position[:, robot : robot + 1]
-            gap = swept_distance(start, end) - after.radius - after.radius[:, robot : robot + 1]
-            others = after.active & after.active[:, robot : robot + 1]
-            others[:, list(self.twists)[: number + 1]] = False
-            for e, other in np.argwhere(others & (gap < 0.0)):
-                found.append(Contact(int(e), robot, int(other), float(gap[e, other])))
+            gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
+            if least < 0.0:
+                gap[:, list(self.twists)[: number + 1]] = math.inf
+                for e, other in np.argwhere(gap < 0.0).tolist():
+                    found.append(Contact(e, robot, other, float(gap[e, other])))
         return tuple(sorted(found))
-
-
-def _left(scene: Scene, radius: float) -> Scene:
-    away = scene.goal - scene.position
-    arrived = away[..., 0] ** 2 + away[..., 1] ** 2 < radius * radius
-    return scene.replace(active=scene.active & ~(arrived & ~scene.external))
-
-
-def _out(scene: Scene, exit_: PolygonZone) -> Scene:
-    there = exit_.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)
-    return scene.replace(active=scene.active & ~(there & ~scene.external))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls
 
-from .crowd.walk import StepGenerator, run_step
+from .environment_time import EnvironmentTime
 from .robots.drive import Twists
 from .robots.mount import MountPlacement
 
@@ -48,8 +48,9 @@ class World(ABC):
         walls_fixed: True if the walls cannot change after construction.
         scene: current scene. A caller may replace it between two steps, for instance to remove people.
         dt: time step [s].
-        clock: simulated time.
+        environment_time: time of each environment.
         ids: ``[E, A]`` identity of the person or robot in each place.
+        slots: ``[E]`` number of agents of each environment; further ones only pad the arrays.
         twists: current twist of each robot, by agent.
         contacts: contacts between robots and other agents in the last step.
         forces: contact forces in the last step; empty in a world without forces.
@@ -60,13 +61,15 @@ class World(ABC):
     walls_fixed: ClassVar[bool]
     scene: Scene
     dt: float
-    clock: Clock
+    environment_time: EnvironmentTime
     ids: NDArray[np.int64]
+    slots: NDArray[np.int64]
     twists: dict[int, Twists]
     contacts: tuple[Contact, ...]
     forces: tuple[ContactForce, ...] = ()
     people: PeopleMotion | None = None
 
+    @abstractmethod
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step and return the new scene.
 
@@ -77,11 +80,47 @@ class World(ABC):
         Raises:
             InputError: a robot has no command, an agent with a command is not a robot, or a value is not finite.
         """
-        return run_step(self.step_requests(commands))
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that all environments share."""
+        return self.environment_time.clock
+
+    @clock.setter
+    def clock(self, clock: Clock) -> None:
+        """Set the clock."""
+        self.environment_time.clock = clock
+
+    @property
+    def ticks(self) -> NDArray[np.int64]:
+        """Number of steps of each environment since it began, ``[E]``."""
+        return self.environment_time.ticks
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Time of each environment since it began, ``[E]`` [s]."""
+        return np.asarray(self.ticks * self.clock.step_ns / 1e9)
+
+    @property
+    @abstractmethod
+    def waiting_count(self) -> NDArray[np.int64]:
+        """Number of people waiting to enter, ``[E]``."""
 
     @abstractmethod
-    def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
-        """Advance by one time step as :meth:`step`; yield the steps of the crowd model instead of computing them."""
+    def environment_scene(self, environment: int) -> Scene:
+        """Return the scene of one environment with its own number of agents."""
+
+    @abstractmethod
+    def environment_renderer(self, environment: int) -> Renderer:
+        """Return the renderer of one environment; errors as for :attr:`renderer`."""
+
+    def forces_of(self, environment: int) -> tuple[ContactForce, ...]:
+        """Return the contact forces of the last step in one environment."""
+        return self.forces
+
+    def contact_events_of(self, environment: int) -> tuple[BodyContactEvent, ...]:
+        """Return the contact events of one environment so far, ordered by start time."""
+        return self.contact_events
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
@@ -104,15 +143,16 @@ class World(ABC):
         """
 
     @abstractmethod
-    def plane_scene(self) -> Scene:
-        """Return the scene in the plane, with the outlines of props among the walls."""
+    def plane_scene(self, environment: int | None = None) -> Scene:
+        """Return the scene in the plane, with the outlines of props among the walls: of all environments, or of one."""
 
     @abstractmethod
-    def body_scene(self, skins: int | None = None) -> Scene:
-        """Return the scene with the bodies of people, robots and props, for range sensors; E = 1.
+    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+        """Return the scene of one environment with the bodies of people, robots and props, for range sensors.
 
         Args:
             skins: level of detail of people's skins; None for capsules.
+            environment: index of the environment.
 
         Raises:
             InputError: the world has no bodies, see :meth:`embody`.

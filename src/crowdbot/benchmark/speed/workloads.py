@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Scene, kebab_case, parameters, stream
+from crowdbot.core import Scene, Walls, kebab_case, parameters, stream
 from crowdbot.recording import run
 
 from .measurement import Gauge, Measurement
@@ -64,7 +64,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
         found["power-law-numpy"] = functools.partial(_against_numpy, kinds["power-law"])
     if sys.platform != "win32":  # Windows does not report the peak memory of a process
         found["orca-memory"] = _memory
-    found |= {"orca-alone": _alone, "lidar-720": _lidar, "trial": _trial}
+    found |= {"orca-alone": _alone, "lidar-720": _lidar, "lidar-1080-batch": _lidar_batch, "trial": _trial}
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
@@ -175,6 +175,27 @@ def _lidar() -> Measurement:
     sensor, scene = Lidar2D(rays=720), crowd(50)
     pose = Pose.of((5.0, 5.0), 0.0)
     return Measurement("scans/s", 20, lambda: [sensor.read(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
+
+
+def _lidar_batch() -> Measurement:
+    """Scan 64 environments of 50 people and 4 walls with 1080 beams, the walls within the range."""
+    from crowdbot.core import Pose
+    from crowdbot.sensors import Lidar2D, SensorView
+
+    environments, people, beams = 64, 50, 1080
+    scene, random = crowd(people, environments), stream(0, "lidar-batch")
+    side = (people / DENSITY) ** 0.5
+    room = [(-1.0, -1.0), (-1.0, side + 1.0), (side + 1.0, side + 1.0), (side + 1.0, -1.0)]
+    scene = scene.replace(walls=Walls.of([room]))
+    pose = Pose.of(random.uniform(0.0, side, (environments, 2)), random.uniform(-np.pi, np.pi, environments))
+    sensor, view = Lidar2D(rays=beams, range_max=25.0), SensorView(scene, pose)
+    work = functools.partial(_repeat, lambda: sensor.measure(view, None), 10)
+    return Measurement("rays/s", 10 * environments * beams, work, "50 million rays/s on 2 cores", 5e7)
+
+
+def _repeat(work: Callable[[], object], count: int) -> None:
+    for _ in range(count):
+        work()
 
 
 def _rays_of_limbs(rings: int = 0) -> Measurement:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from xml.parsers import expat  # expat loads no external entity; entities are rejected below
-from xml.sax.saxutils import escape, quoteattr
 
 from crowdbot.core.errors import InputError
 
@@ -209,7 +208,7 @@ def format_xml(root: Element) -> str:
 
 
 def _lines(element: Element, indent: str) -> list[str]:
-    row = "".join(f" {escape(key)}={_quote(value)}" for key, value in element.attributes.items())
+    row = "".join(f" {_escape(key)}={_quote(value)}" for key, value in element.attributes.items())
     if not element.children:
         return [f"{indent}<{element.tag}{row}/>\n"]
     inside = [line for part in element.children for line in _lines(part, indent + "  ")]
@@ -217,4 +216,12 @@ def _lines(element: Element, indent: str) -> list[str]:
 
 
 def _quote(value: str) -> str:
-    return quoteattr(value, {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
+    """Return a quoted attribute value, as ``xml.sax.saxutils.quoteattr``, whose import takes longer than a command."""
+    text = _escape(value).replace("\n", "&#10;").replace("\r", "&#13;").replace("\t", "&#9;")
+    if '"' not in text:
+        return f'"{text}"'
+    return f"'{text}'" if "'" not in text else '"' + text.replace('"', "&quot;") + '"'
+
+
+def _escape(text: str) -> str:
+    return text.replace("&", "&amp;").replace(">", "&gt;").replace("<", "&lt;")

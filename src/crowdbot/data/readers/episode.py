@@ -8,13 +8,14 @@ a robot, in the world frame), and ``walls`` (JSON list of rings) and ``robots`` 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import DataError
+from crowdbot.core import DataError, InputError, TickSchedule
 from crowdbot.data.mcap_reader import McapChannel, McapError, McapReader, has_summary
 from crowdbot.data.source import Source, parse_errors
 from crowdbot.data.trajectories import Trajectories
@@ -39,6 +40,7 @@ class _EpisodeData:
     poses: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
     walls: str = "[]"
     robots: str = "[]"
+    schedule: TickSchedule | None = None
     cut: bool = False
 
 
@@ -47,7 +49,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     with parse_errors(source, "MCAP"):
         messages = _read_messages(source)
     stamps = np.asarray(messages.stamps, dtype=np.int64)
-    period, frames = _frames(source.name, stamps)
+    period, frames = _frames(source.name, stamps, messages.schedule)
     message = np.asarray([person[0] for person in messages.persons], dtype=np.int64)
     columns = [_number_names([person[1] for person in messages.persons]), frames[message]]
     columns += [np.asarray([person[axis] for person in messages.persons]) for axis in (2, 3)]
@@ -90,6 +92,7 @@ def _read_messages(source: Source) -> _EpisodeData:
         held = ", ".join(sorted(topic.topic for topic in tape.topics.values())) or "no topics"
         raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
     messages.cut = "format" in known and ENDING not in tape.metadata and "digest" not in known
+    messages.schedule = _schedule(known)
     messages.walls, messages.robots = known.get("walls", "[]"), known.get("robots", "[]")
     return messages
 
@@ -109,7 +112,15 @@ def _add_message(messages: _EpisodeData, topic: str, message: Any) -> None:
         messages.poses.setdefault(topic, []).append((stamp, place.x, place.y))
 
 
-def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int64]]:
+def _schedule(known: Mapping[str, str]) -> TickSchedule | None:
+    """Return the recorded ticks of a trial whose recording period is not a whole number of time steps."""
+    try:
+        return TickSchedule(int(known["step_ns"]), int(known["period_ns"]))
+    except (KeyError, ValueError, InputError):
+        return None
+
+
+def _frames(name: str, stamps: NDArray[np.int64], schedule: TickSchedule | None) -> tuple[float, NDArray[np.int64]]:
     """Return the period of /people [ns] and the frame of each message, from its stamp."""
     if len(stamps) < 2:
         raise DataError(f"{name} has {len(stamps)} messages on {PEOPLE}, at least 2 are required")
@@ -117,8 +128,13 @@ def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int
     if np.any(steps <= 0):
         index = int(np.argmax(steps <= 0)) + 1
         raise DataError(f"{name}: the stamp of message {index + 1} on {PEOPLE} is not later than the previous one")
-    period = float(np.median(steps))
-    frames = np.rint((stamps - stamps[0]) / period).astype(np.int64)
+    if schedule is None:
+        period = float(np.median(steps))
+        frames = np.rint((stamps - stamps[0]) / period).astype(np.int64)
+    else:
+        period = float(schedule.period_ns)
+        frames = schedule.index(stamps // schedule.step_ns)
+        frames -= frames[0]
     if np.any(np.diff(frames) == 0):
         raise DataError(
             f"{name}: the stamps on {PEOPLE} are not regular, some steps are far shorter than {period / 1e6:.3g} ms"

@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
-    movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -130,18 +128,16 @@ class CostModel(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is used by costs and samples."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
-        seen = scene.active & scene.visible
-        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
+        near = neighbors_of(self, scene, seen, walking)
         world = NeighborView.of(scene, wish, speed_limit(self.max_speed, scene), walking, near, float(dt), rng)
         optimiser = suitable_optimiser(self.costs) if self.optimiser == "natural" else self.optimiser
         discs = self._discs(rng) if optimiser == "sampling" else np.zeros((0, 2))
         step = max(1, BUDGET // ((len(discs) + GIVEN) * (world.there.shape[1] + len(world.segments) + 1)))
-        out = initial_velocity(scene)
         for begin in range(0, len(world), step):
             part = world.part(begin, begin + step)
             rows(out)[part.row] = self._next(part, optimiser, discs)

@@ -26,11 +26,9 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     rows,
     speed_limit,
 )
@@ -317,9 +315,8 @@ class Boids(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
         simulator = self.variant == "crowdbot"
-        seen = scene.active & scene.visible
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
         most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
         top = self.max_speed
@@ -338,6 +335,5 @@ class Boids(CrowdModel):
         )
         near = nearest(scene.position, reach, most, seen, walking)
         walls = wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments())
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, *walls, simulator, float(dt))
         return out

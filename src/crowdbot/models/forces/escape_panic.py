@@ -21,17 +21,14 @@ from crowdbot.core import (
     did_you_mean,
     kernel,
     parameter,
-    per_agent,
     prange,
 )
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
-    movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -284,11 +281,9 @@ class EscapePanic(CrowdModel):
 
     def _move_agents(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
         """Return the mean and the final velocities ``[E, A, 2]`` [m/s]."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
         simulator = self.variant == "crowdbot"
         steps = 1 if simulator else min(MOST_STEPS, max(1, math.ceil(dt / self.longest_step - 1e-9)))
-        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
-        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
         top = speed_limit(SIMULATOR_SPEED if simulator and self.max_speed is None else self.max_speed, scene)
         crowd = _Crowd(
             rows(wish),
@@ -297,9 +292,8 @@ class EscapePanic(CrowdModel):
             rows(walking),
             parameter_rows(self, LAW, scene.shape),
         )
-        near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
+        near = neighbors_of(self, scene, seen, walking)
         walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
-        out = initial_velocity(scene)
         velocity = np.where(walking[..., None], scene.velocity + _memory(scene), out)
         place, after, total = scene.position.copy(), out.copy(), np.zeros_like(out)
         _walk(rows(place), rows(velocity), rows(after), rows(total), crowd, near, walls, simulator, steps, dt / steps)

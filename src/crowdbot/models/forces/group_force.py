@@ -25,11 +25,9 @@ from crowdbot.core import (
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     rows,
     speed_limit,
 )
@@ -303,11 +301,10 @@ class GroupForce(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
         package = self.variant == "pysocialforce"
         top = speed_limit(self.max_speed, scene)
         heading = _heading(scene, wish)
-        seen = scene.active & scene.visible
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -324,7 +321,6 @@ class GroupForce(CrowdModel):
             scene.position, per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"), most, seen, walking
         )
         walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, groups_of(scene), walls, package, float(dt))
         return out
 

@@ -27,7 +27,7 @@ def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> 
     [[1.0, 2.0], [1.0, 3.0]]
     """
     values = [getattr(model, name) for name in names]
-    if all(np.ndim(value) == 0 for value in values):
+    if all(type(value) is float or np.ndim(value) == 0 for value in values):
         return np.array([values], dtype=np.float64)
     columns = [per_agent(value, shape, name).reshape(-1) for value, name in zip(values, names, strict=True)]
     return np.ascontiguousarray(np.stack(columns, axis=1))

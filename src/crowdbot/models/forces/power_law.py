@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     neighbors_of,
     rows,
     speed_limit,
@@ -219,8 +217,8 @@ class PowerLaw(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
-        near = neighbors_of(self, scene, walking)
+        wish, walking, seen, out = begin_step(scene, dt)
+        near = neighbors_of(self, scene, seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -230,6 +228,5 @@ class PowerLaw(CrowdModel):
             rows(walking),
             parameter_rows(self, LAW, scene.shape),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, wall_surfaces(scene.walls), float(dt))
         return out

@@ -25,11 +25,9 @@ from crowdbot.core import (
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     neighbors_of,
     rows,
     speed_limit,
@@ -288,12 +286,12 @@ class SocialForce(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
         umans = self.variant == "umans2018"
         if umans and scene.preferred_velocity is None:  # in the library, the goal is reached within the agent's radius
             away = scene.goal - scene.position
             wish[away[..., 0] ** 2 + away[..., 1] ** 2 <= scene.radius**2] = 0.0
-        near = neighbors_of(self, scene, walking)
+        near = neighbors_of(self, scene, seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -303,13 +301,12 @@ class SocialForce(CrowdModel):
             rows(walking),
             self._law(scene.shape),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), umans, float(dt))
         return out
 
     def _law(self, shape: tuple[int, int]) -> Floats:
         values: list[Any] = [getattr(self, name) for name in _Law._fields]
         values[_Law._fields.index("view_angle")] = np.cos(np.minimum(self.view_angle, math.pi))
-        if all(np.ndim(value) == 0 for value in values):
+        if all(type(value) is float or np.ndim(value) == 0 for value in values):
             return np.array([values], dtype=np.float64)
         return np.stack([per_agent(v, shape, n).reshape(-1) for v, n in zip(values, _Law._fields, strict=True)], axis=1)

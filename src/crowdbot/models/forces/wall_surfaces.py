@@ -33,12 +33,16 @@ class WallSurfaces(NamedTuple):
 
 
 def wall_surfaces(walls: Walls) -> WallSurfaces:
-    """Return the faces and the convex corners of ``walls``.
+    """Return the faces and the convex corners of ``walls``, which are kept with the walls.
 
     >>> wall = wall_surfaces(Walls.of([[(0, 0), (2, 0)], [(2, 0), (4, 0)]]))
     >>> len(wall.face), wall.corner.tolist()
     (4, [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0]])
     """
+    return walls.derive(_surfaces)
+
+
+def _surfaces(walls: Walls) -> WallSurfaces:
     along = walls.end - walls.start
     direction = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300)[:, None]
     ends = np.concatenate([walls.start, walls.end])

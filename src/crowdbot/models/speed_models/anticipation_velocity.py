@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -245,13 +243,12 @@ class AnticipationVelocity(CrowdModel):
         return scene.advance(velocity, dt).replace(heading=heading)
 
     def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
-        seen = scene.active & scene.visible
-        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
+        near = neighbors_of(self, scene, seen, walking)
         side, shuffle = np.full(scene.shape, -1.0), np.full(scene.shape, np.nan)
         if rng is not None:
             side = 2.0 * rng.integers(0, 2, scene.shape) - 1.0
@@ -275,6 +272,6 @@ class AnticipationVelocity(CrowdModel):
             rows(shuffle),
             rows(walking),
         )
-        out, heading = initial_velocity(scene), scene.heading.copy()
+        heading = scene.heading.copy()
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
         return out, heading

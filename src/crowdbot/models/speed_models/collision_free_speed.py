@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -194,13 +192,12 @@ class CollisionFreeSpeed(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
-        seen = scene.active & scene.visible
-        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
+        near = neighbors_of(self, scene, seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.heading),
@@ -215,6 +212,5 @@ class CollisionFreeSpeed(CrowdModel):
             rows(value("neighbor_distance")),
             rows(walking),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments())
         return out

@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     neighbors_of,
     rows,
     speed_limit,
@@ -140,8 +138,8 @@ class ORCA(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
-        near = neighbors_of(self, scene, walking)
+        wish, walking, seen, out = begin_step(scene, dt)
+        near = neighbors_of(self, scene, seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -153,6 +151,5 @@ class ORCA(CrowdModel):
             rows(scene.external),
             rows(walking),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
         return out

@@ -35,7 +35,11 @@ class Edges(NamedTuple):
 
 
 def edges_of(walls: Walls) -> Edges:
-    """Return the edges of ``walls``."""
+    """Return the edges of ``walls``, which are kept with the walls."""
+    return walls.derive(_edges)
+
+
+def _edges(walls: Walls) -> Edges:
     along = walls.end - walls.start
     length = np.sqrt(along[:, :1] ** 2 + along[:, 1:] ** 2)
     direction = along / np.where(length > 0.0, length, 1.0)

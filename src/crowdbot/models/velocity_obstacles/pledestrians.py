@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     neighbors_of,
     rows,
     speed_limit,
@@ -183,8 +181,8 @@ class PLEdestrians(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
-        near = neighbors_of(self, scene, walking)
+        wish, walking, seen, out = begin_step(scene, dt)
+        near = neighbors_of(self, scene, seen, walking)
         if scene.preferred_velocity is None:
             away = np.where(scene.active[..., None], scene.goal - scene.position, 0.0)
             distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
@@ -203,6 +201,5 @@ class PLEdestrians(CrowdModel):
             rows(scene.external),
             rows(walking),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
         return out

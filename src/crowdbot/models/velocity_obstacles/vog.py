@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -256,13 +255,12 @@ class VOG(CrowdModel):
         return scene.advance(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
 
     def _choose_velocity(self, scene: Scene, dt: float) -> Floats:
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, velocity = begin_step(scene, dt)
 
         def each(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
-        seen = scene.active & scene.visible
-        near = nearest(scene.position, each("neighbor_distance"), np.rint(each("max_neighbors")), seen, walking)
+        near = neighbors_of(self, scene, seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -284,7 +282,7 @@ class VOG(CrowdModel):
             rows(each("closeness")),
         )
         out = np.zeros((*scene.shape, 3))
-        out[..., :2] = initial_velocity(scene)
+        out[..., :2] = velocity
         _choose(crowd, near, _groups(scene.group, seen), scene.walls.segments(), rows(out))
         return out
 

@@ -13,11 +13,9 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     launch,
-    movable,
     neighbors_of,
     rows,
     speed_limit,
@@ -263,8 +261,8 @@ class Heuristics(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
-        near = neighbors_of(self, scene, walking)
+        wish, walking, seen, out = begin_step(scene, dt)
+        near = neighbors_of(self, scene, seen, walking)
         relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)
         stiffness = np.minimum(per_agent(self.contact_stiffness, scene.shape, "contact_stiffness"), 1.0 / dt**2)
         crowd = _Crowd(
@@ -279,6 +277,5 @@ class Heuristics(CrowdModel):
             rows(stiffness),
             rows(walking),
         )
-        out = initial_velocity(scene)
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
         return out

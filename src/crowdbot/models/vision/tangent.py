@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
-    movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -191,13 +189,12 @@ class Tangent(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, seen, out = begin_step(scene, dt)
 
         def each(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
-        most = np.rint(each("max_neighbors"))
-        near = nearest(scene.position, each("neighbor_distance"), most, scene.active & scene.visible, walking)
+        near = neighbors_of(self, scene, seen, walking)
         comfort, remaining = _comfort_speed(scene, wish)
         with np.errstate(divide="ignore"):  # without errors, agents react immediately
             errors = (each("direction_error") / 0.5) ** 0.62 * (each("speed_error") / 0.25) ** 0.38
@@ -208,7 +205,6 @@ class Tangent(CrowdModel):
             rows(speed_limit(self.max_speed, scene)), rows(reaction), rows(each("time_horizon")),
             rows(each("wall_horizon")), rows(scene.external), rows(walking),
         )  # fmt: skip
-        out = initial_velocity(scene)
         _choose(crowd, near, scene.walls.segments(), float(dt), rows(out))
         return out
 

@@ -22,13 +22,12 @@ from crowdbot.core import (
     per_agent,
     prange,
 )
-from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
+    begin_step,
     check_limit,
-    desired_velocity,
-    initial_velocity,
     movable,
+    neighbors_of,
     rows,
     speed_limit,
 )
@@ -210,18 +209,12 @@ class VBM(CrowdModel):
         return after.replace(heading=turned)
 
     def _choose_velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> Floats:
-        wish, walking = desired_velocity(scene, dt), movable(scene)
+        wish, walking, visible, velocity = begin_step(scene, dt)
 
         def each(name: str) -> Floats:
             return rows(per_agent(getattr(self, name), scene.shape, name))
 
-        seen = nearest(
-            scene.position,
-            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
-            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
-            scene.active & scene.visible,
-            walking,
-        )
+        seen = neighbors_of(self, scene, visible, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -244,7 +237,7 @@ class VBM(CrowdModel):
         angle = np.linspace(-0.5 * FIELD, 0.5 * FIELD, self.rays if field else FAN)
         luck = np.full(scene.shape, 0.5) if rng is None else rng.random(scene.shape)
         out = np.zeros((*scene.shape, 4))
-        out[..., :2] = initial_velocity(scene)
+        out[..., :2] = velocity
         walls = scene.walls.segments()
         _choose(crowd, seen, walls, np.stack([np.sin(angle), np.cos(angle)]), field, rows(luck), float(dt), rows(out))
         return out

@@ -14,6 +14,7 @@ import dataclasses
 import math
 
 from crowdbot.trials.agent import Agent
+from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import ContactSpec, Routing
 from crowdbot.trials.journey import Journey, Zone
 from crowdbot.trials.notation import Points
@@ -200,7 +201,7 @@ def _formation(name: str, people: int, away: float, angle: float) -> list[Agent]
 ARENAS = (
     Preset(
         "delayed-circle",
-        "A circle crossing in which people enter one after another within a few seconds.",
+        TITLES["delayed-circle"],
         delayed_circle,
         {
             "people": PresetOption(5, "people", "", 1, 60),
@@ -211,7 +212,7 @@ ARENAS = (
     ),
     Preset(
         "circle-with-standing",
-        "A circle crossing around people who stand in the circle and need much room.",
+        TITLES["circle-with-standing"],
         circle_with_standing,
         {
             "people": PresetOption(2, "people who walk", "", 1, 60),
@@ -223,7 +224,7 @@ ARENAS = (
     ),
     Preset(
         "corner-traffic",
-        "People turn the corner of a corridor, and the robot turns it in the opposite direction.",
+        TITLES["corner-traffic"],
         corner_traffic,
         {
             "people": PresetOption(5, "people", "", 1, 40),
@@ -234,7 +235,7 @@ ARENAS = (
     ),
     Preset(
         "block",
-        "People walk around a block in the middle of a hall, and a robot comes towards them.",
+        TITLES["block"],
         block,
         {
             "people": PresetOption(12, "people", "", 0, 40),
@@ -244,7 +245,7 @@ ARENAS = (
     ),
     Preset(
         "four-blocks",
-        "People in four corners walk to the opposite corners between four blocks; a robot crosses the centre.",
+        TITLES["four-blocks"],
         four_blocks,
         {
             "people": PresetOption(5, "people in each corner", "", 0, 12),
@@ -254,7 +255,7 @@ ARENAS = (
     ),
     Preset(
         "one-against-ten",
-        "A crowd of ten crosses the path of the robot at an angle, or walks towards it.",
+        TITLES["one-against-ten"],
         one_against_ten,
         {
             "people": PresetOption(10, "people in the crowd", "", 1, 60),
@@ -265,7 +266,7 @@ ARENAS = (
     ),
     Preset(
         "crowd-against-crowd",
-        "Two crowds meet, scattered or in ranks, and a robot crosses the place where they do.",
+        TITLES["crowd-against-crowd"],
         crowd_against_crowd,
         {
             "people": PresetOption(25, "people in each crowd", "", 1, 100),

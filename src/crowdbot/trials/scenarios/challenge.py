@@ -13,6 +13,7 @@ from __future__ import annotations
 import functools
 import math
 
+from crowdbot.trials.builtin_names import FLOWS, SIZES, TITLES
 from crowdbot.trials.crowd import ContactSpec, Limits
 from crowdbot.trials.journey import Journey, Portal, Zone
 from crowdbot.trials.people import Spawner
@@ -26,16 +27,6 @@ from .preset import Preset, PresetOption
 __all__ = ["CHALLENGE", "FLOWS", "SIZES"]
 
 LENGTH, WIDTH = 50.0, 10.0
-SIZES = (50, 100, 200, 350)
-FLOWS = {
-    "with": ("1D+", "with the robot", ("east",)),
-    "against": ("1D-", "against the robot", ("west",)),
-    "both": ("1Dx", "with and against the robot", ("east", "west")),
-    "cross": ("2D", "across the path of the robot, from one side", ("south",)),
-    "cross-both": ("2Dx", "across the path of the robot, from both sides", ("south", "north")),
-}
-"""Flows by name: name in the challenge, description, journeys of people."""
-
 FAR = LENGTH / 2.0 + 5.0
 JOURNEYS = {
     "east": Zone(box(FAR, -4.5, FAR + 1.0, 4.5), aim="random"),
@@ -97,16 +88,16 @@ def _presets() -> tuple[Preset, ...]:
     found = [
         Preset(
             "challenge-alone",
-            "CrowdBot challenge, scenario without a crowd: the robot alone in a corridor of 50 m by 10 m.",
+            TITLES["challenge-alone"],
             functools.partial(challenge, "", 0),
             {"acceleration": braking},
         )
     ]
-    for kind, (code, words, _) in FLOWS.items():
+    for kind in FLOWS:
         found += [
             Preset(
                 f"challenge-{kind}-{size}",
-                f"CrowdBot challenge, {code}: {size} people walk {words}, in a corridor of 50 m by 10 m.",
+                TITLES[f"challenge-{kind}-{size}"],
                 functools.partial(challenge, kind),
                 {"people": PresetOption(size, "people", "", 0, 600), "acceleration": braking},
             )

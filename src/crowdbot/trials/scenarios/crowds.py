@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from crowdbot.models import ORCA
+from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import ContactSpec, Routing
 from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
 from crowdbot.trials.notation import Points
@@ -259,41 +260,41 @@ def bottleneck(door: float, rate: float) -> Trial:
 CROWDS = (
     Preset(
         "one-way-with",
-        "People walk along an endless corridor in the direction of the robot.",
+        TITLES["one-way-with"],
         one_way_with,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "UMANS: one-way flow; CrowdBot: 1-D, with the flow",
     ),
     Preset(
         "one-way-against",
-        "People walk along an endless corridor against the robot.",
+        TITLES["one-way-against"],
         one_way_against,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "social-jym: parallel traffic (14 m by 3 m: `width=3`); CrowdBot: 1-D, against the flow",
     ),
     Preset(
         "two-way",
-        "People walk along an endless corridor in both directions.",
+        TITLES["two-way"],
         two_way,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "UMANS: corridor; CrowdBot: bi-directional",
     ),
     Preset(
         "density-ladder",
-        "An endless two-way corridor of 20 m by 5 m, from 0.05 to 3 people/m2.",
+        TITLES["density-ladder"],
         density_ladder,
         {"density": PresetOption(0.5, f"density: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
     ),
     Preset(
         "perpendicular-flow",
-        "An endless flow of people crosses the path of the robot, from one side or both.",
+        TITLES["perpendicular-flow"],
         crossing,
         {"density": DENSITY, "both": PresetOption(False, "whether people come from both sides")},
         "social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
     ),
     Preset(
         "circle-crossing",
-        "People on a circle and a robot that they do not see go to the opposite side.",
+        TITLES["circle-crossing"],
         circle_crossing,
         {
             "people": PresetOption(5, "people", "", 1, 60),
@@ -306,7 +307,7 @@ CROWDS = (
     ),
     Preset(
         "dense-circle",
-        "Twenty people on a larger circle and a robot that they do not see go to the opposite side.",
+        TITLES["dense-circle"],
         dense_circle,
         {
             "people": PresetOption(20, "people", "", 1, 60),
@@ -316,7 +317,7 @@ CROWDS = (
     ),
     Preset(
         "square-crossing",
-        "People on two sides of a square swap sides, and the robot crosses their paths.",
+        TITLES["square-crossing"],
         square_crossing,
         {
             "people": PresetOption(10, "people", "", 1, 60),
@@ -326,14 +327,14 @@ CROWDS = (
     ),
     Preset(
         "static-crowd",
-        "People stand alone or in groups, and the robot passes between them.",
+        TITLES["static-crowd"],
         static_crowd,
         {"density": PresetOption(0.25, "density of people", "1/m2", 0.0, 1.5), "groups": GROUPS},
         "social-jym: robot crowding; CrowdBot: static crowd",
     ),
     Preset(
         "random-goals",
-        "People walk between random goals in a square.",
+        TITLES["random-goals"],
         random_goals,
         {
             "people": PresetOption(30, "people", "", 1, 400),
@@ -343,7 +344,7 @@ CROWDS = (
     ),
     Preset(
         "bottleneck",
-        "People enter on the left and leave through a door; a robot crosses the hall behind it.",
+        TITLES["bottleneck"],
         bottleneck,
         {
             "door": PresetOption(1.4, "width of the door", "m", 0.7, 6.0),

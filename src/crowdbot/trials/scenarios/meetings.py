@@ -10,6 +10,7 @@ import math
 from typing import Any
 
 from crowdbot.trials.agent import Agent
+from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import Routing
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.journey import Journey, Point
@@ -237,7 +238,7 @@ CIRCLE = PresetOption(1.2, "radius of the circle", "m", 0.6, 3.0)
 MEETINGS = (
     Preset(
         "frontal",
-        "A robot and a person meet head-on in a corridor.",
+        TITLES["frontal"],
         frontal,
         {
             "width": WIDTH,
@@ -249,7 +250,7 @@ MEETINGS = (
     ),
     Preset(
         "intersection",
-        "Two corridors cross; a person (or a flow, with a density) crosses the path of the robot.",
+        TITLES["intersection"],
         intersection,
         {
             "angle": PresetOption(90.0, "angle between the paths", "deg", 30.0, 150.0),
@@ -263,7 +264,7 @@ MEETINGS = (
     ),
     Preset(
         "blind-corner",
-        "An L-shaped corridor hides a person until they are near.",
+        TITLES["blind-corner"],
         blind_corner,
         {
             "width": PresetOption(1.8, "width of the corridors", "m", 1.4, 4.0),
@@ -274,14 +275,14 @@ MEETINGS = (
     ),
     Preset(
         "doorway",
-        "A robot and a person go through a narrow door from opposite sides.",
+        TITLES["doorway"],
         doorway,
         {"door": PresetOption(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
         "P&G: narrow doorway",
     ),
     Preset(
         "elevator",
-        "People leave a small room that the robot wants to enter.",
+        TITLES["elevator"],
         elevator,
         {
             "door": PresetOption(0.95, "width of the door", "m", 0.7, 2.0),
@@ -291,7 +292,7 @@ MEETINGS = (
     ),
     Preset(
         "overtaking",
-        "A robot approaches a slow person from behind in a corridor.",
+        TITLES["overtaking"],
         overtaking,
         {
             "width": WIDTH,
@@ -302,7 +303,7 @@ MEETINGS = (
     ),
     Preset(
         "being-overtaken",
-        "A person approaches a slow robot from behind in a corridor.",
+        TITLES["being-overtaken"],
         being_overtaken,
         {
             "width": WIDTH,
@@ -313,7 +314,7 @@ MEETINGS = (
     ),
     Preset(
         "following",
-        "A person walks ahead of the robot in the same direction.",
+        TITLES["following"],
         following,
         {
             "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 10.0),
@@ -324,21 +325,21 @@ MEETINGS = (
     ),
     Preset(
         "joining-group",
-        "A robot takes the free place in a group of people who stand and talk.",
+        TITLES["joining-group"],
         joining_group,
         {"people": PEOPLE, "radius": CIRCLE},
         "P&G, SEAN: join group",
     ),
     Preset(
         "leaving-group",
-        "A robot leaves a group of people who stand and talk.",
+        TITLES["leaving-group"],
         leaving_group,
         {"people": PEOPLE, "radius": CIRCLE},
         "P&G, SEAN: leave group",
     ),
     Preset(
         "passing-group",
-        "Two people who talk stand on both sides of the robot's path.",
+        TITLES["passing-group"],
         passing_group,
         {"gap": PresetOption(2.0, "distance between their centres", "m", 0.8, 5.0)},
     ),

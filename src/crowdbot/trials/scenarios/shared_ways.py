@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from crowdbot.trials.agent import Agent
+from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
@@ -103,7 +104,7 @@ def object_handover(reach: float, approach: float) -> Trial:
 SHARED_WAYS = (
     Preset(
         "leading",
-        "A robot goes ahead of a person, who walks behind it at their own pace; the robot does not wait.",
+        TITLES["leading"],
         robot_ahead,
         {
             "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
@@ -114,7 +115,7 @@ SHARED_WAYS = (
     ),
     Preset(
         "pedestrian-obstruction",
-        "People stand side by side in the middle of a corridor, and the robot has to pass.",
+        TITLES["pedestrian-obstruction"],
         pedestrian_obstruction,
         {
             "width": WIDTH,
@@ -125,7 +126,7 @@ SHARED_WAYS = (
     ),
     Preset(
         "down-path",
-        "The robot goes along a corridor in which people walk, some in its direction and some towards it.",
+        TITLES["down-path"],
         down_path,
         {
             "width": WIDTH,
@@ -137,7 +138,7 @@ SHARED_WAYS = (
     ),
     Preset(
         "parallel-walk",
-        "A robot and a person go side by side along a corridor.",
+        TITLES["parallel-walk"],
         parallel_walk,
         {
             "gap": PresetOption(1.2, "distance between their paths", "m", 0.6, 5.0),
@@ -148,7 +149,7 @@ SHARED_WAYS = (
     ),
     Preset(
         "object-handover",
-        "The robot approaches a waiting person and stops within reach. The trial ends there; nothing is handed over.",
+        TITLES["object-handover"],
         object_handover,
         {
             "reach": PresetOption(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crowdbot.core import FreeClock, InputError
+from crowdbot.core import FreeClock, whole_ticks
 from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
@@ -31,17 +31,17 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
     clock, found = FreeClock(step), []
     carried = robot.type_sensors
     for mount in robot.sensors:
-        if mount in carried and not math.isnan(mount.sensor.rate):  # a NaN rate is known only when code runs
-            try:
-                for period in _periods(mount):
-                    clock.every(period)
-            except InputError:
-                found.append(mount)
+        if mount not in carried or math.isnan(mount.sensor.rate):  # a NaN rate is known only when code runs
+            continue
+        if not all(whole_ticks(clock.step_ns, round(period * 1e9)) for period in _periods(mount)):
+            found.append(mount)
     return found
 
 
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every robot whose sensors measure at other rates than those of its type.
+
+    Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight
@@ -54,21 +54,27 @@ def trial_remarks(trial: Trial) -> list[str]:
     clock = FreeClock(trial.step)
     for robot in trial.robots:
         rows: dict[str, list[str]] = {}
-        others = misfits(robot, trial.step)
+        others = misfits(robot, trial.step) if robot.sensor_rates == "nearest" else []
         for mount in others:
             plan, sensor = robot.schedule(mount, clock), mount.sensor
             late = f" and {plan.late * trial.step:g} s late, not {sensor.delay:g} s" if sensor.delay > 0.0 else ""
-            row = f"every {plan.every * trial.step:g} s, not {1.0 / sensor.rate:g} s{late}"
+            row = f"every {plan.ticks.every * trial.step:g} s, not {1.0 / sensor.rate:g} s{late}"
             rows.setdefault(row, []).append(mount.name)
         if others:
             words = "; ".join(f"{' and '.join(names)} {row}" for row, names in rows.items())
             step = fitting([period for mount in others for period in _periods(mount)])
-            exact = f'; with step="{step:g}" no period is rounded' if step else ""
+            exact = f'; with step="{step:g}" no period is rounded' if step else _keep_rates(others, clock)
             found.append(
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
     return found
+
+
+def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:
+    """Return the advice to keep the mean rates, if the step allows them."""
+    allowed = all(round(1e9 / mount.sensor.rate) >= clock.step_ns for mount in mounts)
+    return '; with sensor-rates="exact" the mean rates are exact' if allowed else ""
 
 
 def _periods(mount: Mount) -> list[float]:

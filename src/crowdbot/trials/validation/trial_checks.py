@@ -121,13 +121,16 @@ def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
     periods = [*skip_unreadable(*_all_periods(trial))]
-    step = fitting([period for _, _, period in periods])
-    fits = f'; step="{step:g}" divides all periods' if step else ""
     for thing, name, period in periods:
         try:
-            clock.every(period)
+            clock.schedule(period)
         except InputError:
-            yield thing, f"{name} {period:g} s is not a whole number of time steps of {trial.step:g} s{fits}"
+            shortest = f"{clock.step_ns / 1e9:.9g}"
+            yield (
+                thing,
+                f"{name} {period:g} s is shorter than the time step of {trial.step:g} s; take at least {shortest} s, or"
+                " a shorter step",
+            )
 
 
 def _all_periods(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
@@ -148,21 +151,30 @@ def _sensor_periods(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, 
         return
     if not math.isnan(mount.sensor.rate):  # known only when code runs
         yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
-    if mount.sensor.delay > 0.0:
-        yield mount, "delay", mount.sensor.delay
 
 
 def _exact_rates(trial: Trial, robot: RobotSpec) -> Problems:
-    """Yield a robot with ``sensor-rates="exact"`` and sensors that do not fit the time step."""
-    if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
+    """Yield a robot with ``sensor-rates="exact"`` and sensors that measure more often than once per time step."""
+    if robot.sensor_rates == "exact" and (others := _too_frequent(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
         step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
         take = f'take step="{step:g}", or leave out' if step else "leave out"
         yield (
             robot,
-            f"has sensors of its type that do not measure after whole time steps of {trial.step:g} s: {rates}; {take}"
+            f"has sensors of its type that measure more than once per time step of {trial.step:g} s: {rates}; {take}"
             ' sensor-rates="exact" to let them measure as often as the step allows',
         )
+
+
+def _too_frequent(robot: RobotSpec, step: float) -> list[Mount]:
+    """Return the sensors of a robot's type whose period is shorter than a time step [s]."""
+    clock, found = FreeClock(step), []
+    for mount in misfits(robot, step):
+        try:
+            clock.schedule(1.0 / mount.sensor.rate)
+        except InputError:
+            found.append(mount)
+    return found
 
 
 def _names(checked: ValidationContext) -> Iterator[Problems]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, kernel
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
@@ -18,7 +18,7 @@ from .person_random import uniform
 from .routing import WAY, Router, fresh
 from .source import Arrivals, PeopleSource
 
-__all__ = ["PeopleFlow"]
+__all__ = ["PeopleFlow", "environment_seeds"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -44,13 +44,14 @@ class PeopleFlow:
     journeys: JourneyAssignment | None
     arrivals: Arrivals | None
     mixture: Mixture | None
+    _turns: tuple[float, Numbers, Numbers, Floats, Floats] | None = field(default=None, init=False, repr=False)
 
     @classmethod
     def of(
         cls,
         scene: Scene,
         model: CrowdModel,
-        seed: int,
+        seeds: Sequence[int],
         ids: Any,
         router: Router | None,
         journeys: JourneyAssignment | None,
@@ -65,7 +66,7 @@ class PeopleFlow:
             raise InputError(
                 "the scene has preferred velocities instead of goals; routers, journeys and sources need goals"
             )
-        seeds = np.array([(int(seed) + e) % 2**63 for e in range(scene.shape[0])], dtype=np.int64)
+        keys = np.array([int(seed) % 2**63 for seed in seeds], dtype=np.int64)
         who = _identities(ids, scene.shape)
         following = who.max(axis=1, initial=-1) + 1
         mixture = model if isinstance(model, Mixture) and sources else None
@@ -77,16 +78,16 @@ class PeopleFlow:
         if sources:
             first = journeys or JourneyAssignment((), -1)
             start = {WAY: fresh((1, 1))[0, 0], **model.memory_at_start}
-            arrivals = Arrivals(tuple(sources), seeds.tolist(), len(first.journeys), start)
+            arrivals = Arrivals(tuple(sources), keys.tolist(), len(first.journeys), start)
             journeys = JourneyAssignment((*first.journeys, *(source.journey for source in sources)), first.which)
-            return cls(seeds, who, following, router, journeys, arrivals, mixture)
-        return cls(seeds, who, following, router, journeys, None, mixture)
+            return cls(keys, who, following, router, journeys, arrivals, mixture)
+        return cls(keys, who, following, router, journeys, None, mixture)
 
     def reconfigure(self, router: Router | None, sources: Sequence[PeopleSource], seed: int | None) -> None:
         """Change the router and the sources. A seed restarts the random numbers."""
         self.router = router
         if seed is not None:
-            self.seeds = np.array([(int(seed) + e) % 2**63 for e in range(len(self.seeds))], dtype=np.int64)
+            self.seeds = np.array([one % 2**63 for one in environment_seeds(seed, len(self.seeds))], dtype=np.int64)
         if self.arrivals is not None:
             self.arrivals.reconfigure(sources, None if seed is None else self.seeds.tolist())
         elif sources:
@@ -111,10 +112,10 @@ class PeopleFlow:
         """Return the scene with the next point of each path as the goal, rotated by the heading jitter."""
         if self.router is not None:
             scene = self.router.guide(scene, self._routed(scene))
-        return _rotate_goals(scene, heading_jitter * (2.0 * self._luck() - 1.0)) if heading_jitter > 0.0 else scene
+        return _rotate_goals(scene, *self._turn(heading_jitter)) if heading_jitter > 0.0 else scene
 
-    def advance(self, scene: Scene, time: float) -> Scene:
-        """Return the scene at a time [s] after journeys have advanced and new people have entered."""
+    def advance(self, scene: Scene, time: float | Floats) -> Scene:
+        """Return the scene at a time [s], one or ``[E]``, after journeys have advanced and new people have entered."""
         if self.journeys is not None:
             scene = self.journeys.advance(scene, self.seeds, self.ids, self._holds)
         if self.arrivals is None or self.journeys is None:
@@ -144,8 +145,31 @@ class PeopleFlow:
         walking = scene.active & ~scene.external
         return walking if self.journeys is None else walking & self.journeys.uses_routing(scene)
 
-    def _luck(self) -> Floats:
-        return uniform(self.seeds[:, None], self.ids, "symmetry")
+    def _turn(self, heading_jitter: float) -> tuple[Floats, Floats]:
+        """Return cosine and sine of the constant angle ``[E, A]`` by which each person deviates from the goal."""
+        known = self._turns
+        if (
+            known is None
+            or known[0] != heading_jitter
+            or not (np.array_equal(known[1], self.ids) and np.array_equal(known[2], self.seeds))
+        ):
+            angle = heading_jitter * (2.0 * uniform(self.seeds[:, None], self.ids, "symmetry") - 1.0)
+            self._turns = known = (heading_jitter, self.ids.copy(), self.seeds.copy(), np.cos(angle), np.sin(angle))
+        return known[3], known[4]
+
+
+def environment_seeds(seed: int | Sequence[int], count: int) -> list[int]:
+    """Return the seed of each environment: those given, or ``seed + e`` for environment e.
+
+    Raises:
+        InputError: there is not one seed for each environment.
+    """
+    if isinstance(seed, int | np.integer):
+        return [int(seed) + e for e in range(count)]
+    seeds = [int(one) for one in seed]
+    if len(seeds) != count:
+        raise InputError(f"{len(seeds)} seeds are given for {count} environments; give one for each, or one number")
+    return seeds
 
 
 def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
@@ -159,15 +183,27 @@ def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
     return who.astype(np.int64)
 
 
-def _rotate_goals(scene: Scene, angle: Floats) -> Scene:
-    """Return the scene with goals, or preferred velocities, rotated around each agent by an angle ``[E, A]`` [rad]."""
-    cos, sin = np.cos(angle), np.sin(angle)
+@kernel
+def _rotate(own: NDArray[np.bool_], center: Floats, cos: Floats, sin: Floats, value: Floats, out: Floats) -> None:
+    for e in range(len(own)):
+        for a in range(own.shape[1]):
+            x, y = value[e, a, 0], value[e, a, 1]
+            out[e, a, 0], out[e, a, 1] = x, y
+            if own[e, a]:
+                cx, cy = center[e, a, 0], center[e, a, 1]
+                dx, dy = x - cx, y - cy
+                out[e, a, 0] = cx + (cos[e, a] * dx - sin[e, a] * dy)
+                out[e, a, 1] = cy + (sin[e, a] * dx + cos[e, a] * dy)
 
-    def turned(way: Floats) -> Floats:
-        return np.stack([cos * way[..., 0] - sin * way[..., 1], sin * way[..., 0] + cos * way[..., 1]], axis=-1)
 
-    own = (scene.active & ~scene.external)[..., None]
+def _rotate_goals(scene: Scene, cos: Floats, sin: Floats) -> Scene:
+    """Return the scene with goals, or preferred velocities, rotated around each agent."""
+    own = scene.active & ~scene.external
     if scene.preferred_velocity is not None:
-        wish = scene.preferred_velocity
-        return scene.replace(preferred_velocity=np.where(own, turned(wish), wish))
-    return scene.replace(goal=np.where(own, scene.position + turned(scene.goal - scene.position), scene.goal))
+        wish = np.ascontiguousarray(scene.preferred_velocity)
+        out = np.empty(wish.shape)
+        _rotate(own, np.zeros(wish.shape), cos, sin, wish, out)
+        return scene.replace(preferred_velocity=out)
+    out = np.empty(scene.goal.shape)
+    _rotate(own, np.ascontiguousarray(scene.position), cos, sin, np.ascontiguousarray(scene.goal), out)
+    return scene.replace(goal=out)

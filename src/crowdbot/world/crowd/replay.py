@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, kernel
 
 __all__ = ["SCRIPT", "ReplayedPeople", "ReplayedTrack"]
 
@@ -102,37 +102,41 @@ class ReplayedPeople:
         state[:, self._rows.agent] = FOLLOWS
         return self.place(scene.replace(memory={**scene.memory, SCRIPT: state}), time)
 
-    def place(self, scene: Scene, time: float) -> Scene:
-        """Return the scene with replayed people at their positions at a time [s], and released people with a goal."""
+    def place(self, scene: Scene, time: float | Floats) -> Scene:
+        """Return the scene with replayed people at their positions, and released people with a goal.
+
+        Args:
+            scene: current scene.
+            time: time of the recording [s], one or ``[E]``.
+        """
         rows, agent = self._rows, self._rows.agent
         if len(agent) == 0:
             return scene
+        now = np.broadcast_to(np.asarray(time, dtype=np.float64), (scene.shape[0],))
         state = scene.memory[SCRIPT].copy()
         position, velocity, heading = scene.position.copy(), scene.velocity.copy(), scene.heading.copy()
         active, goal, speed = scene.active.copy(), scene.goal.copy(), scene.preferred_speed.copy()
         top = scene.max_speed.copy()
-        place, pace = rows.at(time)
-        there = (time >= rows.begin - EARLY) & (time <= rows.end + EARLY)
-        moving = np.hypot(pace[:, 0], pace[:, 1]) > MOVING
-        ahead = rows.at(time + AHEAD)[0]
-        for e in range(scene.shape[0]):
-            follows = state[e, agent] == FOLLOWS
-            who = agent[follows]
-            position[e, who], velocity[e, who] = place[follows], pace[follows]
-            turned = agent[follows & moving]
-            heading[e, turned] = np.arctan2(pace[follows & moving, 1], pace[follows & moving, 0])
-            active[e, who] = there[follows]
-            goal[e, who], speed[e, who] = rows.last[follows], rows.pace[follows]
-            free = state[e, agent] == FREE
-            who = agent[free]
-            left = np.hypot(*(rows.last[free] - position[e, who]).T)
-            gone = (left < ARRIVED) & (time >= rows.end[free] - AHEAD)
-            active[e, who[gone]] = False
-            state[e, who[gone]] = GONE
-            goal[e, who] = ahead[free]
-            away = np.hypot(*(ahead[free] - position[e, who]).T)
-            speed[e, who] = np.minimum(away / AHEAD, HURRY * rows.pace[free])
-            top[e, who] = 1.3 * HURRY * rows.pace[free]
+        follows, free = state[:, agent] == FOLLOWS, state[:, agent] == FREE
+        place, pace = rows.at(now)
+        there = (now[:, None] >= rows.begin - EARLY) & (now[:, None] <= rows.end + EARLY)
+        turned = follows & (np.hypot(pace[..., 0], pace[..., 1]) > MOVING)
+        position[:, agent] = np.where(follows[..., None], place, position[:, agent])
+        velocity[:, agent] = np.where(follows[..., None], pace, velocity[:, agent])
+        heading[:, agent] = np.where(turned, np.arctan2(pace[..., 1], pace[..., 0]), heading[:, agent])
+        active[:, agent] = np.where(follows, there, active[:, agent])
+        goal[:, agent] = np.where(follows[..., None], rows.last, goal[:, agent])
+        speed[:, agent] = np.where(follows, rows.pace, speed[:, agent])
+        if np.any(free):
+            left = np.hypot(*np.moveaxis(rows.last - position[:, agent], -1, 0))
+            gone = free & (left < ARRIVED) & (now[:, None] >= rows.end - AHEAD)
+            active[:, agent] &= ~gone
+            state[:, agent] = np.where(gone, GONE, state[:, agent])
+            ahead = rows.at(now + AHEAD)[0]
+            away = np.hypot(*np.moveaxis(ahead - position[:, agent], -1, 0))
+            goal[:, agent] = np.where(free[..., None], ahead, goal[:, agent])
+            speed[:, agent] = np.where(free, np.minimum(away / AHEAD, HURRY * rows.pace), speed[:, agent])
+            top[:, agent] = np.where(free, 1.3 * HURRY * rows.pace, top[:, agent])
         moved = scene.replace(
             position=position, velocity=velocity, heading=heading, active=active, goal=goal,
             preferred_speed=speed, max_speed=top, memory={**scene.memory, SCRIPT: state},
@@ -146,11 +150,27 @@ class ReplayedPeople:
         state = scene.memory[SCRIPT].copy()
         far = np.zeros(scene.shape[1])
         far[self._rows.agent] = self.release
-        for e in range(scene.shape[0]):
-            away = scene.position[e][:, None] - scene.position[e][robots[e]][None]
-            near = np.any(np.hypot(away[..., 0], away[..., 1]) < far[:, None], axis=1)
-            state[e, near & scene.active[e] & (state[e] == FOLLOWS)] = FREE
+        near = np.zeros(scene.shape, dtype=np.bool_)
+        for robot in np.flatnonzero(np.any(robots, axis=0)).tolist():
+            away = scene.position - scene.position[:, robot : robot + 1]
+            near |= robots[:, robot : robot + 1] & (np.hypot(away[..., 0], away[..., 1]) < far)
+        state[near & scene.active & (state == FOLLOWS)] = FREE
         return scene.replace(memory={**scene.memory, SCRIPT: state})
+
+
+@kernel
+def _count_rows(table: Floats, first: Numbers, time: Floats, out: Numbers) -> None:
+    """Write the index of the last row up to a time for each environment and track, ``first[n] - 1`` before a track."""
+    for e in range(len(time)):
+        for n in range(len(first) - 1):
+            low, high = first[n], first[n + 1]
+            while low < high:
+                middle = (low + high) // 2
+                if table[middle] <= time[e]:
+                    low = middle + 1
+                else:
+                    high = middle
+            out[e, n] = low - 1
 
 
 class _Rows(NamedTuple):
@@ -183,21 +203,21 @@ class _Rows(NamedTuple):
             np.array([max(SLOWEST, _max_speed(track)) for track in tracks]),
         )
 
-    def at(self, time: float) -> tuple[Floats, Floats]:
-        """Return positions ``[N, 2]`` [m] and velocities [m/s] at a time; before and after a track, its ends at
-        rest.
+    def at(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return positions ``[E, N, 2]`` [m] and velocities [m/s] at times ``[E]`` [s].
+
+        Before and after a track, its ends at rest.
         """
-        # number of rows up to this time, by track: a cumulative count over the whole table
-        seen = np.concatenate([[0], np.cumsum(self.time <= time + EARLY)])
-        k = self.first[:-1] + seen[self.first[1:]] - seen[self.first[:-1]] - 1
+        k = np.empty((len(time), len(self.agent)), dtype=np.int64)
+        _count_rows(self.time, self.first, time + EARLY, k)
         here = np.clip(k, self.first[:-1], self.first[1:] - 1)
         following = np.minimum(here + 1, self.first[1:] - 1)
         span = self.time[following] - self.time[here]
         step = self.position[following] - self.position[here]
         inside = (k >= self.first[:-1]) & (span > 0.0)
-        share = np.where(inside, (time - self.time[here]) / np.where(span > 0.0, span, 1.0), 0.0)
-        pace = step * np.where(inside, 1.0 / np.where(span > 0.0, span, 1.0), 0.0)[:, None]
-        return self.position[here] + step * np.maximum(share, 0.0)[:, None], pace
+        share = np.where(inside, (time[:, None] - self.time[here]) / np.where(span > 0.0, span, 1.0), 0.0)
+        pace = step * np.where(inside, 1.0 / np.where(span > 0.0, span, 1.0), 0.0)[..., None]
+        return self.position[here] + step * np.maximum(share, 0.0)[..., None], pace
 
 
 def _max_speed(track: ReplayedTrack) -> float:

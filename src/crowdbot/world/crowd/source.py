@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence
@@ -152,6 +153,14 @@ class _Queue:
                 else self.due + self.pause()
             )
 
+    @property
+    def next_event(self) -> float:
+        """Time [s] before which nobody arrives or enters; ``-inf`` while people wait."""
+        most = math.inf if self.source.max_count is None else self.source.max_count
+        if self.waiting:
+            return -math.inf
+        return self.due if self.due < self.source.end and self.come < most else math.inf
+
     def first(self) -> tuple[float, float]:
         """Return preferred speed [m/s] and radius [m] of the first person in the queue."""
         if self.body is None:
@@ -225,11 +234,33 @@ class Arrivals:
         self._queues = [[_Queue.of(source, int(seed), k) for k, source in enumerate(sources)] for seed in seeds]
         self._first_journey = first_journey
         self._fresh = fresh
+        self._next_arrival = np.full(len(seeds), -math.inf)
+        """Time [s] before which nothing happens in an environment, ``[E]``."""
 
     @property
     def waiting_count(self) -> Numbers:
         """Number of people waiting to enter, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
+
+    def select(self, environments: Sequence[int]) -> Arrivals:
+        """Return independent queues of some environments."""
+        chosen = copy.copy(self)
+        chosen._queues = [[copy.deepcopy(queue) for queue in self._queues[e]] for e in environments]
+        chosen._next_arrival = self._next_arrival[list(environments)]
+        return chosen
+
+    def join(self, others: Sequence[Arrivals]) -> Arrivals:
+        """Return the queues of this and other worlds with the same sources."""
+        whole = copy.copy(self)
+        whole._queues = [queues for one in (self, *others) for queues in one._queues]
+        whole._next_arrival = np.concatenate([one._next_arrival for one in (self, *others)])
+        return whole
+
+    def put(self, environments: Sequence[int], other: Arrivals) -> None:
+        """Replace the queues of some environments by those of another world with the same sources."""
+        for k, e in enumerate(environments):
+            self._queues[e] = other._queues[k]
+            self._next_arrival[e] = other._next_arrival[k]
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
         """Replace the sources; queues and planned arrivals are kept.
@@ -244,6 +275,7 @@ class Arrivals:
         if [source.journey for source in sources] != [source.journey for source in self._sources]:
             raise InputError("the number and the journeys of sources cannot change in a running world")
         self._sources = tuple(sources)
+        self._next_arrival[:] = -math.inf
         for e, queues in enumerate(self._queues):
             for number, queue in enumerate(queues):
                 queue.reconfigure(sources[number])
@@ -251,29 +283,35 @@ class Arrivals:
                     new = _Queue.of(sources[number], int(seeds[e]), number)
                     queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places
 
-    def let_in(self, scene: Scene, time: float, ids: Numbers, following: Numbers) -> tuple[Scene, NDArray[np.bool_]]:
+    def let_in(
+        self, scene: Scene, time: float | Floats, ids: Numbers, following: Numbers
+    ) -> tuple[Scene, NDArray[np.bool_]]:
         """Return the scene with the people who have arrived up to a time, and who they are ``[E, A]``.
 
         New people are at rest and have no goal yet.
 
         Args:
             scene: current scene.
-            time: time since the start [s].
+            time: time since the start [s], one or ``[E]``.
             ids: ``[E, A]`` identities; modified in place.
             following: ``[E]`` next identities; modified in place.
         """
-        entries, walls = [], scene.walls.segments()
-        for e, queues in enumerate(self._queues):
-            for queue in queues:
-                queue.fill(time)
-            if any(queue.waiting for queue in queues):
-                entries += self._entries(scene, e, walls)
+        entries: list[_Entry] = []
         new = np.zeros(scene.shape, dtype=np.bool_)
+        for e in np.flatnonzero(self._next_arrival <= np.asarray(time) + 1e-9).tolist():
+            queues, now = self._queues[e], float(time) if np.ndim(time) == 0 else float(time[e])  # type: ignore[index]
+            for queue in queues:
+                queue.fill(now)
+            if any(queue.waiting for queue in queues):
+                entries += self._entries(scene, e, scene.walls.segments())
+            self._next_arrival[e] = min(queue.next_event for queue in queues)
+        if not entries:
+            return scene, new
         for entry in entries:
             ids[entry.e, entry.a] = following[entry.e]
             following[entry.e] += 1
             new[entry.e, entry.a] = True
-        return (self._with(scene, entries) if entries else scene), new
+        return self._with(scene, entries), new
 
     def _entries(self, scene: Scene, e: int, walls: Floats) -> list[_Entry]:
         """Return the people who enter an environment now."""

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.humans import LIMBS
-from crowdbot.metrics import cause_of
-from crowdbot.metrics.contacts import HOLD
+from crowdbot.metrics import HOLD, cause_of
 
 from .body_region_limits import BODY_REGION_LIMITS, region_of, two_body_force
 from .contacts import ContactBody, EngineContact

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -49,6 +50,13 @@ class KinematicBodies:
         agents = np.array([a for a in range(scene.shape[1]) if a not in self.robots], dtype=np.int64)
         self.people = PeopleMotion(scene, agents, people, seed, riders)
         self._renderer: Renderer | None = None
+
+    def copy(self) -> KinematicBodies:
+        """Return independent bodies in the same state."""
+        other = copy.copy(self)
+        other.people = copy.copy(self.people)  # its states are replaced, not changed
+        other._renderer = None
+        return other
 
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 
-__all__ = ["people_near"]
+from .robot_body import RobotBody
+from .stage import PhysicsStage
+
+__all__ = ["movers", "people_near"]
 
 Floats = NDArray[np.float64]
 
@@ -41,3 +46,25 @@ def people_near(
     near = np.flatnonzero(nearest < reach)
     near = near[np.lexsort((persons[near], nearest[near]))]
     return near, mass, ahead
+
+
+def movers(
+    robots: Mapping[int, RobotBody], stage: PhysicsStage, movable: Sequence[int], data: Any
+) -> list[tuple[float, float, float, float]]:
+    """Return x, y, radius [m] and mass [kg] of robots and movable props.
+
+    Args:
+        robots: bodies of the robots by agent.
+        stage: stage with the props.
+        movable: numbers of the movable props.
+        data: data of the engine.
+    """
+    found = []
+    for body in robots.values():
+        ((x, y),) = body.pose.position.tolist()
+        found.append((x, y, body.robot.radius, body.mass))
+    for number in movable:
+        x, y, _ = data.body(f"prop{number}").xpos.tolist()
+        prop = stage.props[number]
+        found.append((x, y, math.sqrt(0.5) * getattr(prop, "size", 1.0), prop.weight))
+    return found

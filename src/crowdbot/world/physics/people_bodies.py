@@ -106,6 +106,14 @@ class PeopleBodies:
             self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]))
         return max(0, len(wanted) - len(self.agent))
 
+    def agent_of(self, slot: int) -> int:
+        """Return the agent that has a body, -1 for none."""
+        return int(self.agent[slot])
+
+    def swing_of(self) -> Floats:
+        """Return the velocities of the limb ends ``[S, L, 6]`` [m/s] relative to their bodies."""
+        return self.swing
+
     def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
         """Set the targets of all bodies for the next step of the world.
 

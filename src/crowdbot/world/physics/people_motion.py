@@ -113,6 +113,19 @@ class PeopleMotion:
         """Return both ends of all limbs ``[N, L, 6]`` [m] in the world."""
         return self._measured(state)[0]
 
+    def relative_ends(self, scene: Scene, ends: Floats | None = None) -> Floats:
+        """Return the limb ends of all agents ``[A, L, 6]`` [m] relative to their positions in a scene.
+
+        Args:
+            scene: the scene.
+            ends: limb ends of all people in the world; None: the current ones.
+        """
+        points = self.ends if ends is None else ends
+        found = np.zeros((scene.shape[1], *points.shape[1:]))
+        place = np.pad(scene.position[0, self.agents], ((0, 0), (0, 1)))
+        found[self.agents] = points - np.tile(place, 2)[:, None]
+        return found
+
     def limb_mass(self, agent: int, limb: str) -> float:
         """Return the mass [kg] that swings with a limb of a person: the limb and all limbs attached to it."""
         own = self.people.limb_mass[self.row[agent]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -210,8 +211,8 @@ class RobotBody:
 
 
 def _same(one: Twists, other: Twists) -> bool:
-    names = vars(one).keys()
-    return names == vars(other).keys() and all(getattr(one, name)[0] == getattr(other, name)[0] for name in names)
+    names = [part.name for part in dataclasses.fields(one)]
+    return type(one) is type(other) and all(getattr(one, name)[0] == getattr(other, name)[0] for name in names)
 
 
 NOWHERE = Pose(np.zeros((1, 2)), np.zeros(1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
-from crowdbot.world.crowd.walk import StepGenerator
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.rendering.camera import CameraImages, SceneCamera
 from crowdbot.world.rendering.renderer import Renderer
@@ -27,7 +27,7 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody, ContactReader
 from .engine import engine
 from .mjcf_model import build_mjcf_model
-from .nearby_people import people_near
+from .nearby_people import movers, people_near
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
@@ -169,6 +169,10 @@ class PhysicsWorld(PlanarWorld):
         self._renderer.show_engine(self.scene, self.data.qpos)
         return self._renderer
 
+    def environment_renderer(self, environment: int) -> Renderer:
+        """Return the renderer; see :class:`World`."""
+        return self.renderer
+
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
         return self.people.limbs(self.scene.active[0])
@@ -189,7 +193,19 @@ class PhysicsWorld(PlanarWorld):
         depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
-    def plane_scene(self) -> Scene:
+    def copy(self) -> PhysicsWorld:
+        """Return an independent world in the same state, on a free clock."""
+        shared = [self._mj, self.built, self.stage, self.router, self.people.people, self.people.gait, self.model]
+        shared += [body.robot for body in self.robot_bodies.values()]
+        renderer, self._renderer = self._renderer, None
+        try:
+            other = copy.deepcopy(self, {id(one): one for one in shared})
+        finally:
+            self._renderer = renderer
+        other.environment_time = other.environment_time.select([0])
+        return other
+
+    def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
             self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
@@ -224,17 +240,8 @@ class PhysicsWorld(PlanarWorld):
         moved = {number: self.prop(number) for number in self._movable}
         return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
-    def body_scene(self, skins: int | None = None) -> Scene:
-        """Return the scene with bodies and wall height, for range sensors.
-
-        >>> start = Scene.of([[0.0, 0.0], [2.0, 0.0]], heading=[0.0, 0.0], external=[True, False])
-        >>> from crowdbot.models import ORCA
-        >>> from crowdbot.sensors import Lidar2D
-        >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).read(world.body_scene().without(0), world.pose(0).to_spatial(1.2))
-        >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
-        ([[1]], True)
-        """
+    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+        """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
         return self.scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
     def prop(self, number: int) -> Floats:
@@ -266,12 +273,12 @@ class PhysicsWorld(PlanarWorld):
             a: RobotBody(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())
         }
         self._people_bodies = PeopleBodies(*both, slots, self.physics_dt)
-        agent_of = self._people_bodies.agent
         self._contact_reader = ContactReader(
-            *both, prefixes, lambda slot: int(agent_of[slot]), lambda: self._people_bodies.swing
+            *both, prefixes, self._people_bodies.agent_of, self._people_bodies.swing_of
         )
-        heading_of = lambda agent: float(self.scene.heading[0, agent])  # noqa: E731
-        self._contact_tracker = BodyContactTracker(self.physics_dt, self._mass_of, self.people.limb_mass, heading_of)
+        self._contact_tracker = BodyContactTracker(
+            self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
+        )
         self._movable = [k for k, prop in enumerate(self.stage.props) if prop.movable]
         self._settle()
 
@@ -290,8 +297,8 @@ class PhysicsWorld(PlanarWorld):
         self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
         self._at = {**getattr(self, "_at", {}), agent: (float(x), float(y), float(scene.heading[0, agent]))}
 
-    def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
-        earlier, crowd = yield from super()._step_crowd(before.replace(walls=self._outlined))
+    def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
+        earlier, crowd = super()._step_crowd(before.replace(walls=self._outlined))
         return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
@@ -311,7 +318,7 @@ class PhysicsWorld(PlanarWorld):
                 self._put(agent, before)
             robot_bodies.ask(asked[agent])
         gait, ends = self._prepared(before, after)
-        end = self.clock.time  # the clock is already at the end of this step
+        end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
         for k in range(self._steps):
             self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
@@ -329,34 +336,21 @@ class PhysicsWorld(PlanarWorld):
         if len(self._people_bodies.agent):
             self._embody(before)
             way = (after.position[0] - before.position[0]) / self.dt
-            there = self.people.agents
-            limbs = np.zeros((2, before.shape[1], *ends.shape[1:]))
-            for k, (scene, points) in enumerate(((before, self.people.ends), (after, ends))):
-                limbs[k, there] = points - np.tile(np.pad(scene.position[0, there], ((0, 0), (0, 1))), 2)[:, None]
-            self._people_bodies.begin(before.position[0], way, limbs[0], limbs[1], self.dt)
+            start, end = self.people.relative_ends(before), self.people.relative_ends(after, ends)
+            self._people_bodies.begin(before.position[0], way, start, end, self.dt)
         return gait, ends
 
     def _embody(self, scene: Scene) -> None:
         """Assign bodies to people who may come into contact in this step, nearest first."""
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
-        near, mass, ahead = people_near(scene, persons, self._movers(), NEAR + FAST * self.dt)
+        near, mass, ahead = people_near(
+            scene, persons, movers(self.robot_bodies, self.stage, self._movable, self.data), NEAR + FAST * self.dt
+        )
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
             persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near]
         )
-
-    def _movers(self) -> list[tuple[float, float, float, float]]:
-        """Return x, y, radius [m] and mass [kg] of robots and movable props."""
-        found = []
-        for robot_bodies in self.robot_bodies.values():
-            ((x, y),) = robot_bodies.pose.position.tolist()
-            found.append((x, y, robot_bodies.robot.radius, robot_bodies.mass))
-        for number in self._movable:
-            x, y, _ = self.data.body(f"prop{number}").xpos.tolist()
-            ring = self.stage.props[number]
-            found.append((x, y, math.sqrt(0.5) * getattr(ring, "size", 1.0), ring.weight))
-        return found
 
     def _substep(self, share: float, time: float) -> None:
         for robot_bodies in self.robot_bodies.values():
@@ -391,6 +385,9 @@ class PhysicsWorld(PlanarWorld):
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         return tuple(sorted(Contact(0, *pair, -depth) for pair, depth in self._touched.items()))
+
+    def _heading_of(self, agent: int) -> float:
+        return float(self.scene.heading[0, agent])
 
     def _mass_of(self, party: ContactBody) -> float:
         if party.kind == "robot":

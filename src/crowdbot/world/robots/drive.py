@@ -29,6 +29,20 @@ def _arc(place: Floats, heading: Floats, forward: Floats, left: Floats, turn: Fl
 
 
 @kernel
+def _differential(
+    place: Floats, heading: Floats, forward: Floats, turn: Floats, wanted: Floats, wanted_turn: Floats, top: float,
+    most: float, push: float, spin: float, dt: float, out: Floats,
+) -> None:  # fmt: skip
+    """Move each pose of a differential drive for ``dt``, and write the new twists."""
+    for e in range(len(heading)):
+        goal, turning = min(max(wanted[e], -top), top), min(max(wanted_turn[e], -most), most)
+        out[0, e] = min(max(goal, forward[e] - push), forward[e] + push)
+        out[1, e] = min(max(turning, turn[e] - spin), turn[e] + spin)
+        out[2, e] = 0.0
+    _arc(place, heading, out[0], out[2], out[1], dt)
+
+
+@kernel
 def _world_velocity(heading: Floats, forward: Floats, left: Floats) -> Floats:
     velocity = np.empty((len(heading), 2))
     for e in range(len(heading)):
@@ -61,7 +75,21 @@ class Twists:
         Raises:
             InputError: a value is not finite, or the number of twists is wrong.
         """
-        return cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
+        if twist.__class__ is Twists and getattr(twist, "_count", 0) == count:
+            return twist
+        found = cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
+        if cls is Twists:
+            object.__setattr__(found, "_count", count)
+        return found
+
+    @classmethod
+    def of_columns(cls, columns: Floats) -> Twists:
+        """Create twists from a C-contiguous array ``[3, E]`` of forward, turn and left, which must not change."""
+        if not math.isfinite(columns.sum()):
+            return cls.of(cls(*columns), columns.shape[1])
+        found = cls(*columns)
+        object.__setattr__(found, "_count", columns.shape[1])
+        return found
 
     def at(self, environment: int) -> Twist:
         """Return the twist in one environment."""
@@ -125,10 +153,13 @@ class DifferentialDrive(Drive):
         """Return pose and twist ``dt`` [s] later; see :class:`DifferentialDrive`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
-        forward = _towards(twist.forward, wanted.forward, self.max_speed, self.max_acceleration * dt)
-        turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
-        after = Twists(forward, turn, np.zeros_like(forward))
-        return integrate_twist(pose, after, dt), after
+        place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
+        columns = np.empty((3, len(heading)))
+        limits = (float(self.max_speed), float(self.max_turn_rate))
+        changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
+        now = (twist.forward, twist.turn, wanted.forward, wanted.turn)
+        _differential(place, heading, *now, *limits, *changes, dt, columns)
+        return Pose(place, heading), Twists.of_columns(columns)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,118 @@
+"""Clearances of a robot at one record of its metrics, in one pass over the agents."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import kernel
+
+from .agent_states import AgentStates
+from .proximity import JUMP
+from .step_clearance import step_wall_clearance, swept_length
+
+__all__ = ["RecordClearance", "record_clearance"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+REACH = 2.5
+"""Radius [m] of the circle of the local density."""
+
+
+class RecordClearance(NamedTuple):
+    """Clearances of a robot at one record.
+
+    Fields:
+        near: ids of the agents closer than a limit since the previous record.
+        swept: smallest clearance since the previous record [m].
+        nearest: smallest clearance now [m].
+        density: people within 2.5 m per area [1/m2].
+        ttc: smallest time to collision [s].
+        wall: smallest clearance to walls since the previous record [m].
+    """
+
+    near: Ints
+    swept: float
+    nearest: float
+    density: float
+    ttc: float
+    wall: float
+
+
+@kernel
+def _measure(
+    jump: float, old_ids: Ints, old_place: Floats, ids: Ints, place: Floats, velocity: Floats, radius: Floats, own: int,
+    limit: float, near: NDArray[np.bool_],
+) -> tuple[float, float, int, float]:  # fmt: skip
+    """Return the smallest clearance since the old record and now, the number of people around, and the smallest TTC."""
+    x, y, r = place[own, 0], place[own, 1], radius[own]
+    before = np.searchsorted(old_ids, ids[own])
+    steady = before < len(old_ids) and old_ids[before] == ids[own]
+    bx, by = x, y
+    if steady:
+        bx, by = old_place[before, 0], old_place[before, 1]
+        steady = math.hypot(x - bx, y - by) <= jump
+    least_swept, least, count, least_ttc = math.inf, math.inf, 0, math.inf
+    for n in range(len(ids)):
+        near[n] = False
+        if n == own:
+            continue
+        dx, dy = place[n, 0] - x, place[n, 1] - y
+        gap = math.sqrt(dx * dx + dy * dy) - radius[n] - r
+        swept = gap
+        if steady:
+            k = np.searchsorted(old_ids, ids[n])
+            if k < len(old_ids) and old_ids[k] == ids[n]:
+                px, py = old_place[k, 0], old_place[k, 1]
+                if math.hypot(place[n, 0] - px, place[n, 1] - py) <= jump:
+                    swept = swept_length(px - bx, py - by, dx, dy) - radius[n] - r
+        near[n] = min(swept, gap) < limit
+        least_swept, least = min(least_swept, swept), min(least, gap)
+        count += 1 if math.hypot(dx, dy) < REACH else 0
+        wx, wy = velocity[n, 0] - velocity[own, 0], velocity[n, 1] - velocity[own, 1]
+        inner = dx * dx + dy * dy - (radius[n] + r) * (radius[n] + r)
+        closing = dx * wx + dy * wy
+        inside = closing * closing - (wx * wx + wy * wy) * inner
+        ttc = math.inf
+        if inner <= 0.0:
+            ttc = 0.0
+        elif closing < 0.0 and inside > 0.0:
+            ttc = inner / (math.sqrt(inside) - closing)
+        least_ttc = min(least_ttc, ttc)
+    return least_swept, least, count, least_ttc
+
+
+def record_clearance(
+    before: AgentStates | None, states: AgentStates, own: int, radius: float, walls: Floats, limit: float
+) -> RecordClearance:
+    """Return the clearances of a robot at a record; motion since the record before is straight and uniform.
+
+    Args:
+        before: the record before, or None.
+        states: the record.
+        own: index of the robot in it.
+        radius: radius of the robot towards walls [m].
+        walls: segments ``[N, 4]`` [m].
+        limit: agents closer than this [m] are ``near``.
+
+    >>> at = AgentStates(
+    ...     0.0, np.arange(2), np.array([[0.0, 0.0], [2.0, 0.0]]), np.zeros((2, 2)), np.zeros(2), np.array([0.3, 0.2])
+    ... )
+    >>> record_clearance(None, at, 0, 0.3, np.zeros((0, 4)), 1.0).nearest
+    1.5
+    """
+    old = states if before is None else before
+    jump = -1.0 if before is None else JUMP * (states.time - before.time)
+    near = np.empty(len(states.ids), dtype=np.bool_)
+    place = np.ascontiguousarray(states.position)
+    numbers = (states.ids, place, np.ascontiguousarray(states.velocity), np.ascontiguousarray(states.radius))
+    swept, nearest, count, ttc = _measure(jump, old.ids, np.ascontiguousarray(old.position), *numbers, own, limit, near)
+    own_old = place[own : own + 1]
+    if before is not None:
+        position, _, here = before.at(states.ids[own : own + 1])
+        own_old = position if here[0] else np.zeros((1, 2))
+    wall = step_wall_clearance(own_old, place[own : own + 1], np.array([radius]), walls)[0]
+    return RecordClearance(states.ids[near], swept, nearest, count / (math.pi * REACH**2), ttc, float(wall))

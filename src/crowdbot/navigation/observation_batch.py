@@ -1,0 +1,240 @@
+"""ObservationBatch: the observations of one robot in several environments, as arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist, Walls
+from crowdbot.sensors import Reading
+
+from .observation import DriveLimits, Observation, VisiblePeople
+from .track_history import TrackHistory
+
+__all__ = ["AgentsInView", "ObservationBatch", "reading_of"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+TYPES: dict[str, Any] = {"seen": np.bool_, "ids": np.int64}
+
+
+@dataclass(frozen=True)
+class AgentsInView:
+    """People and other robots around one robot in N environments, with A places each.
+
+    Fields:
+        position, velocity: ``[N, A, 2]`` [m], [m/s]; arbitrary where nobody is seen.
+        radius: ``[N, A]`` [m].
+        seen: ``[N, A]`` bool, whether the robot sees the agent; False for itself and for free places.
+        ids: ``[N, A]`` identities.
+    """
+
+    position: Floats
+    velocity: Floats
+    radius: Floats
+    seen: Bools
+    ids: NDArray[np.int64]
+
+    @classmethod
+    def none(cls, count: int) -> AgentsInView:
+        """Return nobody in ``count`` environments."""
+        empty = np.zeros((count, 0, 2))
+        return cls(empty, empty, np.zeros((count, 0)), np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.int64))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObservationBatch:
+    """Input of a decision of one robot in N environments at once; :meth:`environment` returns one of them.
+
+    The values are not checked here: an environment with a value that is not finite fails alone, in
+    :meth:`crowdbot.navigation.Navigator.decide_batch`.
+
+    Fields:
+        pose: ``[N, 3]`` x, y [m] and heading [rad].
+        goal: ``[N, 2]`` [m].
+        radius: ``[N]`` radius of the robot [m].
+        limits: limits of the drive.
+        dt: time until the next decision [s].
+        twist: ``[N, 3]`` current forward [m/s], turn [rad/s], left [m/s]; default 0.
+        people: visible people and other robots; default nobody.
+        walls: walls of the stage.
+        time: ``[N]`` simulated time [s]; default 0.
+        waypoint: ``[N, 2]`` next point of each planned path [m]; default: the goals.
+        readings: latest reading of each sensor by name, with N rows.
+        arrived: ``[N]`` bool by name of a sensor, whether its reading has arrived in the environment; a sensor that is
+            not listed has a reading everywhere.
+        tracks: N histories of the visible people, or empty.
+
+    Raises:
+        InputError: a shape is wrong.
+
+    >>> goals = np.array([[4.0, 0.0], [0.0, 4.0]])
+    >>> batch = ObservationBatch(
+    ...     pose=np.zeros((2, 3)), goal=goals, radius=np.full(2, 0.3), limits=DriveLimits(1.0, 2.0), dt=0.1
+    ... )
+    >>> len(batch), batch.environment(1).goal
+    (2, (0.0, 4.0))
+    """
+
+    pose: Floats
+    goal: Floats
+    radius: Floats
+    limits: DriveLimits
+    dt: float
+    twist: Floats = field(default_factory=lambda: np.zeros(0))
+    people: AgentsInView = field(default_factory=lambda: AgentsInView.none(0))
+    walls: Walls = field(default_factory=Walls.of)
+    time: Floats = field(default_factory=lambda: np.zeros(0))
+    waypoint: Floats = field(default_factory=lambda: np.zeros(0))
+    readings: Mapping[str, Reading] = field(default_factory=dict)
+    arrived: Mapping[str, Bools] = field(default_factory=dict)
+    tracks: Sequence[TrackHistory] = ()
+
+    def __post_init__(self) -> None:
+        N = len(self.pose)
+        for name, empty in (("twist", (N, 3)), ("time", (N,))):
+            if getattr(self, name).size == 0:
+                object.__setattr__(self, name, np.zeros(empty))
+        if self.waypoint.size == 0:
+            object.__setattr__(self, "waypoint", self.goal)
+        if len(self.people.radius) == 0:
+            object.__setattr__(self, "people", AgentsInView.none(N))
+        for name, shape in (("pose", 3), ("goal", 2), ("waypoint", 2), ("twist", 3), ("radius", 0), ("time", 0)):
+            _require(self, name, (N, shape) if shape else (N,))
+        A = self.people.radius.shape[-1]
+        for name, kind in (("position", 2), ("velocity", 2), ("radius", 0), ("seen", 0), ("ids", 0)):
+            _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, np.float64))
+        if len(self.tracks) not in (0, N):
+            raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        robot: int,
+        limits: DriveLimits,
+        *,
+        dt: float,
+        twist: Floats,
+        seen: Bools | None = None,
+        environments: NDArray[np.int64] | None = None,
+        **others: Any,
+    ) -> ObservationBatch:
+        """Return the observations of a robot in a scene, with the true state of the visible people.
+
+        Args:
+            scene: current scene of E environments, with the goal of the robot.
+            robot: index of the robot.
+            limits: limits of its drive.
+            dt: time until the next decision [s].
+            twist: ``[E, 3]`` current forward, turn, left.
+            seen: ``[E, A]`` visible agents; default all.
+            environments: ``[N]`` environments in which the robot decides; default all E.
+            others: ``waypoint``, ``readings``, ``arrived``, ``tracks`` and ``time`` of the N environments; ``ids``
+                ``[E, A]`` of all agents (default: indices).
+
+        >>> scene = Scene.of([[[0.0, 0.0], [2.0, 0.0]]] * 3, goal=[[[9.0, 0.0], [0.0, 0.0]]] * 3)
+        >>> batch = ObservationBatch.of(scene, 0, DriveLimits(1.0, 2.0), dt=0.1, twist=np.zeros((3, 3)),
+        ...     environments=np.array([0, 2]))
+        >>> batch.people.seen.tolist()
+        [[False, True], [False, True]]
+        """
+        E, A = scene.shape
+        which = np.arange(E) if environments is None else np.asarray(environments, dtype=np.int64)
+        visible = scene.active[which] if seen is None else scene.active[which] & seen[which]
+        visible[:, robot] = False
+        ids = others.pop("ids", None)
+        numbers = np.broadcast_to(np.arange(A), (len(which), A)) if ids is None else ids[which]
+        return cls(
+            pose=np.column_stack([scene.position[which, robot], scene.heading[which, robot]]),
+            goal=scene.goal[which, robot],
+            radius=scene.radius[which, robot],
+            limits=limits,
+            dt=dt,
+            twist=twist[which],
+            people=AgentsInView(scene.position[which], scene.velocity[which], scene.radius[which], visible, numbers),
+            walls=scene.walls,
+            **{"time": np.broadcast_to(scene.time, (E,))[which], **others},
+        )
+
+    def __len__(self) -> int:
+        """Return the number of environments."""
+        return len(self.pose)
+
+    def environment(self, k: int) -> Observation:
+        """Return the observation in environment ``k``, 0 to N - 1.
+
+        Raises:
+            InputError: a number of this environment is not finite or not above 0, as in :class:`Observation`.
+        """
+        seen = self.people.seen[k]
+        forward, turn, left = self.twist[k].tolist()
+        x, y, heading = self.pose[k].tolist()
+        readings = {
+            name: reading_of(reading, k, len(self))
+            for name, reading in self.readings.items()
+            if name not in self.arrived or self.arrived[name][k]
+        }
+        return Observation(
+            pose=(x, y, heading),
+            goal=(float(self.goal[k, 0]), float(self.goal[k, 1])),
+            radius=float(self.radius[k]),
+            limits=self.limits,
+            dt=self.dt,
+            twist=Twist(forward, turn, left),
+            people=VisiblePeople(
+                self.people.position[k, seen],
+                self.people.velocity[k, seen],
+                self.people.radius[k, seen],
+                self.people.ids[k, seen],
+            ),
+            walls=self.walls,
+            time=float(self.time[k]),
+            readings=readings,
+            waypoint=(float(self.waypoint[k, 0]), float(self.waypoint[k, 1])),
+            tracks=self.tracks[k] if self.tracks else None,
+        )
+
+
+def _require(owner: Any, name: str, shape: tuple[int, ...], kind: Any = np.float64) -> None:
+    """Check the shape of an array field and make it fit for kernels: of one type, C-contiguous and writeable."""
+    value = getattr(owner, name)
+    if value.shape != shape:
+        raise InputError(
+            f"observations: {name} has shape {list(value.shape)}, it must be {list(shape)} in {shape[0]} environments"
+        )
+    if value.dtype != kind or not value.flags.carray:
+        object.__setattr__(owner, name, np.require(value, kind, ["C", "W"]))
+
+
+def reading_of(reading: Reading, k: int, count: int) -> Reading:
+    """Return the reading of environment ``k`` of ``count``, with one row.
+
+    Poses have one row for each environment. An array whose first axis has the length ``count`` is by environment,
+    except 1-D ``angles``, ``elevation`` and ``azimuth``, which describe beams.
+
+    Raises:
+        InputError: the reading has another number of rows.
+    """
+    rows = len(reading.pose.position)
+    if rows != count:
+        raise InputError(f"observations: a {type(reading).__name__} has {rows} rows, it must have {count}")
+    changes: dict[str, Any] = {}
+    for part in dataclasses.fields(reading):
+        value = getattr(reading, part.name)
+        if isinstance(value, Pose):
+            changes[part.name] = Pose(value.position[k : k + 1], value.heading[k : k + 1])
+        elif isinstance(value, SpatialPose):
+            changes[part.name] = SpatialPose(value.position[k : k + 1], value.rotation[k : k + 1])
+        elif isinstance(value, np.ndarray) and value.shape[:1] == (count,) and part.name not in BEAMS:
+            changes[part.name] = value[k : k + 1]
+    return dataclasses.replace(reading, **changes)
+
+
+BEAMS = ("angles", "elevation", "azimuth")
+"""Fields of readings that are shared by the environments."""

@@ -1,0 +1,136 @@
+"""PathPlanner: shortest paths of a robot around the walls of a stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError, Walls, check_number
+from crowdbot.world import Router
+
+__all__ = ["PathPlanner", "Waypoints"]
+
+Floats = NDArray[np.float64]
+
+MARGIN = 0.1
+"""Default distance [m] between a robot on its path and the walls."""
+COLUMNS = 9
+"""Numbers of the state of a path; NaN before it is planned."""
+MOST_POINTS = 10_000
+"""Largest number of points of a path."""
+
+
+class Waypoints(NamedTuple):
+    """The next points of the paths of N robots."""
+
+    point: Floats
+    """``[N, 2]`` [m], in sight of the robot; NaN where there is no path."""
+    path: Floats
+    """``[N, 9]`` state of the paths, an argument of the next call; plain numbers that can be copied."""
+    failures: dict[int, InputError]
+    """Robots without a path, by index 0 to N - 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class PathPlanner:
+    """Shortest paths for the centre of a disc among walls, computed once for a stage; see :meth:`of`.
+
+    Paths consist of straight lines between points near the corners of walls (visibility graph). People are no
+    obstacles: avoiding them is the task of the navigator.
+
+    Fields:
+        radius: radius of the robot [m].
+        margin: distance between a robot on its path and the walls [m].
+        walls: the walls.
+
+    >>> planner = PathPlanner.of([[(2.0, -3.0), (2.0, 1.0)]], radius=0.3, margin=0.1)
+    >>> planner.waypoints((0.0, 0.0), (4.0, 0.0)).round(2).tolist()
+    [[1.83, 1.4], [2.17, 1.4], [4.0, 0.0]]
+    """
+
+    radius: float
+    margin: float
+    walls: Walls = field(repr=False)
+    _router: Router = field(repr=False)
+
+    @classmethod
+    def of(cls, walls: Walls | ArrayLike, radius: float, margin: float = MARGIN) -> PathPlanner:
+        """Create the planner of a robot from walls (anything that :meth:`crowdbot.core.Walls.of` takes).
+
+        Raises:
+            InputError: a value is out of its range, or no space between the walls is wide enough.
+        """
+        check_number("PathPlanner", "radius", radius, "m", exclusive_min=0.0)
+        check_number("PathPlanner", "margin", margin, "m", min=0.0)
+        rings = Walls.of(walls)  # type: ignore[arg-type]
+        return cls(radius, margin, rings, Router.of(rings, radius + margin))
+
+    def waypoints(self, position: ArrayLike, goal: ArrayLike) -> Floats:
+        """Return the points ``[K, 2]`` [m] of the shortest path after the position; the last point is the goal.
+
+        Args:
+            position, goal: x, y [m].
+
+        Raises:
+            InputError: there is no path, or a number is not finite.
+        """
+        here, end = np.array(position, dtype=np.float64), np.array(goal, dtype=np.float64)
+        if here.shape != (2,) or end.shape != (2,):
+            raise InputError(
+                f"PathPlanner: position and goal have shapes {list(here.shape)} and {list(end.shape)}, they must be [2]"
+            )
+        points: list[Floats] = []
+        path: Floats | None = None
+        while not points or np.any(points[-1] != end):
+            if len(points) == MOST_POINTS:
+                raise InputError(f"PathPlanner: the path has more than {MOST_POINTS} points")
+            found = self.next_waypoints(here[None], end[None], path)
+            for error in found.failures.values():
+                raise error
+            here, path = found.point[0], found.path
+            points.append(here)
+        return np.array(points)
+
+    def next_waypoints(self, position: Floats, goal: Floats, path: Floats | None = None) -> Waypoints:
+        """Return the next points of the paths of N robots; following an existing path is fast.
+
+        A path bends to the next point as soon as it is in sight. If the goal is in sight, it is the next point.
+
+        Args:
+            position, goal: ``[N, 2]`` [m].
+            path: ``[N, 9]`` state from the previous call; None plans new paths. A robot that left its path, or whose
+                goal moved, gets a new one.
+
+        A robot without a path is a failure of its own; the others are not affected.
+        """
+        place, aim = np.asarray(position, dtype=np.float64), np.asarray(goal, dtype=np.float64)
+        if place.ndim != 2 or place.shape[1] != 2 or aim.shape != place.shape:
+            raise InputError(
+                f"PathPlanner: position and goal have shapes {list(place.shape)} and {list(aim.shape)}, they must be"
+                " equal and [N, 2]"
+            )
+        try:
+            return self._follow(place, aim, path)
+        except InputError:
+            return self._follow_each(place, aim, path)
+
+    def _follow(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
+        if not (np.all(np.isfinite(place)) and np.all(np.isfinite(aim))):
+            raise InputError(f"PathPlanner: a position or goal is not finite: {place.tolist()} to {aim.tolist()}")
+        ways = self._router.follow(place[:, None], aim[:, None], None if path is None else path[:, None])
+        return Waypoints(ways.subgoal[:, 0], ways.way[:, 0], {})
+
+    def _follow_each(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
+        """Follow the paths one by one, since one of them fails."""
+        N = len(place)
+        found = Waypoints(np.full((N, 2), np.nan), np.full((N, COLUMNS), np.nan) if path is None else path.copy(), {})
+        for k in range(N):
+            try:
+                one = self._follow(place[k : k + 1], aim[k : k + 1], None if path is None else path[k : k + 1])
+                found.point[k], found.path[k] = one.point[0], one.path[0]
+            except InputError as error:
+                found.failures[k] = InputError(f"PathPlanner: no path: {error}")
+        return found

@@ -1,0 +1,145 @@
+"""Orders that add, remove, move and redirect people and robots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from crowdbot.core import InputError
+from crowdbot.world import (
+    add_person,
+    check_goal,
+    check_place,
+    check_room,
+    move_agent,
+    redirect_person,
+    remove_person,
+    slot_of,
+)
+
+from .orders import Order, OrderTarget
+
+__all__ = ["AddPersonOrder", "MoveOrder", "RedirectOrder", "RemoveOrder"]
+
+FASTEST, WIDEST = 20.0, 5.0
+"""Largest preferred speed [m/s] and radius [m] of a person."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddPersonOrder(Order):
+    """Add a person, who gets the next free id.
+
+    Fields:
+        x, y: position [m].
+        goal_x, goal_y: goal [m].
+        speed: preferred speed [m/s].
+        radius: [m].
+    """
+
+    x: float
+    y: float
+    goal_x: float
+    goal_y: float
+    speed: float = 1.34
+    radius: float = 0.25
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if a value is not allowed, or the goal cannot be reached."""
+        super().check(simulation)
+        for name, value, most in (("speed", self.speed, FASTEST), ("radius", self.radius, WIDEST)):
+            if not 0.0 < value <= most:
+                raise InputError(f"AddPersonOrder: {name} = {value} must be above 0 and at most {most:g}")
+        check_goal(simulation.world, (self.x, self.y), (self.goal_x, self.goal_y), self.environment)
+        check_room(simulation.world, self.environment)
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Add the person."""
+        place, goal = (float(self.x), float(self.y)), (float(self.goal_x), float(self.goal_y))
+        add_person(simulation.world, place, goal, float(self.speed), float(self.radius), self.environment)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RemoveOrder(Order):
+    """Remove a person.
+
+    Fields:
+        person: id of the person.
+    """
+
+    person: int
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if the person is not present, or is a robot."""
+        super().check(simulation)
+        _check_person(simulation, self.person, self.environment)
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Remove the person, who may have left in the meantime."""
+        if _is_present(simulation, self.person, self.environment):
+            remove_person(simulation.world, self.person, self.environment)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveOrder(Order):
+    """Move a person or robot to another place, at rest.
+
+    Fields:
+        person: id of the person or robot.
+        x, y: position [m].
+        heading: [rad]; None keeps the heading.
+    """
+
+    person: int
+    x: float
+    y: float
+    heading: float | None = None
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if nobody with this id is present, or a value is not allowed."""
+        super().check(simulation)
+        check_place(self.x, self.y)
+        check_place(self.heading or 0.0, 0.0)
+        slot_of(simulation.world, self.person, self.environment)
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Move the person or robot."""
+        if _is_present(simulation, self.person, self.environment):
+            heading = None if self.heading is None else float(self.heading)
+            move_agent(simulation.world, self.person, float(self.x), float(self.y), heading, self.environment)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RedirectOrder(Order):
+    """Give a person another goal, instead of their journey.
+
+    Fields:
+        person: id of the person.
+        x, y: goal [m].
+    """
+
+    person: int
+    x: float
+    y: float
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if the person is not present, or cannot reach the goal."""
+        super().check(simulation)
+        slot = _check_person(simulation, self.person, self.environment)
+        x, y = simulation.world.scene.position[self.environment, slot].tolist()
+        check_goal(simulation.world, (x, y), (self.x, self.y), self.environment)
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Give the person the goal."""
+        if _is_present(simulation, self.person, self.environment):
+            redirect_person(simulation.world, self.person, float(self.x), float(self.y), self.environment)
+
+
+def _check_person(simulation: OrderTarget, person: int, environment: int) -> int:
+    slot = slot_of(simulation.world, person, environment)
+    if slot in simulation.world.twists:
+        raise InputError(f"{person} is the id of a robot; give the id of a person")
+    return slot
+
+
+def _is_present(simulation: OrderTarget, person: int, environment: int) -> bool:
+    world = simulation.world
+    return bool((world.scene.active[environment] & (world.ids[environment] == person)).any())

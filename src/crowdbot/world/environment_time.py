@@ -1,0 +1,87 @@
+"""Time of each environment of a world: the steps since it began, on a common clock."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Clock, FreeClock
+
+__all__ = ["EnvironmentTime"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass
+class EnvironmentTime:
+    """The time of E environments that share a clock and may begin at different ticks.
+
+    Fields:
+        clock: the clock of the world.
+        first_tick: ``[E]`` tick of the clock at which an environment began.
+        begin: ``[E]`` time of the scene at that tick [s].
+
+    >>> from crowdbot.core import FreeClock
+    >>> time = EnvironmentTime.of(FreeClock(0.5), 0.0, 2)
+    >>> time.clock.advance()
+    >>> time.put([1], EnvironmentTime.of(FreeClock(0.5), 3.0, 1))
+    >>> time.clock.advance()
+    >>> time.ticks.tolist(), time.age.tolist(), time.now.tolist()
+    ([2, 1], [1.0, 0.5], [1.0, 3.5])
+    """
+
+    clock: Clock
+    first_tick: Ints
+    begin: Floats
+
+    @classmethod
+    def of(cls, clock: Clock, begin: float | Floats, count: int) -> EnvironmentTime:
+        """Return the time of environments that begin now, with scenes at a time [s]."""
+        offset = np.broadcast_to(np.asarray(begin, dtype=np.float64), (count,)).copy()
+        return cls(clock, np.full(count, clock.tick, dtype=np.int64), offset)
+
+    @property
+    def ticks(self) -> Ints:
+        """Number of steps since each environment began, ``[E]``."""
+        return self.clock.tick - self.first_tick
+
+    @property
+    def age(self) -> Any:
+        """Time since the beginning [s]: a number if all environments agree, otherwise ``[E]``."""
+        first = self.first_tick
+        if len(first) == 1 or bool((first == first[0]).all()):
+            return (self.clock.tick - int(first[0])) * self.clock.step_ns / 1e9
+        return self.ticks * self.clock.step_ns / 1e9
+
+    @property
+    def now(self) -> Any:
+        """Time of the scenes [s]: a number if all environments agree, otherwise ``[E]``."""
+        begin = self.begin
+        same = len(begin) == 1 or bool((begin == begin[0]).all())
+        return (float(begin[0]) if same else begin) + self.age
+
+    def follow(self, clock: Clock) -> None:
+        """Continue on another clock with the same time step; the time of the environments stays."""
+        self.first_tick, self.clock = clock.tick - self.ticks, clock
+
+    def select(self, environments: Sequence[int] | Ints) -> EnvironmentTime:
+        """Return the time of some environments, on a free clock at the same tick."""
+        index = np.asarray(environments, dtype=np.int64)
+        return EnvironmentTime(FreeClock(self.clock.dt, self.clock.tick), self.first_tick[index], self.begin[index])
+
+    def join(self, others: Sequence[EnvironmentTime]) -> EnvironmentTime:
+        """Return the time of these environments and those of others, on the clock of this one."""
+        ticks = np.concatenate([one.ticks for one in (self, *others)])
+        begin = np.concatenate([one.begin for one in (self, *others)])
+        return EnvironmentTime(self.clock, self.clock.tick - ticks, begin)
+
+    def put(self, environments: Sequence[int] | Ints, other: EnvironmentTime) -> None:
+        """Replace the time of some environments by that of another world."""
+        index = np.asarray(environments, dtype=np.int64)
+        self.first_tick[index] = self.clock.tick - other.ticks
+        self.begin[index] = other.begin

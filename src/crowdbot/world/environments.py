@@ -1,0 +1,93 @@
+"""Environments of worlds of either kind: join worlds, select environments, replace some, and step all that can."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import MissingExtra, Twist
+
+from . import planar_environments as planar
+from .environment_time import EnvironmentTime
+from .robots.drive import Twists
+from .world import World
+
+__all__ = ["join_worlds", "put_environments", "select_environments", "step_environments"]
+
+Ints = NDArray[np.int64]
+
+
+def join_worlds(worlds: Sequence[World]) -> World:
+    """Return one world with the environments of several worlds of the same trial, on the clock of the first.
+
+    The worlds must not be used any more.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.world import PlanarWorld
+    >>> parts = [PlanarWorld(Scene.of([[float(k), 0.0]]), ORCA(), {}, dt=0.1, seed=k) for k in range(3)]
+    >>> join_worlds(parts).step({}).position[:, 0].tolist()
+    [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]
+    """
+    if len(worlds) == 1:
+        return worlds[0]
+    if worlds[0].walls_fixed:
+        from .physics.batch import PhysicsBatch, physics_worlds
+
+        return PhysicsBatch([one for world in worlds for one in physics_worlds(world)], worlds[0].clock)
+    parts: Any = worlds
+    return planar.join_worlds(parts)
+
+
+def select_environments(world: World, environments: Sequence[int] | Ints) -> World:
+    """Return an independent world with some environments, which may be repeated, on a free clock."""
+    anything: Any = world
+    if not world.walls_fixed:
+        return planar.select_environments(anything, environments)
+    if len(world.slots) > 1:
+        selected: World = anything.select(environments)
+        return selected
+    copies = [anything.copy() for _ in environments]
+    return join_worlds(copies)
+
+
+def put_environments(world: World, environments: Sequence[int] | Ints, other: World) -> World:
+    """Return the world with some environments replaced by those of another, which must not be used any more."""
+    anything: Any = world
+    if not world.walls_fixed:
+        new: Any = other
+        planar.put_environments(anything, environments, new)
+    elif len(world.slots) > 1:
+        anything.put(environments, other)
+    else:
+        clock = world.clock
+        other.environment_time = EnvironmentTime(clock, clock.tick - other.ticks, other.environment_time.begin)
+        return other
+    return world
+
+
+def step_environments(world: World, commands: Mapping[int, Twist | Twists]) -> tuple[World, dict[int, Exception]]:
+    """Advance all environments by one step; return the world, and the exceptions of environments that could not.
+
+    An environment with an exception keeps its state, and loses its agents if there are others.
+
+    Raises:
+        MissingExtra: a package is not installed.
+    """
+    anything: Any = world
+    if world.walls_fixed and len(world.slots) > 1:
+        return world, anything.try_step(commands)
+    undo = planar.undo_point(anything) if len(world.slots) > 1 else None
+    try:
+        world.step(commands)
+    except MissingExtra:
+        raise
+    except Exception as error:  # crowd models may raise anything
+        if undo is None:
+            return world, {0: error}
+        undo()
+        return planar.step_one_by_one(anything, commands)
+    return world, {}

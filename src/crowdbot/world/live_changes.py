@@ -1,0 +1,175 @@
+"""Changes of the people and robots of a running world, between two steps."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+
+from .crowd.environment_rows import pad_scene
+from .crowd.journey import JOURNEY, STOP
+from .crowd.routing import WAY, fresh
+from .crowd.source import TOP
+from .planar_environments import pad_ids, set_models
+from .world import World
+
+__all__ = [
+    "add_person",
+    "check_goal",
+    "check_place",
+    "check_room",
+    "move_agent",
+    "redirect_person",
+    "remove_person",
+    "slot_of",
+]
+
+FARTHEST = 1e6
+"""Largest coordinate [m] of a person."""
+
+
+def slot_of(world: World, person: int, environment: int = 0) -> int:
+    """Return the index of a present person or robot in the scene.
+
+    Raises:
+        InputError: nobody with this id is present.
+    """
+    there = world.scene.active[environment] & (world.ids[environment] == person)
+    found = np.flatnonzero(there)
+    if not len(found):
+        known = np.sort(world.ids[environment][world.scene.active[environment]]).tolist()
+        some = ", ".join(map(str, known[:10])) + (", ..." if len(known) > 10 else "")
+        raise InputError(f"there is nobody with the id {person}; present are {some or 'none'}")
+    return int(found[0])
+
+
+def check_place(x: float, y: float) -> None:
+    """Raise :class:`InputError` if a position [m] is not finite, or too far away."""
+    if not (math.isfinite(x) and math.isfinite(y) and max(abs(x), abs(y)) <= FARTHEST):
+        raise InputError(f"the position x = {x}, y = {y} m must be finite and at most {FARTHEST:g} m away from 0")
+
+
+def check_goal(world: World, position: tuple[float, float], goal: tuple[float, float], environment: int = 0) -> None:
+    """Raise :class:`InputError` if a goal cannot be reached from a position, in a world with routing."""
+    check_place(*position)
+    check_place(*goal)
+    router = getattr(_own(world, environment), "router", None)
+    if router is not None:
+        router.towards(position, goal)
+
+
+def remove_person(world: World, person: int, environment: int = 0) -> None:
+    """Remove a person or robot from the scene.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.world import PlanarWorld
+    >>> world = PlanarWorld(Scene.of([[0.0, 0.0], [3.0, 0.0]]), ORCA(), {}, dt=0.1)
+    >>> remove_person(world, 1)
+    >>> world.scene.active.tolist()
+    [[True, False]]
+    """
+    _put(world, environment, slot_of(world, person, environment), active=False)
+
+
+def move_agent(world: World, person: int, x: float, y: float, heading: float | None, environment: int = 0) -> None:
+    """Move a person or robot to a position [m] and heading [rad] (default: the old heading), at rest."""
+    slot = slot_of(world, person, environment)
+    changes: dict[str, Any] = {"position": (x, y), "velocity": 0.0}
+    if heading is not None:
+        changes["heading"] = math.pi - (math.pi - heading) % (2.0 * math.pi)
+    _put(world, environment, slot, **changes)
+
+
+def redirect_person(world: World, person: int, x: float, y: float, environment: int = 0) -> None:
+    """Give a person another goal [m], instead of their journey."""
+    slot = slot_of(world, person, environment)
+    memory = {JOURNEY: -1.0} if JOURNEY in world.scene.memory else {}
+    _put(world, environment, slot, memory, goal=(x, y))
+
+
+def add_person(
+    world: World, position: tuple[float, float], goal: tuple[float, float], speed: float, radius: float,
+    environment: int = 0,
+) -> int:  # fmt: skip
+    """Add a person who walks to a goal, and return the id.
+
+    Args:
+        world: the world.
+        position, goal: x, y [m].
+        speed: preferred speed [m/s].
+        radius: [m].
+        environment: index of the environment.
+
+    Raises:
+        InputError: the world has bodies, and all of them are in use.
+    """
+    slot = _free_slot(world, environment)
+    own = _own(world, environment)
+    row = environment if own is world else 0
+    flow = own._traffic
+    person = int(flow.following[row])
+    flow.ids[row, slot] = person
+    flow.following[row] += 1
+    away = np.array(goal) - np.array(position)
+    ahead = away / max(float(np.hypot(*away)), 1e-12)
+    memory: dict[str, Any] = dict.fromkeys(world.scene.memory, 0.0)
+    start = {JOURNEY: -1.0, STOP: 0.0, WAY: fresh((1, 1))[0, 0], **own.model.memory_at_start}
+    memory |= {name: value for name, value in start.items() if name in memory}
+    _put(
+        world, environment, slot, memory, position=position, velocity=ahead * speed, goal=goal, radius=radius,
+        heading=math.atan2(*ahead[::-1].tolist()), preferred_speed=speed, max_speed=TOP * speed, active=True,
+        visible=True, external=False, group=-1,
+    )  # fmt: skip
+    return person
+
+
+def check_room(world: World, environment: int = 0) -> None:
+    """Raise :class:`InputError` if nobody can be added: in a world with bodies, all may be in use."""
+    slots = int(world.slots[environment])
+    free = ~world.scene.active[environment, :slots] & ~world.scene.external[environment, :slots]
+    if not free.any() and (world.walls_fixed or _own(world, environment)._bodies is not None):
+        raise InputError(
+            "nobody can be added: every body of this world is in use; a source in the trial provides more bodies"
+        )
+
+
+def _own(world: Any, environment: int) -> Any:
+    """Return the world that holds an environment."""
+    return world.worlds[environment] if hasattr(world, "worlds") else world
+
+
+def _free_slot(world: World, environment: int) -> int:
+    """Return an index without an agent; the arrays of a world without bodies grow."""
+    scene, slots = world.scene, int(world.slots[environment])
+    free = np.flatnonzero(~scene.active[environment, :slots] & ~scene.external[environment, :slots])
+    if len(free):
+        return int(free[0])
+    check_room(world, environment)
+    own = _own(world, environment)
+    if slots == scene.shape[1]:
+        agents = slots + 1
+        world.scene, own._previous = pad_scene(scene, agents), pad_scene(own._previous, agents)
+        own._traffic.ids = pad_ids(own._traffic.ids, agents)
+        own.ids = own._traffic.ids
+        set_models(own, [own.model] * len(own.slots) if own._models is None else own._models)
+    own.slots[environment] = slots + 1
+    return slots
+
+
+def _put(world: World, environment: int, slot: int, memory: Any = None, **values: Any) -> None:
+    """Set values of one agent."""
+    scene = world.scene
+
+    def changed(array: NDArray[Any], value: Any) -> NDArray[Any]:
+        copy = array.copy()
+        copy[environment, slot] = value
+        return copy
+
+    arrays = {name: changed(getattr(scene, name), value) for name, value in values.items()}
+    kept = dict(scene.memory) | {name: changed(scene.memory[name], value) for name, value in (memory or {}).items()}
+    world.scene = scene.replace(**arrays, memory=kept)

@@ -1,0 +1,252 @@
+"""Environments of planar worlds: join worlds, select environments, and replace some by new ones."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import MissingExtra, Twist
+
+from .crowd.environment_rows import (
+    join_models,
+    pad_scene,
+    put_arrays,
+    put_scene,
+    stack_scenes,
+    take_arrays,
+    works_in_batches,
+)
+from .crowd.people_flow import PeopleFlow
+from .planar import PlanarWorld
+from .robots.drive import Twists
+from .robots.servo import Pending
+
+__all__ = [
+    "join_worlds",
+    "pad_ids",
+    "put_environments",
+    "select_environments",
+    "set_models",
+    "step_one_by_one",
+    "undo_point",
+]
+
+Ints = NDArray[np.int64]
+Delayed = Mapping[int, tuple[tuple[Pending, ...], Twist | Twists]]
+
+
+def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
+    """Return one world with the environments of several worlds of the same trial, on the clock of the first.
+
+    Worlds with fewer agents are padded with absent ones. The worlds must not be used any more.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> parts = [PlanarWorld(Scene.of([[float(k), 0.0]]), ORCA(), {}, dt=0.1, seed=k) for k in range(3)]
+    >>> join_worlds(parts).step({}).position[:, 0].tolist()
+    [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]
+    """
+    first = worlds[0]
+    if len(worlds) == 1:
+        return first
+    whole = copy.copy(first)
+    whole.scene = stack_scenes([world.scene for world in worlds])
+    whole._previous = stack_scenes([world._previous for world in worlds]).replace(walls=whole.scene.walls)
+    whole.environment_time = first.environment_time.join([world.environment_time for world in worlds[1:]])
+    whole._rngs = [rng for world in worlds for rng in world._rngs]
+    set_models(whole, [model for world in worlds for model in _models(world)])
+    _set_flow(whole, _join_flows([world._traffic for world in worlds], whole.scene.shape[1]))
+    whole.twists = {robot: _concatenated([world.twists[robot] for world in worlds]) for robot in first.twists}
+    whole._delayed = _join_delays(worlds)
+    whole.slots = np.concatenate([world.slots for world in worlds])
+    whole.contacts, begin = (), 0
+    for world in worlds:
+        whole.contacts += tuple(one._replace(environment=begin + one.environment) for one in world.contacts)
+        begin += len(world.slots)
+    if first._bodies is not None:
+        whole._bodies = [bodies for world in worlds for bodies in world._bodies or ()]
+    return whole
+
+
+def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) -> PlanarWorld:
+    """Return an independent world with some environments; an environment may be selected more than once."""
+    index = np.asarray(environments, dtype=np.int64)
+    some = copy.copy(world)
+    some.scene = world.scene.environments(index)
+    some._previous = world._previous.environments(index)
+    some.environment_time = world.environment_time.select(index)
+    some._rngs = [copy.deepcopy(world._rngs[e]) for e in index]
+    set_models(some, [_models(world)[e] for e in index])
+    flow = world._traffic
+    arrivals = None if flow.arrivals is None else flow.arrivals.select(index.tolist())
+    changed: dict[str, Any] = {name: getattr(flow, name)[index] for name in ("seeds", "ids", "following")}
+    _set_flow(some, dataclasses.replace(flow, arrivals=arrivals, **changed))
+    some.twists = {robot: take_arrays(twists, index) for robot, twists in world.twists.items()}
+    some._delayed = {robot: _take_delay(delay, index, world) for robot, delay in world._delayed.items()}
+    some.slots = world.slots[index]
+    rows: dict[int, list[int]] = {}
+    for k, e in enumerate(index.tolist()):
+        rows.setdefault(e, []).append(k)
+    contacts = (one._replace(environment=k) for one in world.contacts for k in rows.get(one.environment, ()))
+    some.contacts = tuple(sorted(contacts))
+    if world._bodies is not None:
+        some._bodies = [world._bodies[e].copy() for e in index]
+    return some
+
+
+def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, other: PlanarWorld) -> None:
+    """Replace some environments of a running world by those of another world of the same trial."""
+    index = np.asarray(environments, dtype=np.int64)
+    agents = max(world.scene.shape[1], other.scene.shape[1])
+    walls = world.scene.walls
+    world.scene = put_scene(pad_scene(world.scene, agents), index, pad_scene(other.scene, agents)).replace(walls=walls)
+    before = put_scene(pad_scene(world._previous, agents), index, pad_scene(other._previous, agents))
+    world._previous = before.replace(walls=walls)
+    world.environment_time.put(index, other.environment_time)
+    models = list(_models(world))
+    flow, new = world._traffic, other._traffic
+    flow.ids = pad_ids(flow.ids, agents)
+    flow.ids[index] = pad_ids(new.ids, agents)
+    flow.seeds[index], flow.following[index] = new.seeds, new.following
+    if flow.arrivals is not None and new.arrivals is not None:
+        flow.arrivals.put(index.tolist(), new.arrivals)
+    _set_flow(world, flow)
+    for k, e in enumerate(index.tolist()):
+        world._rngs[e] = other._rngs[k]
+        models[e] = _models(other)[k]
+        if world._bodies is not None and other._bodies is not None:
+            world._bodies[e] = other._bodies[k]
+    if any(model is not models[0] for model in models):
+        set_models(world, models)
+    world.slots[index] = other.slots
+    world.twists = {robot: put_arrays(twists, index, other.twists[robot]) for robot, twists in world.twists.items()}
+    world._delayed = {robot: _reset_delay(delay, index, world) for robot, delay in world._delayed.items()}
+    fresh = set(index.tolist())
+    world.contacts = tuple(one for one in world.contacts if one.environment not in fresh)
+
+
+def undo_point(world: PlanarWorld) -> Callable[[], None]:
+    """Return a function that takes back the next step."""
+    kept = {name: getattr(world, name) for name in ("scene", "_previous", "contacts")}
+    twists, delayed, tick = dict(world.twists), dict(world._delayed), world.clock.tick
+    ids, following = world._traffic.ids.copy(), world._traffic.following.copy()
+    rngs = None if works_in_batches(world.model) else copy.deepcopy(world._rngs)
+
+    def undo() -> None:
+        world._rngs = rngs or world._rngs
+        for name, value in kept.items():
+            setattr(world, name, value)
+        world.twists, world._delayed, world.clock.tick = twists, delayed, tick
+        world._traffic.ids[:], world._traffic.following[:] = ids, following
+
+    return undo
+
+
+def step_one_by_one(
+    world: PlanarWorld, commands: Mapping[int, Twist | Twists]
+) -> tuple[PlanarWorld, dict[int, Exception]]:
+    """Advance each environment alone; return the world, and the exceptions of environments, which lose their agents."""
+    parts, errors, count = [], {}, len(world.slots)
+    wide = {robot: Twists.of(command, count) for robot, command in commands.items()}
+    for e in range(count):
+        index = np.array([e])
+        part = select_environments(world, index)
+        try:
+            part.step({robot: take_arrays(command, index) for robot, command in wide.items()})
+        except MissingExtra:
+            raise
+        except Exception as error:  # told to the caller
+            errors[e] = error
+            part.scene = part.scene.replace(active=np.zeros_like(part.scene.active))
+        parts.append(part)
+    clock = world.clock
+    clock.advance()
+    whole = join_worlds(parts)
+    whole.clock = clock
+    return whole, errors
+
+
+def _models(world: PlanarWorld) -> list[Any]:
+    return world._models if world._models is not None else [world.model] * len(world.slots)
+
+
+def set_models(world: PlanarWorld, models: list[Any]) -> None:
+    """Set the model of each environment, as one model if a call for all equals a call for each."""
+    joined = join_models(models, world.scene.shape[1])
+    world._models = models
+    world.joined = joined is not None
+    world.model = models[0] if joined is None else joined
+
+
+def _set_flow(world: PlanarWorld, flow: PeopleFlow) -> None:
+    world._traffic = flow
+    world.ids = flow.ids
+
+
+def _join_flows(flows: Sequence[PeopleFlow], agents: int) -> PeopleFlow:
+    first = flows[0]
+    return dataclasses.replace(
+        first,
+        seeds=np.concatenate([flow.seeds for flow in flows]),
+        ids=np.concatenate([pad_ids(flow.ids, agents) for flow in flows]),
+        following=np.concatenate([flow.following for flow in flows]),
+        arrivals=None if first.arrivals is None else first.arrivals.join([f.arrivals for f in flows[1:] if f.arrivals]),
+    )
+
+
+def pad_ids(ids: Ints, agents: int) -> Ints:
+    """Return identities with unique negative ones for further slots."""
+    more = agents - ids.shape[1]
+    if more <= 0:
+        return ids
+    least = np.minimum(ids.min(axis=1, initial=0), 0)[:, None]
+    return np.concatenate([ids, least - 1 - np.arange(more)], axis=1)
+
+
+def _concatenated(twists: Sequence[Twists]) -> Twists:
+    names = [part.name for part in dataclasses.fields(twists[0])]
+    columns = {name: np.concatenate([getattr(one, name) for one in twists]) for name in names}
+    return dataclasses.replace(twists[0], **columns)
+
+
+def _wide(twist: Twist | Twists, count: int) -> Twists:
+    return Twists.of(twist, count)
+
+
+def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending, ...], Twist | Twists]]:
+    """Return the delayed commands of all worlds; worlds without pending commands have stopped robots."""
+    found: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
+    for robot in {robot for world in worlds for robot in world._delayed}:
+        rows = [world._delayed.get(robot, ((), Twist())) for world in worlds]
+        counts = [len(world.slots) for world in worlds]
+        most = max((pending for pending, _ in rows), key=len)
+        pending = []
+        for k in range(1, len(most) + 1):  # from the latest command backwards
+            parts = [
+                _wide(row[-k].command if k <= len(row) else Twist(), n)
+                for (row, _), n in zip(rows, counts, strict=True)
+            ]
+            pending.append(Pending(most[-k].wait, _concatenated(parts)))
+        now = _concatenated([_wide(command, n) for (_, command), n in zip(rows, counts, strict=True)])
+        found[robot] = (tuple(reversed(pending)), now)
+    return found
+
+
+def _take_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
+    pending, now = delay
+    count = len(world.slots)
+    rows = tuple(Pending(one.wait, take_arrays(_wide(one.command, count), index)) for one in pending)
+    return rows, take_arrays(_wide(now, count), index)
+
+
+def _reset_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
+    """Return delayed commands in which restarted robots stand still until their first command arrives."""
+    pending, now = delay
+    count, still = len(world.slots), _wide(Twist(), len(index))
+    rows = tuple(Pending(one.wait, put_arrays(_wide(one.command, count), index, still)) for one in pending)
+    return rows, put_arrays(_wide(now, count), index, still)
