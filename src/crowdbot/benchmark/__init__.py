@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 _MODULES = {
     "catalogue": ("builtin_names", "cite", "papers"),
     "demo": ("Demo", "run_demo"),
+    "environments": ("BenchmarkSizes", "EnvironmentReport", "EnvironmentRow", "PeerRate", "measure_environments"),
     "report": ("PredictionResult", "write_report"),
     "prediction": (
         "DegradedScore",
@@ -51,6 +52,11 @@ if TYPE_CHECKING:
     from .catalogue import papers as papers
     from .demo import Demo as Demo
     from .demo import run_demo as run_demo
+    from .environments import BenchmarkSizes as BenchmarkSizes
+    from .environments import EnvironmentReport as EnvironmentReport
+    from .environments import EnvironmentRow as EnvironmentRow
+    from .environments import PeerRate as PeerRate
+    from .environments import measure_environments as measure_environments
     from .prediction import DegradedScore as DegradedScore
     from .prediction import DegradedTask as DegradedTask
     from .prediction import Evaluation as Evaluation

@@ -4,13 +4,27 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from .output import add_json, number, print_json, print_table, progress
+from .output import add_json, json_text, note, number, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from crowdbot.benchmark import EnvironmentReport
+    from crowdbot.benchmark.environments.work_rate import WorkRate
+
+ENVIRONMENTS = "environments"
+"""Name of the benchmark of environments, which has tables of its own."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("names", metavar="NAME", nargs="*", help="measurements (default: all)")
+    parser.add_argument(
+        "names",
+        metavar="NAME",
+        nargs="*",
+        help=f"measurements (default: all), or {ENVIRONMENTS}: simulations of many environments, compared with"
+        " navground and ir-sim",
+    )
     parser.add_argument("--repeats", type=int, default=7, help="timed repetitions after a warm-up (default: 7)")
     parser.add_argument(
         "--data", type=Path, metavar="PATH", help="recording for scheme-frame (default: a simulated crowd)"
@@ -18,25 +32,89 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="FILE.json", help="output file for the measurements (default: none)"
     )
+    parser.add_argument(
+        "--quick", action="store_true", help=f"tiny counts for {ENVIRONMENTS}: a test of the command, not of the speed"
+    )
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Measure and print the rows."""
-    import json
-
     from crowdbot.benchmark import measure
-    from crowdbot.core import explain_write_errors
+    from crowdbot.core import InputError
 
+    if ENVIRONMENTS in options.names:
+        if len(options.names) > 1 or options.data is not None:
+            raise InputError(f"{ENVIRONMENTS} is measured alone, without other measurements and without --data")
+        return _measure_environments(options)
+    if options.quick:
+        raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS}; use --repeats 1")
     with progress(options.json) as report:
         rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
     table = [row.as_dict() for row in rows]
-    if options.out is not None:
-        with explain_write_errors(options.out):
-            options.out.write_text(json.dumps(table, indent=2) + "\n", encoding="utf-8")
+    _write(options.out, table)
     if options.json:
         print_json({"rows": table})
         return 0
     cells = [(r.name, number(r.median, 4 if r.median < 1 else 1), r.unit, r.against, number(r.ratio, 2)) for r in rows]
     print_table("speed", ("name", "median", "unit", "against", "ratio"), cells, caption=rows[0].environment)
     return 0
+
+
+def _write(path: Path | None, value: Any) -> None:
+    from crowdbot.core import explain_write_errors
+
+    if path is not None:
+        with explain_write_errors(path):
+            path.write_text(json_text(value) + "\n", encoding="utf-8")
+
+
+def _measure_environments(options: argparse.Namespace) -> int:
+    from crowdbot.benchmark import BenchmarkSizes, measure_environments
+
+    sizes = BenchmarkSizes.quick(options.repeats) if options.quick else BenchmarkSizes(repeats=options.repeats)
+    with progress(options.json) as report:
+        found = measure_environments(sizes, report)
+    _write(options.out, found.as_dict())
+    for sentence in found.missing.values():
+        note(f"crowdbot: {sentence}")
+    if options.json:
+        print_json(found.as_dict())
+    else:
+        _print_environments(found)
+    return 0
+
+
+def _print_environments(found: EnvironmentReport) -> None:
+    cells: list[tuple[str, ...]] = []
+    for row in found.rows:
+        cells.append((row.name, "crowdbot", *_rate(row.rate), row.unit, "", ""))
+        cells += [
+            ("", one.peer, *_rate(one.rate), row.unit, number(one.ratio_cpu, 2), number(one.ratio_wall, 2))
+            for one in row.peers
+        ]
+    head = ("name", "simulator", "per CPU s", "per wall s", "unit", "ratio CPU", "ratio wall")
+    print_table("environments", head, cells, caption=found.machine, words=2)
+    print("\n".join(f"{row.name}: {row.protocol}" for row in found.rows))
+    for peer, protocol in {one.peer: one.protocol for row in found.rows for one in row.peers}.items():
+        print(f"{peer}: {protocol}")
+    calls = [
+        (r.name, str(r.environments), number(r.python_calls, 1), number(r.builtin_calls, 1), number(r.ratio, 2))
+        for r in found.calls
+    ]
+    print_table("calls per step", ("name", "E", "Python", "compiled", "ratio"), calls)
+    trials = []
+    for one in found.trials:
+        if one.single is None or one.batch is None:
+            trials.append((one.name, "", "", "", "", "", one.reason))
+            continue
+        trials.append((one.name, str(one.agents), *_rate(one.single), *_rate(one.batch), number(one.ratio, 1)))
+    batch = f"E = {found.sizes.trial_environments}"
+    head = ("trial", "agents", "E = 1, per CPU s", "wall s", f"{batch}, per CPU s", "wall s", "ratio CPU")
+    load = ", ".join(number(value, 2) for value in found.load)
+    print_table("steps of built-in trials", head, trials, caption=f"load average before and after: {load}")
+
+
+def _rate(rate: WorkRate) -> tuple[str, str]:
+    cpu, wall = rate.per_cpu_second, rate.per_second
+    return number(cpu, 1 if cpu < 1000 else 0), number(wall, 1 if wall < 1000 else 0)
