@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +13,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import EpisodeError, InputError
+from crowdbot.core import EpisodeError, InputError, Twist
+from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import branch, open_run, read_episode, replay
-from crowdbot.simulation import Order, Simulation, VelocityOrder, order_kinds, read_order, write_order
+from crowdbot.simulation import (
+    MissedDecisionOrder,
+    Order,
+    Simulation,
+    VelocityOrder,
+    order_kinds,
+    read_order,
+    simulate,
+    write_order,
+)
 from crowdbot.trials import parse_trial
 from episode_copies import copy_episode
 from space_trials import LEAN, room
@@ -55,11 +68,11 @@ def test_a_steered_run_replays_and_branches_at_any_recorded_instant(name: str, t
     done = replay(file)
     assert done.equal, str(done)
     times = read_episode(file).times
-    for time in times[[0, len(times) // 3, len(times) // 2]].tolist():
-        again = branch(file, time, out=tmp_path / f"branch-{time:g}.mcap")
+    for instant in times[[0, len(times) // 3, len(times) // 2]].tolist():
+        again = branch(file, instant, out=tmp_path / f"branch-{instant:g}.mcap")
         if done.outcomes[0] != "interrupted":
             assert again.digest == digest
-        assert replay(tmp_path / f"branch-{time:g}.mcap").equal
+        assert replay(tmp_path / f"branch-{instant:g}.mcap").equal
     later = times[len(times) // 2]
     first = tmp_path / f"branch-{times[len(times) // 3]:g}.mcap"
     branch(first, float(later), out=tmp_path / "twice.mcap")
@@ -94,6 +107,39 @@ def test_an_impossible_order_changes_nothing(tmp_path: Path) -> None:
             running.step([VelocityOrder(robot=robot, environment=1)])
         assert running.simulation.tick == 1
         assert running.simulation.record().commands.tolist() == before
+
+
+SLEEPS = [False]
+
+
+@dataclass(frozen=True)
+class Slow(Navigator):
+    """Needs too long for some decisions, while a flag is set."""
+
+    def act(self, observation: Observation) -> Twist:
+        if SLEEPS[0] and round(observation.time * 10) % 3 == 1:
+            time.sleep(0.12)
+        return observation.towards_goal(0.1 + 0.05 * observation.time)
+
+
+def test_a_missed_deadline_is_recorded_and_a_replay_measures_no_time(tmp_path: Path) -> None:
+    trial = parse_trial(FLOW)
+    robot = dataclasses.replace(trial.robots[0], navigator=Slow(), deadline=0.1)
+    trial = dataclasses.replace(trial, robots=(robot, *trial.robots[1:]), duration=1.5)
+    SLEEPS[0] = True
+    slow = simulate(trial, 3)
+    SLEEPS[0] = False
+    missed = [tick for tick, order in slow.orders if order == MissedDecisionOrder(robot=robot.name)]
+    assert len(missed) >= 4
+    assert branch(slow, at=0.5).digest == slow.digest
+    assert branch(slow, at=0.5, orders=False).digest != slow.digest
+    assert simulate(trial, 3).digest != slow.digest
+
+
+def test_nobody_can_give_a_missed_decision() -> None:
+    simulation = Simulation(parse_trial(FLOW), 3)
+    with pytest.raises(InputError, match="written by a run and cannot be given"):
+        MissedDecisionOrder(robot="robot").check(simulation)
 
 
 @given(values=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=3, max_size=3), name=st.text())

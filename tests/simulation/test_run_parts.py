@@ -22,6 +22,7 @@ from crowdbot.simulation import (
 )
 from crowdbot.simulation.simulation import SUCCESS
 from crowdbot.trials import Trial, parse_trial, place
+from space_trials import LEAN
 from trial_texts import GOOD
 
 TINY = parse_trial(GOOD)
@@ -186,3 +187,19 @@ def test_a_failure_inside_a_library_is_placed_in_the_user_s_line() -> None:
     except ValueError as error:
         found = RunFailure.of(error, 0.0)
     assert found.place == f"test_run_parts.py:{line}"
+
+
+def test_an_episode_keeps_contacts_forces_and_collisions() -> None:
+    text = LEAN.replace(
+        '<agent x="6" y="4" goal="1,4" body="woman-36" outfit="3"/>', '<agent x="3" y="2.2" heading="0"/>'
+    )
+    trial = parse_trial(text.replace('seed="4"', 'seed="4" world="physics"').replace('duration="1"', 'duration="3"'))
+    episode = simulate(trial, 4)
+    robot = trial.people
+    assert {contact.robot for _, contact in episode.contacts} == {robot}
+    assert all(contact.clearance < 0.0 for _, contact in episode.contacts)
+    assert min(time for time, _ in episode.contacts) == min(time for time, _ in episode.forces)
+    assert all(event.first == ("robot", robot) for event in episode.collisions)
+    assert episode.metrics["collision"] == 1.0
+    plain = simulate(parse_trial(LEAN), 4)
+    assert (plain.forces, plain.collisions) == ((), ())

@@ -23,6 +23,7 @@ from crowdbot.trials import (
     Light,
     Mount,
     Obstacle,
+    Planner,
     RecordingSpec,
     RobotGoal,
     RobotSpec,
@@ -82,6 +83,10 @@ def trials(draw: st.DrawFn) -> Trial:
         x=draw(numbers),
         y=draw(numbers),
         visible=draw(st.booleans()),
+        deadline=draw(st.none() | st.floats(0.001, 1.0)),
+        tracks=draw(st.none() | st.floats(0.1, 9.0)),
+        ghost=(ghost := draw(st.booleans())),
+        planner=draw(st.none() | st.builds(Planner, st.floats(0.0, 1.0))),
         goal=RobotGoal(draw(numbers), draw(numbers), draw(st.floats(0.1, 2.0))),
         drive=DifferentialDrive(max_speed=draw(st.floats(0.1, 3.0))),
         navigator=Straight(),
@@ -118,7 +123,7 @@ def trials(draw: st.DrawFn) -> Trial:
         cameras=[
             Camera(name="look", x=corner[0], heading=corner[1], field_of_view=low, width=draw(st.integers(16, 99)))
         ],
-        world=draw(st.sampled_from(["planar", "physics"])),
+        world="planar" if ghost else draw(st.sampled_from(["planar", "physics"])),
         bodies=draw(st.sampled_from([None, "discs", "limbs", "skins"])),
         spawners=[
             Spawner(
@@ -276,6 +281,12 @@ MISTAKES = {
     "robot outside": ('x="-2" y', 'x="-22" y', r":10: <robot> starts at -22,-2.4 outside the walkable area"),
     "goal out of reach": ('<goal x="3" y="-2.4"', '<goal x="30" y="0"', r":10: <robot> has its goal at 30,0 outside"),
     "name of a robot": ('robot name="robot"', 'robot name="my robot"', r':10: <robot> name="my robot" must match'),
+    "holonomic": (
+        'x="-2" y',
+        'x="-2" holonomic="true" y',
+        r':10: <robot> has holonomic="true" but its drive cannot move sideways; take <drive type="omnidirectional"/>',
+    ),
+    "deadline": ('x="-2" y', 'x="-2" deadline="0" y', r':10: <robot> deadline="0" must be above 0 s'),
     "wrong root": ("<trial ", "<simulation ", r"mismatched tag"),
     "no XML": ("<stage ", "<stage <", r":3: this is not well-formed XML: not well-formed"),
 }

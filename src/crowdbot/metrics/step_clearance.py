@@ -101,6 +101,8 @@ def step_wall_clearance(before: Floats, after: Floats, radius: Floats, walls: Fl
     >>> step_wall_clearance(np.array([[0.0, 1.0]]), np.array([[2.0, 1.0]]), np.array([0.3]), wall).round(3).tolist()
     [0.2]
     """
+    if len(walls) == 0:
+        return np.full(len(before), math.inf)
     out = np.empty(len(before))
     start, end, size, segments = map(np.ascontiguousarray, (before, after, radius, walls))
     _walls(start, end, size, segments, out)

@@ -277,7 +277,8 @@ class Observation:
         """
         if self.tracks is None:
             raise InputError("observation: forecast needs tracks, but they are None")
-        return self.tracks.forecast(predictor, seconds, walls=self.walls, samples=samples, seed=seed)
+        dt = None if len(self.tracks.times) > 1 else self.dt
+        return self.tracks.forecast(predictor, seconds, dt=dt, walls=self.walls, samples=samples, seed=seed)
 
     def turn_by(self, angle: float) -> float:
         """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad] quickly and without overshoot."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -32,6 +33,19 @@ class Waypoints(NamedTuple):
     """``[N, 9]`` state of the paths, an argument of the next call; plain numbers that can be copied."""
     failures: dict[int, InputError]
     """Robots without a path, by index 0 to N - 1."""
+
+
+@dataclass(frozen=True)
+class _EqualWalls:
+    """Walls that are equal if their edges are."""
+
+    edges: tuple[bytes, ...]
+    walls: Walls = field(compare=False, repr=False)
+
+
+@functools.lru_cache(maxsize=16)
+def _shared(equal: _EqualWalls, radius: float, margin: float) -> PathPlanner:
+    return PathPlanner.of(equal.walls, radius, margin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +81,20 @@ class PathPlanner:
         check_number("PathPlanner", "margin", margin, "m", min=0.0)
         rings = Walls.of(walls)  # type: ignore[arg-type]
         return cls(radius, margin, rings, Router.of(rings, radius + margin))
+
+    @classmethod
+    def for_stage(cls, walls: Walls, radius: float, margin: float = MARGIN) -> PathPlanner:
+        """Return the planner of :meth:`of`, computed once for equal walls, radius and margin.
+
+        Raises:
+            InputError: as :meth:`of`.
+
+        >>> walls = Walls.of([[(0.0, 0.0), (2.0, 0.0)]])
+        >>> PathPlanner.for_stage(walls, 0.3) is PathPlanner.for_stage(Walls.of([[(0.0, 0.0), (2.0, 0.0)]]), 0.3)
+        True
+        """
+        edges = (walls.start, walls.end, walls.previous, walls.next, walls.convex)
+        return _shared(_EqualWalls(tuple(part.tobytes() for part in edges), walls), radius, margin)
 
     def waypoints(self, position: ArrayLike, goal: ArrayLike) -> Floats:
         """Return the points ``[K, 2]`` [m] of the shortest path after the position; the last point is the goal.

@@ -27,7 +27,7 @@ from crowdbot.trials import Trial, apply_values, trial_xml
 from .attachments import unpack_attachments
 from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
-from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests
+from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests, replay_misses
 from .recorded_run import episode_path
 
 __all__ = ["branch"]
@@ -155,6 +155,8 @@ def _run(
         apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
         rest = tuple(row for row in last.orders if row[0] >= simulation.tick) if options.orders else ()
+        if not options.orders:
+            replay_misses(simulation, None)
         part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed), rest)
         tally = kind(new, part.seed, comparison.digest)
         parts = (*course.parts, part)

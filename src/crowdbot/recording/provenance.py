@@ -13,6 +13,7 @@ from crowdbot.core import EpisodeError, InputError
 from crowdbot.data import McapReader
 from crowdbot.simulation import (
     EpisodeDigest,
+    MissedDecisionOrder,
     Order,
     Simulation,
     SimulationRun,
@@ -27,7 +28,15 @@ from crowdbot.trials import Trial, parse_trial, trial_xml
 from .episode_reader import read_metadata
 from .metadata import DIGEST, ORDERS
 
-__all__ = ["DigestComparison", "OrderReplay", "Provenance", "ProvenanceSegment", "digests", "recorded_orders"]
+__all__ = [
+    "DigestComparison",
+    "OrderReplay",
+    "Provenance",
+    "ProvenanceSegment",
+    "digests",
+    "recorded_orders",
+    "replay_misses",
+]
 
 
 @dataclass(frozen=True)
@@ -52,7 +61,8 @@ class OrderReplay:
     def __init__(self, orders: Iterable[tuple[int, Order]]) -> None:
         self._by_tick: dict[int, list[Order]] = {}
         for tick, order in orders:
-            self._by_tick.setdefault(tick, []).append(order)
+            if not isinstance(order, MissedDecisionOrder):
+                self._by_tick.setdefault(tick, []).append(order)
 
     def orders(self, simulation: Simulation) -> list[Order]:
         """Return the orders of the current step."""
@@ -79,6 +89,18 @@ class DigestComparison:
             wanted = self.wanted.get(frame.nanoseconds, "")
             if self.differs is None and wanted and wanted != self.digest.hexdigest("interrupted"):
                 self.differs = frame.nanoseconds / 1e9
+
+
+def replay_misses(simulation: Simulation, orders: Iterable[tuple[int, Order]] | None) -> None:
+    """Let the recorded decisions miss their deadline, instead of measuring time; None measures again."""
+    rows = list(orders or ())
+    for control in simulation.robots:
+        if orders is None:
+            control.replayed = [None] * simulation.count
+            continue
+        name = control.robot.name
+        missed = [tick for tick, order in rows if isinstance(order, MissedDecisionOrder) and order.robot == name]
+        control.replay_misses(0, missed)
 
 
 @dataclass(frozen=True)
@@ -144,6 +166,7 @@ class Provenance:
         """
         first = self.parts[0]
         simulation = Simulation(first.trial, first.seed)
+        replay_misses(simulation, [row for part in self.parts for row in part.orders])
         ends = [part.tick for part in self.parts[1:]] + ([] if until is None else [until])
         for number, end in enumerate(ends):
             _on(simulation, end, sink, stop, progress, OrderReplay(self.parts[number].orders))

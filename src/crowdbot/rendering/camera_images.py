@@ -198,7 +198,7 @@ class _Lens:
             width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
             near=max(0.05, 0.25 * sensor.range_min),  # clip the housing around the lens
         )  # fmt: skip
-        pose, studio = probe.pose(self.control.agent, around), self.simulation.world.renderer
+        pose, studio = probe.pose(self.control.agent, around), self.simulation.world.environment_renderer(0)
         picture = camera.read(around.flat, pose, self.rng, studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None

@@ -2,7 +2,7 @@
 
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .failure import RunFailure, RunFailureWarning
-from .orders import Order, VelocityOrder, order_kinds, read_order, write_order
+from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
 from .parameter_order import ParameterOrder
 from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
@@ -21,6 +21,7 @@ __all__ = [
     "EpisodeDigest",
     "EpisodeLog",
     "EpisodeStatistics",
+    "MissedDecisionOrder",
     "MoveOrder",
     "Order",
     "OrderSource",

@@ -14,11 +14,12 @@ from crowdbot.core import FreeClock, InputError, TickSchedule
 from crowdbot.data import Trajectories
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
+from crowdbot.world import BodyContactEvent, ContactForce
 
 from .failure import RunFailure
 from .orders import Order
 from .statistics import EpisodeDigest, EpisodeStatistics, present
-from .step_record import StepRecord
+from .step_record import RobotContact, StepRecord
 
 __all__ = ["Episode", "EpisodeDigest", "EpisodeLog", "ScanRow", "scan_row", "tracks_of"]
 
@@ -69,6 +70,9 @@ class Episode:
         digest: hash of all recorded arrays, readings and commands and of the outcome.
         failure: the exception that ended the run, for the outcome ``error``.
         orders: orders from outside with their ticks, in the order of their application.
+        contacts: time [s] and :class:`RobotContact` of every step with a contact of a robot.
+        forces: time [s] and contact force of every step with one, in the physics world.
+        collisions: contact events of the physics world, ordered by end.
     """
 
     trial: Trial
@@ -90,6 +94,9 @@ class Episode:
     digest: str
     failure: RunFailure | None = None
     orders: tuple[tuple[int, Order], ...] = ()
+    contacts: tuple[tuple[float, RobotContact], ...] = ()
+    forces: tuple[tuple[float, ContactForce], ...] = ()
+    collisions: tuple[BodyContactEvent, ...] = ()
 
     @property
     def walls(self) -> tuple[Floats, ...]:
@@ -168,11 +175,18 @@ class EpisodeLog(EpisodeStatistics):
         self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
         self.orders: list[tuple[int, Order]] = []
+        self.contacts: list[tuple[float, RobotContact]] = []
+        self.forces: list[tuple[float, ContactForce]] = []
+        self.collisions: list[BodyContactEvent] = []
 
     def keep(self, frame: StepRecord) -> None:
         """Add a step that the digest already contains."""
         super().keep(frame)
+        time = frame.nanoseconds / 1e9
         self.orders += [(frame.tick, order) for order in frame.orders]
+        self.contacts += [(time, contact) for contact in frame.touches]
+        self.forces += [(time, force) for force in frame.forces]
+        self.collisions += frame.collisions
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         if frame.due:
@@ -207,6 +221,9 @@ class EpisodeLog(EpisodeStatistics):
             self.digest.hexdigest(outcome),
             failure,
             tuple(self.orders),
+            tuple(self.contacts),
+            tuple(self.forces),
+            tuple(self.collisions),
         )
 
 

@@ -122,6 +122,10 @@ class MountedSensor:
         """Name of the sensor."""
         return self.mount.name
 
+    def has_work(self, tick: int) -> bool:
+        """Return whether the sensor measures, or may deliver a reading, at a tick."""
+        return bool(self.waiting) or self.schedule.measures(tick)
+
     def work(
         self, ticks: Ints, live: Bools, agent: int, around: WorldView
     ) -> tuple[list[SensorReadings], list[tuple[int, Exception]]]:

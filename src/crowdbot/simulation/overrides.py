@@ -51,6 +51,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         exits=[way.out() for way in trial.exits],
         heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,
+        ghosts=[control.agent for control, robot in zip(simulation.robots, trial.robots, strict=True) if robot.ghost],
         **_router(old, trial),
     )
     simulation.trial = trial
@@ -100,7 +101,7 @@ def _scene(simulation: Simulation, trial: Trial) -> Any:
     }
     for control, robot in zip(simulation.robots, trial.robots, strict=True):
         top = limits_of(robot.drive).max_speed
-        values = (robot.radius, robot.goal.position, robot.visible, top, top)
+        values = (robot.radius, robot.goal.position, robot.visible and not robot.ghost, top, top)
         for name, value in zip(columns, values, strict=True):
             columns[name][:, control.agent] = value
     return scene.replace(**columns)
@@ -132,11 +133,11 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
             sensor.rngs = new.rngs
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
-        old,
+        old.change_memory(simulation.trial, robot),
         robot=robot,
         memories=old.memories if same else [None] * simulation.count,
         begun=old.begun if same else np.zeros_like(old.begun),
-        limits=limits_of(robot.drive),
+        limits=limits_of(robot.drive, robot.holonomic),
         control=simulation.world.clock.schedule(robot.control_period),
         sensors=sensors,
         arrived=old.arrived if robot.goal == old.robot.goal else np.zeros_like(old.arrived),

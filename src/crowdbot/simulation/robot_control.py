@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+import math
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import MissingExtra, TickSchedule, Twist
-from crowdbot.navigation import DriveLimits, Observation, ObservationBatch
+from crowdbot.core import InputError, MissingExtra, TickSchedule, Twist
+from crowdbot.navigation import (
+    Decisions,
+    DriveLimits,
+    Observation,
+    ObservationBatch,
+    PathPlanner,
+    TrackHistory,
+    copy_memory,
+)
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import Twists, World
@@ -26,6 +36,26 @@ __all__ = ["RobotControl"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+PATH_COLUMNS = 9
+"""Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
+ROWS = ("command", "begun", "arrived", "path", "missed")
+"""Fields with one row for each environment."""
+SAME = 1e-6
+"""Tolerance of a number of rows."""
+NEVER = -1
+"""Tick of the latest missed decision before there is one."""
+
+
+class _Known(NamedTuple):
+    """What a robot remembers in N environments besides the memory of its navigator."""
+
+    path: Floats
+    """``[N, 9]`` state of the path planner."""
+    tracks: list[TrackHistory]
+    """N histories of the visible people, or empty."""
+    failures: dict[int, Exception]
+    """Environments without a path or with invalid tracks."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +81,14 @@ class RobotControl:
         sensors: its sensors.
         command: ``[E, 3]`` current command: forward [m/s], turn [rad/s], left [m/s].
         memories: memory of the navigator in each environment; ``UNSET`` before its first decision.
+        begun: ``[E]`` whether the navigator has decided.
         arrived: ``[E]`` whether the robot has reached its goal.
+        planner: path planner, or None.
+        path: ``[E, 9]`` state of the path planner; NaN before the first decision.
+        tracks: history of the visible people in each environment, or empty.
+        missed: ``[E]`` tick of the latest decision that took longer than the deadline of the robot, -1 for none.
+        replayed: ticks of the missed decisions of each environment that is replayed, otherwise None.
+        timer: clock of the compute times [s], used only with a deadline.
     """
 
     robot: RobotSpec
@@ -62,22 +99,54 @@ class RobotControl:
     command: Floats
     memories: list[Any]
     begun: Bools
-    arrived: Bools = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    arrived: Bools
+    planner: PathPlanner | None
+    path: Floats
+    tracks: list[TrackHistory]
+    missed: Ints
+    replayed: list[frozenset[int] | None]
+    timer: Callable[[], float] = time.perf_counter
+    _warm: bool = field(default=False, init=False)
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:
-        """Return the state of a robot before its first decision."""
+        """Return the state of a robot before its first decision.
+
+        Raises:
+            InputError: no space between the walls is wide enough for the path planner of the robot.
+        """
         count = len(seeds)
         return cls(
             robot,
             agent,
-            limits_of(robot.drive),
+            limits_of(robot.drive, robot.holonomic),
             world.clock.schedule(robot.control_period),
             mounted_sensors(trial, robot, world, seeds),
             np.zeros((count, 3)),
             [None] * count,
             np.zeros(count, dtype=np.bool_),
             np.zeros(count, dtype=np.bool_),
+            robot.path_planner(trial.stage.as_walls()) if robot.planner else None,
+            np.full((count, PATH_COLUMNS), np.nan),
+            _empty_tracks(robot, count),
+            np.full(count, NEVER, dtype=np.int64),
+            [None] * count,
+        )
+
+    def change_memory(self, trial: Trial, robot: RobotSpec) -> RobotControl:
+        """Return the state with paths and tracks for another specification of the robot.
+
+        Raises:
+            InputError: no space between the walls is wide enough for the path planner.
+        """
+        old, count = self.robot, len(self.memories)
+        planner = robot.path_planner(trial.stage.as_walls()) if robot.planner else None
+        same = (robot.tracks, robot.control_period) == (old.tracks, old.control_period)
+        return dataclasses.replace(
+            self,
+            planner=planner,
+            path=self.path if planner is self.planner else np.full_like(self.path, np.nan),
+            tracks=self.tracks if same else _empty_tracks(robot, count),
         )
 
     @property
@@ -91,7 +160,10 @@ class RobotControl:
 
     def observation(self, around: WorldView, environment: int) -> Observation:
         """Return the observation in one environment; see :meth:`observations`."""
-        return self.observations(around, np.array([environment])).environment(0)
+        batch, known = self._observe(around, np.array([environment]))
+        for error in known.failures.values():
+            raise error
+        return batch.environment(0)
 
     def observations(self, around: WorldView, environments: Ints) -> ObservationBatch:
         """Return the observations in some environments: the people in the latest readings of the sensors.
@@ -99,6 +171,25 @@ class RobotControl:
         Positions and velocities are exact, as from a perfect tracker. In a world whose environments have different
         outlines of props, there must be one environment.
         """
+        return self._observe(around, environments)[0]
+
+    def _observe(self, around: WorldView, environments: Ints) -> tuple[ObservationBatch, _Known]:
+        """Return the observations, and the state of paths and tracks after them."""
+        batch = self._perceive(around, environments)
+        path, tracks = self.path[environments], [self.tracks[e] for e in environments] if self.tracks else []
+        failures: dict[int, Exception] = {}
+        changes: dict[str, Any] = {}
+        if tracks:
+            tracks = [_updated(history, batch, k) for k, history in enumerate(tracks)]
+            changes["tracks"] = tracks
+        if self.planner is not None:
+            found = self.planner.next_waypoints(batch.pose[:, :2], batch.goal, path)
+            path, changes["waypoint"] = found.path, found.point
+            failures |= {k: InputError(f"robot {self.robot.name!r}: {error}") for k, error in found.failures.items()}
+        return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, failures)
+
+    def _perceive(self, around: WorldView, environments: Ints) -> ObservationBatch:
+        """Return the observations without paths and tracks."""
         world = around.world
         ids, twists = world.ids, world.twists[self.agent]
         seen = np.zeros(ids.shape, dtype=np.bool_)
@@ -143,7 +234,7 @@ class RobotControl:
                 found |= self.decide(around, np.array([e]))
             return found
         navigator, name = self.robot.navigator, self.robot.name
-        batch = self.observations(around, environments)
+        batch, known = self._observe(around, environments)
         failures: dict[int, Exception] = {}
         if not self.begun[environments].all():
             new = np.flatnonzero(~self.begun[environments])
@@ -153,19 +244,58 @@ class RobotControl:
             for k, memory in zip(new.tolist(), memories, strict=True):
                 self.memories[int(environments[k])] = memory
             self.begun[environments[new]] = True
-        decisions = navigator.decide_batch(batch, [self.memories[e] for e in environments], name)
-        failures = decisions.failures | failures
+        ticks = around.world.ticks[environments]
+        decisions = self._decide(batch, environments)
+        failures = decisions.failures | failures | known.failures
         for error in failures.values():
             if isinstance(error, MissingExtra):
                 raise error
-        if not failures:
-            self.command[environments] = decisions.twist
+        late = self._late(environments, ticks, decisions)
+        self._remember(environments, known)
         for k, e in enumerate(environments.tolist()):
             if k not in failures:
                 self.memories[e] = decisions.memories[k]
-                if failures:
-                    self.command[e] = decisions.twist[k]
+        decided = ~late
+        decided[list(failures)] = False
+        self.missed[environments[late]] = ticks[late]
+        self.command[environments[decided]] = decisions.twist[decided]
         return {int(environments[k]): error for k, error in failures.items()}
+
+    def misses(self, ticks: Ints) -> Ints:
+        """Return the environments whose decision at their current tick ``[E]`` missed the deadline."""
+        return np.flatnonzero(self.missed == ticks)
+
+    def replay_misses(self, environment: int, ticks: Collection[int]) -> None:
+        """Let exactly the decisions of an environment at these ticks miss the deadline, without measuring time."""
+        self.replayed[environment] = frozenset(int(tick) for tick in ticks)
+
+    def _decide(self, batch: ObservationBatch, environments: Ints) -> Decisions:
+        """Let the navigator decide, with compute times if they matter."""
+        navigator, name = self.robot.navigator, self.robot.name
+        memories = [self.memories[e] for e in environments]
+        if self.robot.deadline is None or all(self.replayed[e] is not None for e in environments):
+            return navigator.decide_batch(batch, memories, name)
+        if not self._warm:  # code is compiled and loaded at the first call, which says nothing about the others
+            navigator.decide_batch(batch, [copy_memory(memory, name) for memory in memories], name)
+            self._warm = True
+        return navigator.decide_batch(batch, memories, name, self.timer)
+
+    def _late(self, environments: Ints, ticks: Ints, decisions: Decisions) -> Bools:
+        """Return ``[N]`` which decisions missed the deadline."""
+        late = np.zeros(len(environments), dtype=np.bool_)
+        for k, e in enumerate(environments.tolist() if self.robot.deadline is not None else ()):
+            replayed = self.replayed[e]
+            if replayed is not None:
+                late[k] = int(ticks[k]) in replayed
+            else:
+                late[k] = decisions.seconds[k] > (self.robot.deadline or math.inf)
+        late[list(decisions.failures)] = False
+        return late
+
+    def _remember(self, environments: Ints, known: _Known) -> None:
+        self.path[environments] = known.path
+        for e, history in zip(environments.tolist(), known.tracks, strict=False):
+            self.tracks[e] = history
 
     def ask(self, environments: int | Ints | slice, twist: Twist) -> None:
         """Set the command in some environments."""
@@ -181,16 +311,37 @@ class RobotControl:
         """Return an independent state of some environments."""
         other = copy.copy(self)
         other.sensors = tuple(sensor.select(environments) for sensor in self.sensors)
-        other.command = self.command[environments]
-        other.memories = [copy.deepcopy(self.memories[e]) for e in environments]
-        other.begun, other.arrived = self.begun[environments], self.arrived[environments]
+        other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
+        other.tracks = [self.tracks[e] for e in environments] if self.tracks else []
+        other.replayed = [self.replayed[e] for e in environments]
+        for name in ROWS:
+            setattr(other, name, getattr(self, name)[environments])
         return other
 
     def put(self, environments: Ints, other: RobotControl) -> None:
         """Replace the state of some environments."""
         for mine, new in zip(self.sensors, other.sensors, strict=True):
             mine.put(environments, new)
-        self.command[environments] = other.command
         for k, e in enumerate(environments.tolist()):
-            self.memories[e] = other.memories[k]
-        self.begun[environments], self.arrived[environments] = other.begun, other.arrived
+            self.memories[e], self.replayed[e] = other.memories[k], other.replayed[k]
+            if self.tracks:
+                self.tracks[e] = other.tracks[k]
+        for name in ROWS:
+            getattr(self, name)[environments] = getattr(other, name)
+
+
+def _empty_tracks(robot: RobotSpec, count: int) -> list[TrackHistory]:
+    """Return an empty history for each environment, none for a robot without tracks."""
+    if robot.tracks is None:
+        return []
+    rows = max(2, math.ceil(robot.tracks / robot.control_period - SAME) + 1)
+    return [TrackHistory.empty(rows)] * count
+
+
+def _updated(history: TrackHistory, batch: ObservationBatch, k: int) -> TrackHistory:
+    """Return a history with a row of the people whom the robot sees now, once for each time."""
+    now, people = float(batch.time[k]), batch.people
+    if len(history.times) and now <= history.times[-1]:
+        return history
+    seen = people.seen[k]
+    return history.update(now, people.ids[k, seen], people.position[k, seen])

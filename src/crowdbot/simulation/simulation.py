@@ -34,7 +34,7 @@ from .failure import RunFailure
 from .mounted_sensor import SensorReadings
 from .robot_control import RobotControl
 from .step_record import WALL, RobotContact, StepRecord
-from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones
+from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, may_be_near, note_events
 from .world_builder import begin_world, check_clock
 from .world_view import WorldView
 
@@ -224,7 +224,8 @@ class Simulation:
     def is_eventful(self) -> Bools:
         """Return ``[E]`` whether there is something to record although no scene is due."""
         found = np.zeros(self.count, dtype=np.bool_)
-        found[list(self._contacts)] = True
+        if self._contacts:
+            found[list(self._contacts)] = True
         for _, told in self.readings:
             found[told.environments] = True
         if self.world.walls_fixed:
@@ -341,12 +342,12 @@ class Simulation:
 
     def _observe(self, chosen: Bools) -> list[tuple[RobotControl, SensorReadings]]:
         """Run part 6 in the environments ``chosen`` ``[E]`` and return the readings that arrive."""
-        ticks = self.ticks
+        ticks, common = self.ticks, self.world.environment_time.common_tick
         found: list[tuple[RobotControl, SensorReadings]] = []
         if not chosen.any():
             return found
         for robot in self.robots:
-            for sensor in robot.sensors:
+            for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
                 told, errors = sensor.work(ticks, chosen & ~self.failed, robot.agent, self.around)
                 found += [(robot, one) for one in told]
                 for e, error in errors:
@@ -355,7 +356,9 @@ class Simulation:
             kept = ((robot, one.without(self.failed)) for robot, one in found)
             found = [(robot, one) for robot, one in kept if one is not None]
         for robot in self.robots:
-            due = np.flatnonzero(chosen & ~self.failed & robot.control.is_due(ticks))
+            if common is not None and not robot.control.is_due(common):
+                continue
+            due = np.flatnonzero(chosen & ~self.failed & (common is not None or robot.control.is_due(ticks)))
             for e, error in robot.decide(self.around, due).items() if len(due) else ():
                 self.fail(e, error)
         return found
@@ -381,19 +384,16 @@ class Simulation:
             robot, other = ids[one.environment, [one.robot, one.other]].tolist()
             contact = RobotContact(robot, other, one.clearance)
             found.setdefault(one.environment, []).append(contact)
-        arrived = np.full(self.count, bool(self.robots))
+        position = self.world.scene.position
         for control in self.robots:
             gap = self.world.wall_clearance(control.agent)
-            for e in np.flatnonzero(gap < 0.0).tolist():
+            for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
                 found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
-            control.arrive(self.world.scene.position[:, control.agent])
-            arrived &= control.arrived
+            goal = control.robot.goal
+            if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
+                control.arrive(position[:, control.agent])
         self._contacts = {e: tuple(found) for e, found in found.items()}
-        open_ = self.event == NONE
-        collided = np.zeros(self.count, dtype=np.bool_)
-        collided[list(self._contacts)] = True
-        self.event[open_ & collided] = COLLISION
-        self.event[open_ & ~collided & arrived] = SUCCESS
+        note_events(self.event, list(found), [control.arrived for control in self.robots], COLLISION, SUCCESS)
         agents = {robot.robot.name: robot.agent for robot in self.robots}
         if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
             self.ended = np.where(self.ended == 0, met, self.ended)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
 
 from .failure import RunFailure
-from .orders import Order
+from .orders import MissedDecisionOrder, Order
 from .simulation import Simulation
 from .step_record import StepRecord
 
@@ -82,6 +82,7 @@ class SimulationRun:
             recorded.
 
     >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Trial
     >>> clock = ExternalClock(0.05)
     >>> running = SimulationRun(Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), 0, clock))
     >>> running.until(520_000_000)
@@ -295,15 +296,27 @@ class SimulationRun:
         except Exception as error:  # sources may raise anything
             for e in range(simulation.count):
                 simulation.fail(e, error)
+        self._note_misses()
         due = self._due
         runs = np.array([self.ends[number] is None for number in self._numbers])
         stops = self._stops()
         ended = self._end_where((due & (stops | simulation.may_end())) | simulation.failed, stops)
-        self._pending = runs & (simulation.is_eventful() | (due & ~simulation.broken))
+        eventful = simulation.is_eventful()
+        eventful[list(self._orders)] = True
+        self._pending = runs & (eventful | (due & ~simulation.broken))
         if ended.any():
             self._apply()
             for e in np.flatnonzero(ended & self._pending).tolist():
                 self._write(e, last=True)
+
+    def _note_misses(self) -> None:
+        """Keep the decisions of this step that missed their deadline for the records."""
+        for control in self.simulation.robots:
+            if control.robot.deadline is None:
+                continue
+            for e in control.misses(self.simulation.ticks).tolist():
+                order = MissedDecisionOrder(robot=control.robot.name, environment=e)
+                self._orders.setdefault(e, []).append(order)
 
     def _end_where(self, chosen: Bools, stops: Bools) -> Bools:
         """Set the ends of environments ``[E]`` that end now, and return which ones."""

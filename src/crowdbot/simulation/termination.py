@@ -8,20 +8,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import kernel
 from crowdbot.trials import Agent, EndCondition, InitialPeople, Spawner, Trial, area
 from crowdbot.world import World
 
-__all__ = ["FINISHED", "end_condition_numbers", "goal_zones", "leave_goal_zones"]
+__all__ = ["FINISHED", "end_condition_numbers", "goal_zones", "leave_goal_zones", "may_be_near", "note_events"]
 
+Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+GoalZone = tuple[Ints, Any, Any]
+"""Indices of people, the zone of their goal, and its bounds."""
 
 ARRIVED = 0.3
 """Distance [m] to the own goal point within which people in a goal zone leave."""
+ROUNDING = 1e-6
+"""Relative margin of squared distances against rounding."""
 FINISHED = "finished"
 """Outcome of a trial that ends when nobody is left."""
 
 
-def goal_zones(people: InitialPeople) -> list[tuple[Ints, Any]]:
+def goal_zones(people: InitialPeople) -> list[GoalZone]:
     """Return the people who leave at their goal, with the prepared goal zones; empty for a point goal."""
     import shapely
 
@@ -33,27 +40,96 @@ def goal_zones(people: InitialPeople) -> list[tuple[Ints, Any]]:
             members.setdefault(zone, []).append(a)
     zones = [area(points) if points else shapely.Polygon() for points in members]
     shapely.prepare(zones)
-    return [(np.array(who, dtype=np.int64), zone) for who, zone in zip(members.values(), zones, strict=True)]
+    return [
+        (np.array(who, dtype=np.int64), zone, tuple(map(float, zone.bounds)))
+        for who, zone in zip(members.values(), zones, strict=True)
+    ]
 
 
-def leave_goal_zones(world: World, zones: Sequence[tuple[Ints, Any]]) -> None:
+def leave_goal_zones(world: World, zones: Sequence[GoalZone]) -> None:
     """Remove the people who are in the zone of their goal, or at their own goal point in it."""
     if not zones:
         return
     import shapely
 
     scene, ids = world.scene, world.ids
-    gone = np.zeros(scene.shape, dtype=np.bool_)
-    for members, zone in zones:
-        there = scene.active[:, members] & (ids[:, members] == members)
-        if there.any():
-            position = scene.position[:, members][there]
-            away = np.hypot(*(scene.goal[:, members][there] - position).T)
-            leaves = shapely.contains_xy(zone, position[:, 0], position[:, 1]) | (away < ARRIVED)
-            rows, columns = np.nonzero(there)
-            gone[rows, members[columns]] = leaves
-    if gone.any():
+    close = np.zeros(scene.shape, dtype=np.bool_)
+    people = (np.ascontiguousarray(scene.active), ids, *map(np.ascontiguousarray, (scene.position, scene.goal)))
+    arrays: Any = (*people, close)
+    gone: Bools | None = None
+    for members, zone, bounds in zones:
+        if not _find_close(members, bounds, *arrays):
+            continue
+        rows, columns = np.nonzero(close)
+        close[rows, columns] = False
+        position = scene.position[rows, columns]
+        away = np.hypot(*(scene.goal[rows, columns] - position).T)
+        leaves = shapely.contains_xy(zone, position[:, 0], position[:, 1]) | (away < ARRIVED)
+        if leaves.any():
+            gone = np.zeros(scene.shape, dtype=np.bool_) if gone is None else gone
+            gone[rows, columns] = leaves
+    if gone is not None:
         world.scene = scene.replace(active=scene.active & ~gone)
+
+
+@kernel
+def _find_close(
+    members: Ints, bounds: tuple[float, float, float, float], active: Bools, ids: Ints, position: Floats, goal: Floats,
+    close: Bools,
+) -> bool:  # fmt: skip
+    """Mark the members in the bounding box of their zone or near their goal; return whether there are any."""
+    west, south, east, north = bounds
+    near2, some = ARRIVED * ARRIVED * (1.0 + ROUNDING), False
+    for e in range(len(active)):
+        for a in members:
+            if not active[e, a] or ids[e, a] != a:
+                continue
+            x, y = position[e, a, 0], position[e, a, 1]
+            dx, dy = goal[e, a, 0] - x, goal[e, a, 1] - y
+            if (west <= x <= east and south <= y <= north) or dx * dx + dy * dy < near2:
+                close[e, a], some = True, True
+    return some
+
+
+@kernel
+def _is_any_near(position: Floats, agent: int, x: float, y: float, reach2: float) -> bool:
+    for e in range(len(position)):
+        dx, dy = position[e, agent, 0] - x, position[e, agent, 1] - y
+        if dx * dx + dy * dy < reach2:
+            return True
+    return False
+
+
+def may_be_near(position: Floats, agent: int, x: float, y: float, distance: float) -> bool:
+    """Return False if an agent is in no environment within a distance [m] of a point, with a margin for rounding.
+
+    >>> may_be_near(np.zeros((4, 2, 2)), 1, 3.0, 4.0, 4.9), may_be_near(np.zeros((4, 2, 2)), 1, 3.0, 4.0, 5.0)
+    (False, True)
+    """
+    reach2 = float(distance) * float(distance) * (1.0 + ROUNDING)
+    return bool(_is_any_near(np.ascontiguousarray(position), agent, float(x), float(y), reach2))
+
+
+def note_events(
+    event: NDArray[np.int8], contacts: Sequence[int], arrivals: Sequence[Bools], collision: int, success: int
+) -> None:
+    """Note the first event ``[E]`` of each environment, 0 before.
+
+    Args:
+        event: first events; modified in place.
+        contacts: environments in which a robot has a contact.
+        arrivals: ``[E]`` for each robot, whether it has arrived; success is the arrival of all.
+        collision, success: the numbers of the events.
+    """
+    open_ = event == 0
+    arrives = bool(arrivals) and all(one.any() for one in arrivals)
+    if not (contacts or arrives) or not open_.any():
+        return
+    collided = np.zeros(len(event), dtype=np.bool_)
+    collided[list(contacts)] = True
+    arrived = np.all(arrivals, axis=0) if arrivals else np.zeros(len(event), dtype=np.bool_)
+    event[open_ & collided] = collision
+    event[open_ & ~collided & arrived] = success
 
 
 def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, robots: Mapping[str, int]) -> Ints | None:
@@ -71,7 +147,9 @@ def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, rob
         return None
     met = np.zeros(len(world.slots), dtype=np.int64)
     if trial.end.empty:
-        met[(_people_count(world) == 0) & ~_expects_people(trial, world, people)] = 1
+        alone = _people_count(world) == 0
+        if alone.any():
+            met[alone & ~_expects_people(trial, world, people)] = 1
     for number, condition in enumerate(trial.end.conditions):
         value = _value(condition, world, robots)
         if value is not None:

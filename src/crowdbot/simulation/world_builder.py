@@ -120,7 +120,8 @@ def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarW
     else:
         latency = {agent: robot.latency for agent, robot in robots.items()}
         drives = {agent: robot.drive for agent, robot in robots.items()}
-        world = PlanarWorld(scene, model, drives, latency=latency, **whole)
+        ghosts = [agent for agent, robot in robots.items() if robot.ghost]
+        world = PlanarWorld(scene, model, drives, latency=latency, ghosts=ghosts, **whole)
     walkers = first - len(people.walks)
     if walkers and (router or journeys):
         world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
@@ -180,18 +181,23 @@ def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
         preferred_speed=row(people.speed, tops, 0.0),
         max_speed=row(1.3 * people.speed, tops, 0.0),
         active=agent < len(people) + len(robots),
-        visible=row(np.ones(len(people)), [robot.visible for robot in robots], 1.0).astype(bool),
+        visible=row(np.ones(len(people)), [robot.visible and not robot.ghost for robot in robots], 1.0).astype(bool),
         external=is_robot,
         group=row(people.group, np.full(len(robots), -1), -1.0).astype(np.int64),
         walls=trial.stage.as_walls(),
     )
 
 
-def limits_of(drive: Any) -> DriveLimits:
-    """Return the limits of a drive by field name (default: 1 m/s and 1 rad/s)."""
+def limits_of(drive: Any, holonomic: bool = False) -> DriveLimits:
+    """Return the limits of a drive by field name (default: 1 m/s and 1 rad/s).
+
+    Args:
+        drive: the drive.
+        holonomic: whether navigators move it in every direction.
+    """
     known = {name: float(getattr(drive, name)) for name in DriveLimits._fields if hasattr(drive, name)}
     values: dict[str, Any] = {"max_speed": 1.0, "max_turn_rate": 1.0} | known
-    return DriveLimits(**values)
+    return DriveLimits(**values | {"holonomic": holonomic})
 
 
 def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from .props import Cube, Light, Table, Tree
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
-    from .robot import Mount, RobotGoal, RobotSpec
+    from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -78,7 +78,7 @@ __getattr__, __dir__ = lazy_exports(
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
-        "robot": ["Mount", "RobotGoal", "RobotSpec"],
+        "robot": ["Mount", "Planner", "RobotGoal", "RobotSpec"],
         "scenarios": ["PRESETS"],
         "scenarios.crowds": ["DENSITIES"],
         "stage": ["Obstacle", "Stage", "Wall", "area"],
@@ -126,6 +126,7 @@ __all__ = [
     "OldNameWarning",
     "PeopleAppearance",
     "Plan",
+    "Planner",
     "Point",
     "Points",
     "Portal",

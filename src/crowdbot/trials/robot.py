@@ -14,17 +14,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, TickSchedule, did_you_mean, reads_only
-from crowdbot.navigation import Navigator
+from crowdbot.core import (
+    MOUNT_HEIGHT,
+    Clock,
+    InputError,
+    Pose,
+    RobotError,
+    TickSchedule,
+    Twist,
+    Walls,
+    did_you_mean,
+    reads_only,
+)
+from crowdbot.navigation import Navigator, PathPlanner
 from crowdbot.sensors import Sensor, SensorSchedule
-from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
+from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
 from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
 
-__all__ = ["Mount", "RobotGoal", "RobotSpec"]
+__all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
 Floats = NDArray[np.float64]
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
@@ -47,6 +58,22 @@ class RobotGoal:
     def position(self) -> tuple[float, float]:
         """``x, y`` [m]."""
         return self.x, self.y
+
+
+@dataclass(frozen=True)
+class Planner:
+    """Path planner of a robot: the navigator receives the next point of the shortest path around walls.
+
+    >>> Planner().margin
+    0.1
+    """
+
+    margin: float = attribute(
+        0.1, about="distance between the robot on its path and walls", unit="m", min=0.0, max=10.0
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,8 +156,28 @@ class RobotSpec:
     )
     rider: str = attribute("", about=ABOUT_RIDER)
     visible: bool = attribute(True, about="whether people react to the robot")
+    ghost: bool = attribute(
+        False, about="whether the robot is absent to people, other robots and their sensors, and has no contacts"
+    )
     control_period: float = attribute(0.1, about="control period", unit="s", exclusive_min=0.0)
+    deadline: float | None = attribute(
+        None,
+        about="compute time of a decision above which it is missed: the previous command stays (default: no limit)",
+        unit="s",
+        exclusive_min=0.0,
+    )
+    tracks: float | None = attribute(
+        None,
+        about="time span of the past positions of visible people for the navigator (default: none)",
+        unit="s",
+        exclusive_min=0.0,
+        max=600.0,
+    )
+    holonomic: bool = attribute(
+        False, about="whether the orca navigator moves in every direction, with an omnidirectional drive"
+    )
     goal: RobotGoal = child(about="goal")
+    planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
@@ -156,6 +203,11 @@ class RobotSpec:
             raise InputError(
                 'has cameras="true" but no such cameras: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
+            )
+        if self.holonomic and not _moves_sideways(self.drive):
+            raise InputError(
+                'has holonomic="true" but its drive cannot move sideways; take <drive type="omnidirectional"/>, or'
+                " leave it out"
             )
         for problem in rider_problems(self.rider, self.type):
             raise InputError(problem)
@@ -236,6 +288,14 @@ class RobotSpec:
         roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
         return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
 
+    def path_planner(self, walls: Walls) -> PathPlanner | None:
+        """Return the path planner among the walls of a stage, None without a planner.
+
+        Raises:
+            InputError: no space between the walls is wide enough for the robot.
+        """
+        return None if self.planner is None else PathPlanner.for_stage(walls, self.radius, self.planner.margin)
+
     def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
         """Return the schedule of a sensor; see the attribute ``sensor_rates``.
 
@@ -265,6 +325,12 @@ class RobotSpec:
         if not isinstance(self.type, str):
             raise InputError(f"Robot: type={quote_value(self.type)} is not a str")
         return _kind(self.type, self.folder, self.trust)
+
+
+def _moves_sideways(drive: Drive) -> bool:
+    """Return whether a drive at rest follows a command to the left."""
+    still, left = (Twists.of(twist, 1) for twist in (Twist(), Twist(left=0.1)))
+    return bool(drive.step(Pose.of((0.0, 0.0), 0.0), still, left, 0.1)[1].left[0] > 0.0)
 
 
 def _is_rendered(mount: Mount | world.SensorMount) -> bool:

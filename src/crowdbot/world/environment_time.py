@@ -53,10 +53,15 @@ class EnvironmentTime:
     @property
     def age(self) -> Any:
         """Time since the beginning [s]: a number if all environments agree, otherwise ``[E]``."""
+        tick = self.common_tick
+        return (self.ticks if tick is None else tick) * self.clock.step_ns / 1e9
+
+    @property
+    def common_tick(self) -> int | None:
+        """Number of steps since the environments began, None if they do not agree."""
         first = self.first_tick
-        if len(first) == 1 or bool((first == first[0]).all()):
-            return (self.clock.tick - int(first[0])) * self.clock.step_ns / 1e9
-        return self.ticks * self.clock.step_ns / 1e9
+        same = len(first) == 1 or bool((first == first[0]).all())
+        return self.clock.tick - int(first[0]) if same else None
 
     @property
     def now(self) -> Any:

@@ -18,6 +18,7 @@ from crowdbot.models.mixture import MODEL
 from .crowd.contact import ContactModel, ContactSurfaces
 from .crowd.departure import leave_at_goals, leave_in_zone
 from .crowd.environment_rows import stack_scenes, trim_scene, works_in_batches
+from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
 from .crowd.people_flow import PeopleFlow, environment_seeds
@@ -28,7 +29,7 @@ from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
 from .environment_time import EnvironmentTime
 from .planar_checks import check_arguments
-from .robots.drive import Drive, Twists
+from .robots.drive import Drive, Twists, put_robot
 from .robots.mount import MountPlacement
 from .robots.servo import CommandDelay, Pending
 from .world import Contact, World
@@ -45,9 +46,9 @@ __all__ = ["PlanarWorld"]
 
 Floats = NDArray[np.float64]
 
-
 CHANGEABLE = (
     "model", "drives", "latency", "robot_margin", "router", "contact", "limits", "exits", "heading_jitter", "substeps",
+    "ghosts",
 )  # fmt: skip
 """Arguments that :meth:`PlanarWorld.reconfigure` can change."""
 
@@ -68,8 +69,7 @@ class PlanarWorld(World):
         dt: time step [s].
         seed: seed of the crowd, or one for each environment; a single seed gives environment e the seed ``seed + e``.
             An environment equals a world with only this environment and its seed.
-        leave_radius: distance to the goal [m] below which people leave (``active=False``); None: they stay. Robots
-            never leave.
+        leave_radius: distance to the goal [m] below which people leave; None: they stay. Robots never leave.
         robot_margin: margin that people add to the radius of a robot [m]. Crowd models pass discs at zero clearance:
             without a margin, ORCA people touch a robot that stands still.
         router: guides people around walls to their goals.
@@ -80,19 +80,17 @@ class PlanarWorld(World):
         exits: zones in which people leave; robots stay.
         portals: zones that transfer people to another zone, as new people.
         script: agents that follow recorded tracks; to the crowd model they are external.
-        heading_jitter: largest offset of the preferred direction of a person [rad], constant for each person. It
-            resolves deadlocks of people who meet exactly head-on; 1e-3 is enough.
+        heading_jitter: largest constant offset of the direction of a person [rad], which resolves head-on deadlocks.
         substeps: crowd steps per step of the world; robots move straight during them.
-        ids: identities ``[A]`` or ``[E, A]`` (int), which determine the random numbers of each person
-            (default: 0 to A - 1).
-        latency: delay of the commands of a robot [s], by agent, see :class:`CommandDelay`; 0 for robots left out.
+        ids: identities ``[A]`` or ``[E, A]``, which determine random numbers of each person (default: 0 to A - 1).
+        latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
+        ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
 
     Attributes:
         environment_time: time of each environment, with the clock.
         twists: current twist of each robot.
         slots: ``[E]`` number of agents of each environment; further ones only pad the arrays.
-        contacts: pairs of a robot and another agent whose clearance was negative during the last step, assuming
-            straight motion.
+        contacts: pairs of a robot and another agent with negative clearance during the last step (straight motion).
         ids: current identities ``[E, A]``; new people have new identities.
 
     Raises:
@@ -130,6 +128,7 @@ class PlanarWorld(World):
     substeps: int = 1
     ids: Any = None
     latency: Mapping[int, float] = field(default_factory=dict)
+    ghosts: Sequence[int] = ()
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -162,7 +161,7 @@ class PlanarWorld(World):
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
         elapsed = self.environment_time.age
-        earlier, crowd = self._step_crowd(before)
+        earlier, crowd = self._step_crowd(hide_ghosts(before, self.ghosts))
         after = self._step_robots(before, crowd, asked)
         after = self._resolve_overlaps(earlier, after)
         after = after.replace(external=self.scene.external, time=self.environment_time.now)
@@ -175,7 +174,7 @@ class PlanarWorld(World):
         for zone in self.exits:
             after = leave_in_zone(after, zone)
         after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = self._traffic.advance(after, elapsed)
+        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -232,6 +231,8 @@ class PlanarWorld(World):
 
     def wall_clearance(self, robot: int) -> Floats:
         """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""
+        if robot in self.ghosts:
+            return np.full(len(self.slots), math.inf)
         walls = self.scene.walls
         if self._segments is None or self._segments[0] is not walls:
             self._segments = (walls, walls.segments())
@@ -240,20 +241,20 @@ class PlanarWorld(World):
 
     def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
-        return self.scene if environment is None else self.environment_scene(environment)
+        return hide_ghosts(self.scene if environment is None else self.environment_scene(environment), self.ghosts)
 
     def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies; see :class:`World`."""
-        return self._embodied(environment).scene(self.environment_scene(environment), skins)
+        return self._embodied(environment).scene(hide_ghosts(self.environment_scene(environment), self.ghosts), skins)
 
     @property
     def renderer(self) -> Renderer:
-        """Renderer of the current scene; see :class:`World`."""
-        return self.environment_renderer(0)
+        """Renderer of the current scene with ghosts, for films; see :class:`World`."""
+        return self._embodied(0).renderer(self.environment_scene(0))
 
     def environment_renderer(self, environment: int) -> Renderer:
         """Return the renderer of one environment; see :class:`World`."""
-        return self._embodied(environment).renderer(self.environment_scene(environment))
+        return self._embodied(environment).renderer(hide_ghosts(self.environment_scene(environment), self.ghosts))
 
     def embody(
         self,
@@ -311,7 +312,8 @@ class PlanarWorld(World):
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
         wide = before.radius.copy()
-        wide[:, list(self.twists)] += self.robot_margin
+        for robot in self.twists:
+            wide[:, robot] += self.robot_margin
         crowd = earlier = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
         h = self.dt / self.substeps
         for k in range(self.substeps):
@@ -379,21 +381,20 @@ class PlanarWorld(World):
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
         for robot, command in asked.items():
-            here = before.active[:, robot]
             old = Pose(before.position[:, robot].copy(), before.heading[:, robot].copy())
             pose, twist = self.drives[robot].step(old, self.twists[robot], command, self.dt)
             self.twists[robot] = twist
-            position[:, robot] = np.where(here[:, None], pose.position, old.position)
-            heading[:, robot] = np.where(here, pose.heading, old.heading)
-            velocity[:, robot] = np.where(here[:, None], twist.velocity(heading[:, robot]), 0.0)
+            put_robot(
+                robot, before.active, before.position, before.heading, pose.position, pose.heading,
+                twist.forward, twist.left, position, velocity, heading,
+            )  # fmt: skip
         return after.replace(position=position, velocity=velocity, heading=heading)
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         found: list[Contact] = []
         for number, robot in enumerate(self.twists):
             gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
-            if least < 0.0:
+            if least < 0.0 and robot not in self.ghosts:
                 gap[:, list(self.twists)[: number + 1]] = math.inf
-                for e, other in np.argwhere(gap < 0.0).tolist():
-                    found.append(Contact(e, robot, other, float(gap[e, other])))
+                found += [Contact(e, robot, a, float(gap[e, a])) for e, a in np.argwhere(gap < 0.0).tolist()]
         return tuple(sorted(found))

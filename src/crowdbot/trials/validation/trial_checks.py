@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
+from crowdbot.navigation import PathPlanner
 from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
@@ -262,6 +263,7 @@ def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
         yield _robot_place(stage, robot, "starts", robot)
         yield from (_robot_place(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
         yield from (_robot_overlap(robot, other) for other in robots[:k])
+        yield _robot_path(stage, robot)
 
 
 def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
@@ -276,6 +278,22 @@ def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | R
         yield robot, f"{word} at {spot[0]:g},{spot[1]:g} inside {block}"
     elif room + reach < robot.radius:
         yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+
+
+def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
+    """Yield why the path planner of a robot finds no path from start to goal."""
+    if robot.planner is None:
+        return
+    try:
+        planner = PathPlanner.for_stage(stage.as_walls(), robot.radius, robot.planner.margin)
+        planner.waypoints(robot.position, robot.goal.position)
+    except InputError as error:
+        reason = str(error).removeprefix("PathPlanner: ").removeprefix("no path: ").removeprefix("Router: ")
+        yield (
+            robot,
+            f'has <planner margin="{robot.planner.margin:g}"/> but no path to its goal: {reason}; take a smaller'
+            " margin, or leave the planner out",
+        )
 
 
 def _robot_overlap(robot: RobotSpec, other: RobotSpec) -> Problems:

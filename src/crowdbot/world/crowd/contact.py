@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, InputError, Neighbors, Scene, Walls, did_you_mean, kernel, prange
+from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, Walls, did_you_mean, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.neighbors import nearest
 
+from .agent_arrays import BOOL, FLOAT, dense
+from .contact_bodies import gather_bodies, shift_bodies
+from .contact_search import find_close_bodies
 from .wall_cells import WallCells, wall_cells
 
 __all__ = ["ContactModel", "ContactSurfaces"]
@@ -24,14 +26,14 @@ Rows = NDArray[np.int32]
 VARIANTS = ("position", "force")
 MOST = 24
 """Maximum number of neighbors that push a person at the same time, nearest first."""
-SPARE = 0.25
-"""Margin of the neighbor search, in radii; pushes change positions."""
 TOUCH = 1.0 - 1e-4
 """Fraction of the contact distance at which two bodies, or a body and a wall, count as separated."""
 PASSES = 4
 """Maximum number of walls that push a person one after the other."""
 REACH = 0.5
 """Steps up to this length [m] are tested for wall crossings in grid cells, longer ones against all walls."""
+ALONE = 8
+"""Minimum number of environments for which each is the work of one thread."""
 GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
 
 
@@ -43,6 +45,36 @@ class _Bodies(NamedTuple):
     radius: Floats
     pushed: Bools
     """Whether a push can move the agent."""
+
+
+@kernel(parallel=True)
+def _push_environments(
+    environments: int, iterations: int, bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float,
+    now: Floats, moved: Bools, then: Floats, moves: Bools,
+) -> None:  # fmt: skip
+    """Push all agents, each environment in one thread, and leave their positions in ``now``."""
+    A = len(now) // environments
+    for e in prange(environments):
+        _push_range(e * A, (e + 1) * A, iterations, bodies, near, cells, solid, gain, now, moved, then, moves)
+
+
+@kernel
+def _push_range(
+    begin: int, end: int, iterations: int, bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools,
+    gain: float, now: Floats, moved: Bools, then: Floats, moves: Bools,
+) -> None:  # fmt: skip
+    """Push the agents of whole environments until nobody moves, and leave their positions in ``now``."""
+    place, other = now, then
+    for _ in range(iterations):
+        _push_part(begin, end, bodies, near, cells, solid, gain, place, moved, other, moves)
+        place, other, moved, moves = other, place, moves, moved
+        some = False
+        for row in range(begin, end):
+            some = some or moved[row]
+        if not some:
+            break
+    for row in range(begin, end):
+        now[row, 0], now[row, 1] = place[row, 0], place[row, 1]
 
 
 @kernel(parallel=True)
@@ -295,41 +327,51 @@ class ContactModel:
         self, before: Scene, after: Scene, dt: float, surfaces: ContactSurfaces | None = None
     ) -> Scene:
         """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with overlaps resolved."""
-        here = after.active
-        radius = np.where(here, after.radius, 0.0)
-        largest = radius.max(axis=1, initial=0.0)
-        if surfaces is None:
-            surfaces = ContactSurfaces.of(after.walls, largest.max(initial=0.0))
-        pushed = here & ~after.external
-        seen = here & after.visible
-        near = nearest(after.position, radius + (1.0 + SPARE) * largest[:, None], MOST, seen, pushed)
-        place = np.where(here[..., None], after.position, 0.0)
-        bodies = _Bodies(
-            np.where(here[..., None], before.position, 0.0).reshape(-1, 2),
-            place.reshape(-1, 2).copy(),
-            radius.reshape(-1),
-            pushed.reshape(-1),
+        shape = after.shape
+        pairs, position = (*shape, 2), dense(after.position, (*shape, 2), FLOAT)
+        start, place, radius, reach = np.empty(pairs), np.empty(pairs), np.empty(shape), np.empty(shape)
+        pushed, seen = np.empty(shape, dtype=np.bool_), np.empty(shape, dtype=np.bool_)
+        gather_bodies(
+            dense(before.position, pairs, FLOAT),
+            position,
+            dense(after.radius, shape, FLOAT),
+            dense(after.active, shape, BOOL),
+            dense(after.external, shape, BOOL),
+            dense(after.visible, shape, BOOL),
+            *(start, place, radius, reach, pushed, seen),
         )
+        if surfaces is None:
+            surfaces = ContactSurfaces.of(after.walls, float(radius.max(initial=0.0)))
+        near = find_close_bodies(position, reach, MOST, seen, pushed)
+        now = place.reshape(-1, 2)
+        bodies = _Bodies(start.reshape(-1, 2), now.copy(), radius.reshape(-1), pushed.reshape(-1))
         gain = self.stiffness * dt * dt if self.variant == "force" else 0.0
-        now, then = bodies.chosen.copy(), bodies.chosen.copy()
-        moved, moves = np.ones(len(now), dtype=np.bool_), np.zeros(len(now), dtype=np.bool_)
-        for _ in range(self.iterations if gain == 0.0 else 1):
-            _push(bodies, near, surfaces.cells, surfaces.solid, gain, now, moved, then, moves)
-            now, then, moved, moves = then, now, moves, moved
-            if not np.any(moved):
-                break
-        return _displace(after, now.reshape(place.shape), pushed, dt)
+        now = _resolve(bodies, near, surfaces, gain, self.iterations if gain == 0.0 else 1, now)
+        where, pace = np.empty(pairs), np.empty(pairs)
+        velocity, limit = dense(after.velocity, pairs, FLOAT), dense(after.max_speed, shape, FLOAT)
+        some = shift_bodies(now.reshape(pairs), position, velocity, limit, pushed, float(dt), where, pace)
+        return after.replace(position=where, velocity=pace) if some else after
 
 
-def _displace(scene: Scene, place: Floats, pushed: Bools, dt: float) -> Scene:
-    """Return the scene with people at new positions and with matching velocities."""
-    shift = np.where(pushed[..., None], place - np.where(pushed[..., None], scene.position, 0.0), 0.0)
-    changed = pushed & np.any(shift != 0.0, axis=-1)
-    velocity = scene.velocity + shift / dt
-    speed, old = np.hypot(velocity[..., 0], velocity[..., 1]), np.hypot(scene.velocity[..., 0], scene.velocity[..., 1])
-    limit = np.maximum(old, scene.max_speed)
-    velocity = velocity * np.minimum(1.0, limit / np.maximum(speed, 1e-300))[..., None]
-    return scene.replace(
-        position=np.where(changed[..., None], place, scene.position),
-        velocity=np.where(changed[..., None], velocity, scene.velocity),
-    )
+def _resolve(
+    bodies: _Bodies, near: Neighbors, surfaces: ContactSurfaces, gain: float, iterations: int, now: Floats
+) -> Floats:
+    """Return the positions after some pushes: in one thread, one for each environment, or one for each part."""
+    then, environments = now.copy(), len(near.number)
+    # plain tuples: numba dispatches slowly on named tuples with similar fields
+    common: Any = (tuple(bodies), tuple(near), tuple(surfaces.cells), surfaces.solid, float(gain))
+    moved, moves = np.ones(len(now), dtype=np.bool_), np.zeros(len(now), dtype=np.bool_)
+    whole: Any = (iterations, *common, now, moved, then, moves)
+    if len(now) <= SMALL:
+        _push_range(0, len(now), *whole)
+        return now
+    if environments >= ALONE:
+        _push_environments(environments, *whole)
+        return now
+    for _ in range(iterations):
+        step: Any = (*common, now, moved, then, moves)
+        _push(*step)
+        now, then, moved, moves = then, now, moves, moved
+        if not np.any(moved):
+            break
+    return now

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, did_you_mean
 
+from .agent_arrays import BOOL, FLOAT, dense
 from .waypoint import PersonRandom, Waypoint
+from .waypoint_table import ASKS, LEAVES, TURNS, WaypointTable, advance_waypoints, routing_mask
 
 __all__ = ["JOURNEY", "STOP", "JourneyAssignment", "WaypointSequence"]
 
@@ -115,6 +119,26 @@ class JourneyAssignment:
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
         """Return the scene after people who reached a waypoint have switched to the next one or left."""
+        if not self._table.complete:
+            return self._advance_each(scene, seeds, ids, holds)
+        shape = scene.shape
+        stop, active, goal = scene.memory[STOP].copy(), scene.active.copy(), scene.goal.copy()
+        ask = np.empty(shape, dtype=np.bool_)
+        journey = dense(scene.memory[JOURNEY], shape, FLOAT)
+        position, external = dense(scene.position, (*shape, 2), FLOAT), dense(scene.external, shape, BOOL)
+        found = advance_waypoints(self._rows, journey, position, external, stop, active, goal, ask)
+        changes: dict[str, Any] = {"goal": goal} if found else {}
+        if found & TURNS:
+            changes["memory"] = {**scene.memory, STOP: stop}
+        if found & LEAVES:
+            changes["active"] = active
+        on = scene.replace(**changes) if changes else scene
+        return self.aim(on, ask, seeds, ids, holds) if found & ASKS else on
+
+    def _advance_each(
+        self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
+    ) -> Scene:
+        """Advance journeys with waypoints of other classes, one group of people after the other."""
         stop, active = scene.memory[STOP].copy(), scene.active.copy()
         renewed = np.zeros(scene.shape, dtype=np.bool_)
         for number, k, at, rows in self._parties(scene):
@@ -144,24 +168,38 @@ class JourneyAssignment:
             return scene
         goal = scene.goal.copy()
         seed = np.broadcast_to(seeds[:, None], scene.shape)
-        for number, k, at, rows in self._parties(scene):
-            mine = rows & who
-            if np.any(mine):
-                luck = PersonRandom(seed[mine], ids[mine], (STOP, number, k), holds)
-                goal[mine] = at.goal(scene.position[mine], luck)
+        for number, k, at, mine in self._parties(scene, who):
+            luck = PersonRandom(seed[mine], ids[mine], (STOP, number, k), holds)
+            goal[mine] = at.goal(scene.position[mine], luck)
         return scene.replace(goal=goal)
 
     def uses_routing(self, scene: Scene) -> Bools:
         """Return ``[E, A]`` whether routing applies to the goal of an agent."""
-        out = np.ones(scene.shape, dtype=np.bool_)
-        for _, _, at, rows in self._parties(scene):
-            if not at.uses_routing:
-                out[rows] = False
+        return self.walks_on_routes(scene) | ~np.greater(scene.active, scene.external)
+
+    def walks_on_routes(self, scene: Scene) -> Bools:
+        """Return ``[E, A]`` who walks to a goal to which routing applies."""
+        shape = scene.shape
+        out = np.empty(shape, dtype=np.bool_)
+        memory = (dense(scene.memory[JOURNEY], shape, FLOAT), dense(scene.memory[STOP], shape, FLOAT))
+        people = (dense(scene.active, shape, BOOL), dense(scene.external, shape, BOOL))
+        routing_mask(self._rows, *memory, *people, out)
         return out
 
-    def _parties(self, scene: Scene) -> list[tuple[int, int, Waypoint, Bools]]:
+    @functools.cached_property
+    def _rows(self) -> Any:
+        """The table as a plain tuple: numba dispatches slowly on named tuples."""
+        return tuple(self._table)
+
+    @functools.cached_property
+    def _table(self) -> WaypointTable:
+        return WaypointTable.of([(journey.stops, journey.then) for journey in self.journeys])
+
+    def _parties(self, scene: Scene, who: Bools | None = None) -> list[tuple[int, int, Waypoint, Bools]]:
         """Return the people on the way to each waypoint of each journey; empty groups are left out."""
-        walking = scene.active & ~scene.external
+        walking = np.greater(scene.active, scene.external)
+        if who is not None:
+            walking &= who
         found = []
         for number, journey in enumerate(self.journeys):
             mine = walking & (scene.memory[JOURNEY] == number)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, PerAgent, Scene, per_agent
+from crowdbot.core import InputError, PerAgent, Scene, kernel, per_agent
+
+from .agent_arrays import BOOL, FLOAT, dense
 
 __all__ = ["CrowdLimits"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -49,25 +53,60 @@ class CrowdLimits:
 
     def apply(self, before: Scene, after: Scene, dt: float) -> Scene:
         """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with velocities clipped to the limits."""
-        velocity, walking = after.velocity, after.active & ~after.external
-        old = np.where(walking[..., None], before.velocity, 0.0)
-        if self.max_acceleration is not None:
-            most = per_agent(self.max_acceleration, after.shape, "max_acceleration") * dt
-            velocity = _clip(velocity - old, most, velocity, old)
-        if self.max_speed is not None:
-            velocity = _clip(velocity, per_agent(self.max_speed, after.shape, "max_speed"), velocity, 0.0)
-        cut = walking & np.any(velocity != after.velocity, axis=-1)
-        along = after.heading == np.arctan2(after.velocity[..., 1], after.velocity[..., 0])
-        turned = np.where(along, np.arctan2(velocity[..., 1], velocity[..., 0]), after.heading)
-        return after.replace(
-            velocity=np.where(cut[..., None], velocity, after.velocity),
-            position=np.where(cut[..., None], before.position + velocity * dt, after.position),
-            heading=np.where(cut, turned, after.heading),
+        shape = after.shape
+        pairs = (*shape, 2)
+        most = math.inf if self.max_acceleration is None else self.max_acceleration
+        top = math.inf if self.max_speed is None else self.max_speed
+        chosen = dense(after.velocity, pairs, FLOAT)
+        velocity, position = np.empty(pairs), np.empty(pairs)
+        cut = np.empty(shape, dtype=np.bool_)
+        some = _clip(
+            dense(before.position, pairs, FLOAT),
+            dense(before.velocity, pairs, FLOAT),
+            dense(after.position, pairs, FLOAT),
+            chosen,
+            dense(after.active, shape, BOOL),
+            dense(after.external, shape, BOOL),
+            per_agent(most, shape, "max_acceleration"),
+            per_agent(top, shape, "max_speed"),
+            float(dt),
+            velocity,
+            position,
+            cut,
         )
+        if not some:
+            return after
+        along = after.heading == np.arctan2(chosen[..., 1], chosen[..., 0])
+        turned = np.where(along, np.arctan2(velocity[..., 1], velocity[..., 0]), after.heading)
+        return after.replace(velocity=velocity, position=position, heading=np.where(cut, turned, after.heading))
 
 
-def _clip(change: Floats, most: Floats, whole: Floats, start: Floats | float) -> Floats:
-    """Return ``start`` plus the change, shortened to length ``most``; ``whole`` if it is short enough."""
-    length = np.sqrt(change[..., 0] ** 2 + change[..., 1] ** 2)
-    shorter = start + change * (most / np.maximum(length, 1e-300))[..., None]
-    return np.where((length > most)[..., None], shorter, whole)
+@kernel
+def _clip(
+    start: Floats, old: Floats, place: Floats, chosen: Floats, active: Bools, external: Bools, most: Floats,
+    top: Floats, dt: float, velocity: Floats, position: Floats, cut: Bools,
+) -> bool:  # fmt: skip
+    """Write the clipped velocities, their positions and who is cut; return whether somebody is."""
+    some = False
+    for e in range(len(active)):
+        for a in range(active.shape[1]):
+            x, y = chosen[e, a, 0], chosen[e, a, 1]
+            velocity[e, a, 0], velocity[e, a, 1] = x, y
+            position[e, a, 0], position[e, a, 1] = place[e, a, 0], place[e, a, 1]
+            cut[e, a] = False
+            if not active[e, a] or external[e, a]:
+                continue
+            dx, dy = x - old[e, a, 0], y - old[e, a, 1]
+            length, limit = math.sqrt(dx * dx + dy * dy), most[e, a] * dt
+            if length > limit:
+                share = limit / max(length, 1e-300)
+                x, y = old[e, a, 0] + dx * share, old[e, a, 1] + dy * share
+            length, limit = math.sqrt(x * x + y * y), top[e, a]
+            if length > limit:
+                share = limit / max(length, 1e-300)
+                x, y = 0.0 + x * share, 0.0 + y * share
+            if x != chosen[e, a, 0] or y != chosen[e, a, 1]:
+                velocity[e, a, 0], velocity[e, a, 1] = x, y
+                position[e, a, 0], position[e, a, 1] = start[e, a, 0] + x * dt, start[e, a, 1] + y * dt
+                cut[e, a], some = True, True
+    return some

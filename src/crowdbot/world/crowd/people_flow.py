@@ -13,6 +13,7 @@ from crowdbot.core import InputError, Scene, kernel
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
+from .agent_arrays import BOOL, FLOAT, dense
 from .journey import JourneyAssignment
 from .person_random import uniform
 from .routing import WAY, Router, fresh
@@ -22,6 +23,7 @@ __all__ = ["PeopleFlow", "environment_seeds"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass
@@ -142,20 +144,25 @@ class PeopleFlow:
         return np.ones(len(points), dtype=np.bool_) if self.router is None else self.router.holds(points)
 
     def _routed(self, scene: Scene) -> NDArray[np.bool_]:
-        walking = scene.active & ~scene.external
-        return walking if self.journeys is None else walking & self.journeys.uses_routing(scene)
+        if self.journeys is None:
+            return np.greater(scene.active, scene.external)
+        return self.journeys.walks_on_routes(scene)
 
     def _turn(self, heading_jitter: float) -> tuple[Floats, Floats]:
         """Return cosine and sine of the constant angle ``[E, A]`` by which each person deviates from the goal."""
         known = self._turns
-        if (
-            known is None
-            or known[0] != heading_jitter
-            or not (np.array_equal(known[1], self.ids) and np.array_equal(known[2], self.seeds))
-        ):
-            angle = heading_jitter * (2.0 * uniform(self.seeds[:, None], self.ids, "symmetry") - 1.0)
-            self._turns = known = (heading_jitter, self.ids.copy(), self.seeds.copy(), np.cos(angle), np.sin(angle))
-        return known[3], known[4]
+        if known is None or known[0] != heading_jitter or known[1].shape != self.ids.shape:
+            none = np.full(self.ids.shape, np.nan)
+            self._turns = known = (heading_jitter, self.ids - 1, self.seeds.copy(), none, none.copy())
+        _, ids, seeds, cos, sin = known
+        if not _is_same(ids, self.ids, seeds, self.seeds):
+            new = (ids != self.ids) | (seeds != self.seeds)[:, None]
+            seed = np.broadcast_to(self.seeds[:, None], ids.shape)[new]
+            angle = heading_jitter * (2.0 * uniform(seed, self.ids[new], "symmetry") - 1.0)
+            ids, cos, sin = self.ids.copy(), cos.copy(), sin.copy()
+            cos[new], sin[new] = np.cos(angle), np.sin(angle)
+            self._turns = (heading_jitter, ids, self.seeds.copy(), cos, sin)
+        return cos, sin
 
 
 def environment_seeds(seed: int | Sequence[int], count: int) -> list[int]:
@@ -184,12 +191,26 @@ def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
 
 
 @kernel
-def _rotate(own: NDArray[np.bool_], center: Floats, cos: Floats, sin: Floats, value: Floats, out: Floats) -> None:
-    for e in range(len(own)):
-        for a in range(own.shape[1]):
+def _is_same(ids: Numbers, new_ids: Numbers, seeds: Numbers, new_seeds: Numbers) -> bool:
+    """Return whether identities ``[E, A]`` and seeds ``[E]`` are equal."""
+    for e in range(len(ids)):
+        if seeds[e] != new_seeds[e]:
+            return False
+        for a in range(ids.shape[1]):
+            if ids[e, a] != new_ids[e, a]:
+                return False
+    return True
+
+
+@kernel
+def _rotate(
+    active: Bools, external: Bools, center: Floats, cos: Floats, sin: Floats, value: Floats, out: Floats
+) -> None:
+    for e in range(len(active)):
+        for a in range(active.shape[1]):
             x, y = value[e, a, 0], value[e, a, 1]
             out[e, a, 0], out[e, a, 1] = x, y
-            if own[e, a]:
+            if active[e, a] and not external[e, a]:
                 cx, cy = center[e, a, 0], center[e, a, 1]
                 dx, dy = x - cx, y - cy
                 out[e, a, 0] = cx + (cos[e, a] * dx - sin[e, a] * dy)
@@ -198,12 +219,12 @@ def _rotate(own: NDArray[np.bool_], center: Floats, cos: Floats, sin: Floats, va
 
 def _rotate_goals(scene: Scene, cos: Floats, sin: Floats) -> Scene:
     """Return the scene with goals, or preferred velocities, rotated around each agent."""
-    own = scene.active & ~scene.external
-    if scene.preferred_velocity is not None:
-        wish = np.ascontiguousarray(scene.preferred_velocity)
-        out = np.empty(wish.shape)
-        _rotate(own, np.zeros(wish.shape), cos, sin, wish, out)
+    shape = scene.shape
+    pairs = (*shape, 2)
+    out, wish = np.empty(pairs), scene.preferred_velocity
+    own = (dense(scene.active, shape, BOOL), dense(scene.external, shape, BOOL))
+    if wish is not None:
+        _rotate(*own, np.zeros(pairs), cos, sin, dense(wish, pairs, FLOAT), out)
         return scene.replace(preferred_velocity=out)
-    out = np.empty(scene.goal.shape)
-    _rotate(own, np.ascontiguousarray(scene.position), cos, sin, np.ascontiguousarray(scene.goal), out)
+    _rotate(*own, dense(scene.position, pairs, FLOAT), cos, sin, dense(scene.goal, pairs, FLOAT), out)
     return scene.replace(goal=out)

@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, kernel
 
-from .waypoint import PolygonZone
+from .agent_arrays import BOOL, FLOAT, dense
+from .waypoint import PolygonZone, is_inside
 
 __all__ = ["PortalTransfer", "apply_portals"]
 
 Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 GAP = 0.01
 """Minimum clearance [m] to other bodies at the exit."""
@@ -63,28 +66,88 @@ def apply_portals(before: Scene, scene: Scene, portals: Sequence[PortalTransfer]
     """
     if not portals:
         return scene
-    moving = scene.active & ~scene.external
-    position: Floats = scene.position.copy()
-    inside = [_within(scene, portal) for portal in portals]
-    waiting = moving & np.any(inside, axis=0)
-    done = np.zeros(scene.shape, dtype=np.bool_)
-    for portal, zone in zip(portals, inside, strict=True):
-        there = moving & ~done & zone
-        shift = np.array([portal.dx, portal.dy])
-        for e, a in np.argwhere(there):
-            place = position[e, a] + shift
-            away = np.hypot(*(position[e] - place).T)
-            near = scene.active[e] & ~waiting[e] & (away < scene.radius[e] + scene.radius[e, a] + GAP)
-            near[a] = False
-            if not np.any(near):
-                position[e, a] = place
-                ids[e, a] = following[e]
-                following[e] += 1
-                done[e, a], waiting[e, a] = True, False
-    held = waiting & before.active & np.any([_within(before, portal) for portal in portals], axis=0)
-    velocity = np.where(held[..., None], 0.0, scene.velocity)
-    return scene.replace(position=np.where(held[..., None], before.position, position), velocity=velocity)
+    shape = scene.shape
+    pairs = (*shape, 2)
+    position, velocity = scene.position.copy(), scene.velocity.copy()
+    rings = [portal.zone.ring for portal in portals]
+    changed = _transfer(
+        np.concatenate(rings),
+        np.cumsum([0, *map(len, rings)]),
+        np.array([(portal.dx, portal.dy) for portal in portals], dtype=np.float64),
+        dense(before.position, pairs, FLOAT),
+        dense(before.active, shape, BOOL),
+        dense(scene.active, shape, BOOL),
+        dense(scene.external, shape, BOOL),
+        dense(scene.radius, shape, FLOAT),
+        *(position, velocity, ids, following),
+    )
+    return scene.replace(position=position, velocity=velocity) if changed else scene
 
 
-def _within(scene: Scene, portal: PortalTransfer) -> NDArray[np.bool_]:
-    return portal.zone.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)
+@kernel
+def _transfer(
+    ring: Floats, first: Numbers, shift: Floats, old: Floats, present: Bools, active: Bools, external: Bools,
+    radius: Floats, position: Floats, velocity: Floats, ids: Numbers, following: Numbers,
+) -> bool:  # fmt: skip
+    """Transfer people, and stop those who wait; return whether anything changed.
+
+    Args:
+        ring, first: corners of all portals, and the first corner of each.
+        shift: ``[P, 2]`` displacements.
+        old, present: positions and activity one step ago.
+        active, external, radius: current agents ``[E, A]``.
+        position, velocity, ids, following: modified in place.
+    """
+    E, A = active.shape
+    P = len(shift)
+    inside, waiting = np.empty((P, A), dtype=np.bool_), np.empty(A, dtype=np.bool_)
+    changed = False
+    for e in range(E):
+        some = False
+        for a in range(A):
+            waiting[a] = False
+            for p in range(P):
+                inside[p, a] = (
+                    active[e, a]
+                    and not external[e, a]
+                    and is_inside(ring[first[p] : first[p + 1]], position[e, a, 0], position[e, a, 1])
+                )
+                waiting[a] = waiting[a] or inside[p, a]
+            some = some or waiting[a]
+        if not some:
+            continue
+        for p in range(P):
+            for a in range(A):
+                if not inside[p, a]:
+                    continue
+                x, y = position[e, a, 0] + shift[p, 0], position[e, a, 1] + shift[p, 1]
+                if _is_free(x, y, a, active[e], waiting, position[e], radius[e]):
+                    position[e, a, 0], position[e, a, 1] = x, y
+                    ids[e, a] = following[e]
+                    following[e] += 1
+                    waiting[a], changed = False, True
+                    for later in range(p, P):
+                        inside[later, a] = False
+        for a in range(A):
+            for p in range(P):
+                if (
+                    waiting[a]
+                    and present[e, a]
+                    and is_inside(ring[first[p] : first[p + 1]], old[e, a, 0], old[e, a, 1])
+                ):
+                    position[e, a, 0], position[e, a, 1] = old[e, a, 0], old[e, a, 1]
+                    velocity[e, a, 0], velocity[e, a, 1] = 0.0, 0.0
+                    changed = True
+                    break
+    return changed
+
+
+@kernel
+def _is_free(x: float, y: float, agent: int, active: Bools, waiting: Bools, position: Floats, radius: Floats) -> bool:
+    """Return whether an agent has room at x, y; those who wait in portals do not count."""
+    for b in range(len(active)):
+        if b == agent or not active[b] or waiting[b]:
+            continue
+        if math.hypot(position[b, 0] - x, position[b, 1] - y) < radius[b] + radius[agent] + GAP:
+            return False
+    return True

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import CHUNK, InputError, Scene, Walls, did_you_mean, kernel, prange
+from crowdbot.core import CHUNK, SMALL, InputError, Scene, Walls, did_you_mean, kernel, prange
 
+from .agent_arrays import BOOL, FLOAT, dense
+from .corner_graph import corner_graph
 from .free_space import corners, room_for
-from .wall_cells import WallCells, distance2, sees, wall_cells
+from .wall_cells import distance2, sees, wall_cells
 
 __all__ = ["WAY", "Router", "Ways"]
 
@@ -61,33 +63,6 @@ class Ways(NamedTuple):
     subgoal: Floats
     length: Floats
     way: Floats
-
-
-@kernel(parallel=True)
-def _connect(wall: Floats, first: Rows, member: Rows, frame: Floats, node: Floats, length: Floats) -> None:
-    """Compute the distances between corners in sight of each other."""
-    for i in prange(len(node)):
-        for j in range(i):
-            x, y, tx, ty = node[i, 0], node[i, 1], node[j, 0], node[j, 1]
-            if sees(wall, first, member, frame, x, y, tx, ty, 1.0):
-                length[i, j] = length[j, i] = math.sqrt((tx - x) ** 2 + (ty - y) ** 2)
-
-
-@kernel
-def _shorten(length: Floats, after: Rows) -> None:
-    """Compute shortest path lengths from leg lengths, and the corner after i on the path to j (Floyd-Warshall)."""
-    N = len(length)
-    for k in range(N):
-        for i in range(N):
-            head = length[i, k]
-            if head == math.inf or i == k:
-                continue
-            step = after[i, k]
-            for j in range(N):
-                total = head + length[k, j]
-                if total < length[i, j]:
-                    length[i, j] = total
-                    after[i, j] = step
 
 
 @kernel
@@ -186,6 +161,45 @@ def _follow_part(
         mine[CORNER] = u
 
 
+@kernel
+def _measure(map_: _Map, place: Floats, asking: NDArray[np.bool_], way: Floats, next_: Floats, length: Floats) -> bool:
+    """Write the next point and the length of each path; return whether planning failed for somebody."""
+    node, between = map_[4], map_[5]
+    failed = False
+    for row in range(len(way)):
+        next_[row, 0], next_[row, 1], length[row] = place[row, 0], place[row, 1], 0.0
+        if not asking[row]:
+            continue
+        gx, gy, u, rest = way[row, AIM], way[row, AIM + 1], int(way[row, CORNER]), 0.0
+        failed = failed or u == LOST
+        next_[row, 0], next_[row, 1] = gx, gy
+        if u >= 0:
+            w = int(way[row, LAST])
+            next_[row, 0], next_[row, 1] = node[u, 0], node[u, 1]
+            rest = between[u, w] + math.hypot(node[w, 0] - gx, node[w, 1] - gy)
+        length[row] = math.hypot(next_[row, 0] - place[row, 0], next_[row, 1] - place[row, 1]) + rest
+    return failed
+
+
+@kernel
+def _look_ahead(
+    position: Floats, goal: Floats, subgoal: Floats, length: Floats, way: Floats, asking: NDArray[np.bool_], aim: Floats
+) -> None:
+    """Write goals on the next straight section of each path, at the distance of the path length."""
+    for e in range(len(asking)):
+        for a in range(asking.shape[1]):
+            aim[e, a, 0], aim[e, a, 1] = goal[e, a, 0], goal[e, a, 1]
+            if not asking[e, a]:
+                continue
+            x, y = position[e, a, 0], position[e, a, 1]
+            aim[e, a, 0], aim[e, a, 1] = subgoal[e, a, 0], subgoal[e, a, 1]
+            dx, dy = subgoal[e, a, 0] - x, subgoal[e, a, 1] - y
+            distance = math.sqrt(dx * dx + dy * dy)
+            if way[e, a, CORNER] != STRAIGHT and distance > 0.0:
+                share = length[e, a] / max(distance, 1e-12)
+                aim[e, a, 0], aim[e, a, 1] = x + dx * share, y + dy * share
+
+
 @dataclass(frozen=True, eq=False)
 class Router:
     """Shortest paths around walls for bodies of one size, computed once for a stage; see :meth:`of`.
@@ -233,7 +247,7 @@ class Router:
         if not parts:
             raise InputError(f"Router: no space between the walls is wide enough for a body of radius {radius} m")
         cells = wall_cells(walls.segments(), radius)
-        length, after = _graph(cells, node)
+        length, after = corner_graph(cells, node)
         return cls(radius, unreachable, walls, _Map(*cells, node, length, after), parts)
 
     def towards(self, position: ArrayLike, goal: ArrayLike) -> Floats:
@@ -263,18 +277,23 @@ class Router:
             InputError: a goal cannot be reached.
         """
         E, A = position.shape[:2]
-        asks = np.ones((E, A), np.bool_) if asking is None else np.ascontiguousarray(asking)
-        new = fresh((E, A)) if way is None else np.array(way, dtype=np.float64)
-        rows, place = new.reshape(-1, COLUMNS), np.where(asks[..., None], position, 0.0).reshape(-1, 2)
-        aims = np.where(asks[..., None], goal, 0.0).reshape(-1, 2)
-        _follow(self._map, place, aims, asks.reshape(-1), rows)
-        next_ = self._next(rows)
-        stray = np.flatnonzero(asks.reshape(-1) & (rows[:, CORNER] == LOST))
-        for k in stray:
-            next_[k] = self._rescue(rows[k], place[k], divmod(int(k), A))
-        length = np.hypot(*(next_ - place).T) + self._remaining_length(rows)
-        subgoal = np.where(asks[..., None], next_.reshape(E, A, 2), position)
-        return Ways(subgoal, np.where(asks, length.reshape(E, A), 0.0), new)
+        asks = np.ones((E, A), np.bool_) if asking is None else dense(asking, (E, A), BOOL)
+        new = fresh((E, A)) if way is None else np.array(way, dtype=np.float64, order="C")
+        rows, asked = new.reshape(-1, COLUMNS), asks.reshape(-1)
+        place = dense(position, (E, A, 2), FLOAT).reshape(-1, 2)
+        aims = dense(goal, (E, A, 2), FLOAT).reshape(-1, 2)
+        map_: Any = tuple(self._map)
+        if len(rows) <= SMALL:
+            _follow_part(0, len(rows), map_, place, aims, asked, rows)
+        else:
+            _follow(map_, place, aims, asked, rows)
+        next_, length = np.empty((len(rows), 2)), np.empty(len(rows))
+        if _measure(map_, place, asked, rows, next_, length):
+            for k in np.flatnonzero(asked & (rows[:, CORNER] == LOST)):
+                point = self._rescue(rows[k], place[k], divmod(int(k), A))
+                next_[k] = point
+                length[k] = np.hypot(*(point - place[k])) + self._remaining_length(rows[k : k + 1])[0]
+        return Ways(next_.reshape(E, A, 2), length.reshape(E, A), new)
 
     def guide(self, scene: Scene, asking: NDArray[np.bool_] | None = None) -> Scene:
         """Return the scene with each goal on the next straight section of the path, at the distance of the path length.
@@ -289,11 +308,10 @@ class Router:
         if asking is None:
             asking = scene.active & ~scene.external
         subgoal, length, way = self.follow(scene.position, scene.goal, scene.memory.get(WAY), asking)
-        away = subgoal - scene.position
-        distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
-        ahead = scene.position + away * (length / np.maximum(distance, 1e-12))[..., None]
-        bends = asking & (way[..., CORNER] != STRAIGHT) & (distance > 0.0)
-        aim = np.where(bends[..., None], ahead, np.where(asking[..., None], subgoal, scene.goal))
+        shape = scene.shape
+        pairs = (*shape, 2)
+        position, goal, aim = dense(scene.position, pairs, FLOAT), dense(scene.goal, pairs, FLOAT), np.empty(pairs)
+        _look_ahead(position, goal, subgoal, length, way, dense(asking, shape, BOOL), aim)
         return scene.replace(goal=aim, memory={**scene.memory, WAY: way})
 
     def holds(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -367,14 +385,3 @@ def fresh(shape: tuple[int, int]) -> Floats:
     way[..., CORNER] = UNPLANNED
     way[..., BENT] = 0.0
     return way
-
-
-def _graph(cells: WallCells, node: Floats) -> tuple[Floats, Rows]:
-    """Return the lengths of shortest paths between all corners, and the corner after i on the path to j."""
-    N = len(node)
-    length = np.full((N, N), np.inf)
-    _connect(*cells, node, length)
-    np.fill_diagonal(length, 0.0)
-    after = np.where(np.isfinite(length), np.arange(N, dtype=np.int32), np.int32(-1)).astype(np.int32)
-    _shorten(length, after)
-    return length, after

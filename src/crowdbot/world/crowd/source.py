@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, did_you_mean, stream
 from crowdbot.models.mixture import MODEL
 
+from .agent_arrays import BOOL, dense
+from .entry_room import find_busy, first_free, free_slot
 from .journey import JOURNEY, WaypointSequence
 from .waypoint import PolygonZone
 
@@ -22,12 +24,11 @@ __all__ = ["Arrivals", "PeopleSource", "Sampler"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 TIMINGS = ("poisson", "regular")
 TRIES = 20
 """Positions tried per person and step."""
-GAP = 0.01
-"""Smallest distance [m] between bodies at entry."""
 TOP = 1.3
 """Maximum speed, as a multiple of the preferred one (Helbing & Molnar 1995)."""
 MOST_RATE = 1e4
@@ -121,6 +122,11 @@ class _Queue:
     body: tuple[float, float] | None = None
     """Preferred speed [m/s] and radius [m] of the first person in the queue."""
 
+    def __post_init__(self) -> None:
+        ring = self.source.zone.ring
+        self.low = ring.min(axis=0)
+        self.size = ring.max(axis=0) - self.low
+
     @classmethod
     def of(cls, source: PeopleSource, seed: int, number: int) -> _Queue:
         times, bodies, places = (stream(seed, "source", number, name) for name in ("times", "bodies", "places"))
@@ -135,6 +141,7 @@ class _Queue:
         if source.timing == "regular" and source != self.source and self.come and begin < source.end:
             source = dataclasses.replace(source, begin=begin)
         self.source = source
+        self.__post_init__()
 
     def pause(self) -> float:
         """Return the time until the next arrival [s]."""
@@ -154,11 +161,9 @@ class _Queue:
             )
 
     @property
-    def next_event(self) -> float:
-        """Time [s] before which nobody arrives or enters; ``-inf`` while people wait."""
+    def next_arrival(self) -> float:
+        """Time [s] of the next arrival, infinite if nobody comes any more."""
         most = math.inf if self.source.max_count is None else self.source.max_count
-        if self.waiting:
-            return -math.inf
         return self.due if self.due < self.source.end and self.come < most else math.inf
 
     def first(self) -> tuple[float, float]:
@@ -174,22 +179,9 @@ class _Queue:
             raise InputError(f"PeopleSource: the sampled {name} {number} must be finite and above 0")
         return number
 
-    def place(self, taken: Floats, walls: Floats) -> tuple[float, float] | None:
-        """Return a free position x, y [m] for the first person in the queue, or None if none was found.
-
-        Args:
-            taken: ``[N, 3]`` x, y, radius of the people present.
-            walls: ``[M, 4]``.
-        """
-        radius = self.first()[1]
-        ring = np.array(self.source.zone.corners)
-        low = ring.min(axis=0)
-        points = low + (ring.max(axis=0) - low) * self.places.random((TRIES, 2))
-        for x, y in points[self.source.zone.contains(points)]:
-            near = (taken[:, 0] - x) ** 2 + (taken[:, 1] - y) ** 2 < (taken[:, 2] + radius + GAP) ** 2
-            if not np.any(near) and not np.any(_distance2(x, y, walls) < radius * radius):
-                return float(x), float(y)
-        return None
+    def points(self) -> Floats:
+        """Return random positions ``[N, 2]`` [m] in the bounding box of the zone."""
+        return np.asarray(self.low + self.size * self.places.random((TRIES, 2)))
 
 
 class _Entry(NamedTuple):
@@ -234,33 +226,43 @@ class Arrivals:
         self._queues = [[_Queue.of(source, int(seed), k) for k, source in enumerate(sources)] for seed in seeds]
         self._first_journey = first_journey
         self._fresh = fresh
-        self._next_arrival = np.full(len(seeds), -math.inf)
-        """Time [s] before which nothing happens in an environment, ``[E]``."""
+        self._arrival = np.zeros((len(seeds), len(sources)))
+        """Time [s] of the next arrival of each source, ``[E, K]``."""
+        self._waiting = np.zeros((len(seeds), len(sources)), dtype=np.int64)
+        """Number of people waiting at each source, ``[E, K]``."""
+        self._note()
 
     @property
     def waiting_count(self) -> Numbers:
         """Number of people waiting to enter, ``[E]``."""
-        return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
+        return np.asarray(self._waiting.sum(axis=1))
+
+    def _note(self) -> None:
+        """Note the state of all queues in arrays."""
+        for e, queues in enumerate(self._queues):
+            for k, queue in enumerate(queues):
+                self._arrival[e, k], self._waiting[e, k] = queue.next_arrival, queue.waiting
 
     def select(self, environments: Sequence[int]) -> Arrivals:
         """Return independent queues of some environments."""
         chosen = copy.copy(self)
         chosen._queues = [[copy.deepcopy(queue) for queue in self._queues[e]] for e in environments]
-        chosen._next_arrival = self._next_arrival[list(environments)]
+        chosen._arrival, chosen._waiting = self._arrival[list(environments)], self._waiting[list(environments)]
         return chosen
 
     def join(self, others: Sequence[Arrivals]) -> Arrivals:
         """Return the queues of this and other worlds with the same sources."""
         whole = copy.copy(self)
         whole._queues = [queues for one in (self, *others) for queues in one._queues]
-        whole._next_arrival = np.concatenate([one._next_arrival for one in (self, *others)])
+        whole._arrival = np.concatenate([one._arrival for one in (self, *others)])
+        whole._waiting = np.concatenate([one._waiting for one in (self, *others)])
         return whole
 
     def put(self, environments: Sequence[int], other: Arrivals) -> None:
         """Replace the queues of some environments by those of another world with the same sources."""
         for k, e in enumerate(environments):
             self._queues[e] = other._queues[k]
-            self._next_arrival[e] = other._next_arrival[k]
+            self._arrival[e], self._waiting[e] = other._arrival[k], other._waiting[k]
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
         """Replace the sources; queues and planned arrivals are kept.
@@ -275,13 +277,13 @@ class Arrivals:
         if [source.journey for source in sources] != [source.journey for source in self._sources]:
             raise InputError("the number and the journeys of sources cannot change in a running world")
         self._sources = tuple(sources)
-        self._next_arrival[:] = -math.inf
         for e, queues in enumerate(self._queues):
             for number, queue in enumerate(queues):
                 queue.reconfigure(sources[number])
                 if seeds is not None:
                     new = _Queue.of(sources[number], int(seeds[e]), number)
                     queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places
+        self._note()
 
     def let_in(
         self, scene: Scene, time: float | Floats, ids: Numbers, following: Numbers
@@ -296,15 +298,22 @@ class Arrivals:
             ids: ``[E, A]`` identities; modified in place.
             following: ``[E]`` next identities; modified in place.
         """
+        shape = scene.shape
+        external = dense(scene.external, shape, BOOL)
+        now = np.full(shape[0], time, dtype=np.float64)
+        busy = np.empty(self._waiting.shape, dtype=np.bool_)
+        new = np.zeros(shape, dtype=np.bool_)
+        if not find_busy(self._arrival, self._waiting, now, dense(scene.active, shape, BOOL), external, busy):
+            return scene, new
+        position, radius, active = scene.position.copy(), scene.radius.copy(), scene.active.copy()
+        walls = np.ascontiguousarray(scene.walls.segments())
         entries: list[_Entry] = []
-        new = np.zeros(scene.shape, dtype=np.bool_)
-        for e in np.flatnonzero(self._next_arrival <= np.asarray(time) + 1e-9).tolist():
-            queues, now = self._queues[e], float(time) if np.ndim(time) == 0 else float(time[e])  # type: ignore[index]
-            for queue in queues:
-                queue.fill(now)
-            if any(queue.waiting for queue in queues):
-                entries += self._entries(scene, e, scene.walls.segments())
-            self._next_arrival[e] = min(queue.next_event for queue in queues)
+        for e, k in np.argwhere(busy).tolist():
+            queue, here = self._queues[e][k], (position[e], radius[e], active[e], external[e])
+            queue.fill(now[e])
+            while queue.waiting and (entry := self._entry(e, k, queue, here, walls)) is not None:
+                entries.append(entry)
+            self._arrival[e, k], self._waiting[e, k] = queue.next_arrival, queue.waiting
         if not entries:
             return scene, new
         for entry in entries:
@@ -313,22 +322,27 @@ class Arrivals:
             new[entry.e, entry.a] = True
         return self._with(scene, entries), new
 
-    def _entries(self, scene: Scene, e: int, walls: Floats) -> list[_Entry]:
-        """Return the people who enter an environment now."""
-        places = np.flatnonzero(~scene.active[e] & ~scene.external[e]).tolist()
-        here = scene.active[e]
-        taken = np.column_stack([scene.position[e][here], scene.radius[e][here]])
-        entries = []
-        for number, queue in enumerate(self._queues[e]):
-            while queue.waiting and places:
-                found = queue.place(taken, walls)
-                if found is None:
-                    break
-                speed, radius = queue.first()
-                entries.append(_Entry(e, places.pop(0), number, *found, speed, radius))
-                taken = np.vstack([taken, [*found, radius]])
-                queue.body, queue.waiting = None, queue.waiting - 1
-        return entries
+    def _entry(self, e: int, k: int, queue: _Queue, here: tuple[Any, ...], walls: Floats) -> _Entry | None:
+        """Let the first person of a queue enter; None without a free slot or room.
+
+        Args:
+            e, k: environment and source.
+            queue: the queue.
+            here: position, radius, presence and externality of the agents; modified in place.
+            walls: ``[M, 4]``.
+        """
+        slot = free_slot(here[2], here[3])
+        if slot < 0:
+            return None
+        speed, radius = queue.first()
+        points = queue.points()
+        row = first_free(points, queue.source.zone.ring, here[0], here[1], here[2], walls, radius)
+        if row < 0:
+            return None
+        x, y = points[row].tolist()
+        here[0][slot], here[1][slot], here[2][slot] = points[row], radius, True
+        queue.body, queue.waiting = None, queue.waiting - 1
+        return _Entry(e, slot, k, x, y, speed, radius)
 
     def _with(self, scene: Scene, entries: Sequence[_Entry]) -> Scene:
         e, a, source, x, y, speed, radius = (np.array(column) for column in zip(*entries, strict=True))
@@ -356,11 +370,3 @@ class Arrivals:
             group=put(scene.group, -1),
             memory=memory,
         )
-
-
-def _distance2(x: float, y: float, walls: Floats) -> Floats:
-    """Return ``[M]`` squared distances [m2] from a point to walls ``[M, 4]``."""
-    ex, ey = walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1]
-    dx, dy = x - walls[:, 0], y - walls[:, 1]
-    along = np.clip((dx * ex + dy * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0.0, 1.0)
-    return np.asarray((dx - along * ex) ** 2 + (dy - along * ey) ** 2)

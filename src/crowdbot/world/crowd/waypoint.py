@@ -11,11 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import InputError, did_you_mean, kernel
 
+from .agent_arrays import FLOAT, dense
 from .person_random import uniform
 
-__all__ = ["HeadingWaypoint", "PersonRandom", "PointWaypoint", "PolygonZone", "Waypoint"]
+__all__ = ["HeadingWaypoint", "PersonRandom", "PointWaypoint", "PolygonZone", "Waypoint", "is_inside", "nearest_point"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -116,7 +117,12 @@ class HeadingWaypoint(Waypoint):
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return a point far ahead of each person."""
-        return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
+        return np.asarray(place + np.array(self.ahead))
+
+    @property
+    def ahead(self) -> tuple[float, float]:
+        """Vector from a person to the goal [m]."""
+        return AHEAD * math.cos(self.heading), AHEAD * math.sin(self.heading)
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return False for all."""
@@ -169,7 +175,9 @@ class PolygonZone(Waypoint):
         """Return the nearest points of the zone, or random ones."""
         if self.aim == "random":
             return self.sample(luck)
-        return np.where(self.contains(place)[:, None], place, _on_border(self._ring, place))
+        out = np.empty((len(place), 2))
+        _nearest_points(self._ring, dense(place, (len(place), 2), FLOAT), out)
+        return out
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return ``[N]`` whether each person is in the zone or near their goal."""
@@ -177,12 +185,14 @@ class PolygonZone(Waypoint):
 
     def contains(self, place: Floats) -> Bools:
         """Return ``[N]`` whether points ``[N, 2]`` [m] lie in the zone."""
-        x, y = place[:, 0], place[:, 1]
-        inside = np.zeros(len(place), dtype=np.bool_)
-        for (ax, ay), (bx, by) in zip(self._ring, np.roll(self._ring, -1, axis=0), strict=True):
-            if ay != by:
-                inside ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
+        inside = np.empty(len(place), dtype=np.bool_)
+        _contain(self._ring, dense(place, (len(place), 2), FLOAT), inside)
         return inside
+
+    @property
+    def ring(self) -> Floats:
+        """Corners ``[N, 2]`` [m]."""
+        return self._ring
 
     def sample(self, luck: PersonRandom) -> Floats:
         """Return a random free point of the zone for each person, ``[N, 2]`` [m].
@@ -209,18 +219,47 @@ class PolygonZone(Waypoint):
         )
 
 
-def _on_border(ring: Floats, place: Floats) -> Floats:
-    """Return the point ``[N, 2]`` on the border of a polygon nearest to each position."""
-    x, y = place[:, 0], place[:, 1]
-    best, found = np.full(len(place), np.inf), place.copy()
-    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        ex, ey = bx - ax, by - ay
-        along = np.clip(((x - ax) * ex + (y - ay) * ey) / max(ex * ex + ey * ey, 1e-300), 0.0, 1.0)
-        point = np.stack([ax + along * ex, ay + along * ey], axis=-1)
-        away = (x - point[:, 0]) ** 2 + (y - point[:, 1]) ** 2
-        nearer = away < best
-        best, found = np.where(nearer, away, best), np.where(nearer[:, None], point, found)
-    return found
+@kernel
+def is_inside(ring: Floats, x: float, y: float) -> bool:
+    """Return whether a point is in the polygon with corners ``[N, 2]`` (even-odd rule)."""
+    inside = False
+    for k in range(len(ring)):
+        after = k + 1 if k + 1 < len(ring) else 0
+        ax, ay, bx, by = ring[k, 0], ring[k, 1], ring[after, 0], ring[after, 1]
+        if ay != by and (ay > y) != (by > y) and x < ax + (bx - ax) * ((y - ay) / (by - ay)):
+            inside = not inside
+    return inside
+
+
+@kernel
+def nearest_point(ring: Floats, x: float, y: float) -> tuple[float, float]:
+    """Return the point of a polygon, border or interior, nearest to x, y."""
+    found_x, found_y, best = x, y, math.inf
+    if is_inside(ring, x, y):
+        return found_x, found_y
+    for k in range(len(ring)):
+        after = k + 1 if k + 1 < len(ring) else 0
+        ax, ay = ring[k, 0], ring[k, 1]
+        ex, ey = ring[after, 0] - ax, ring[after, 1] - ay
+        along = ((x - ax) * ex + (y - ay) * ey) / max(ex * ex + ey * ey, 1e-300)
+        along = min(max(along, 0.0), 1.0)
+        px, py = ax + along * ex, ay + along * ey
+        away = (x - px) * (x - px) + (y - py) * (y - py)
+        if away < best:
+            found_x, found_y, best = px, py, away
+    return found_x, found_y
+
+
+@kernel
+def _contain(ring: Floats, place: Floats, out: Bools) -> None:
+    for row in range(len(place)):
+        out[row] = is_inside(ring, place[row, 0], place[row, 1])
+
+
+@kernel
+def _nearest_points(ring: Floats, place: Floats, out: Floats) -> None:
+    for row in range(len(place)):
+        out[row, 0], out[row, 1] = nearest_point(ring, place[row, 0], place[row, 1])
 
 
 def _within(place: Floats, goal: Floats, distance: float) -> Bools:

@@ -43,6 +43,29 @@ def _differential(
 
 
 @kernel
+def _omnidirectional(
+    place: Floats, heading: Floats, forward: Floats, turn: Floats, left: Floats, wanted: Floats, wanted_turn: Floats,
+    wanted_left: Floats, top: float, most: float, push: float, spin: float, dt: float, out: Floats,
+) -> None:  # fmt: skip
+    """Move each pose of an omnidirectional drive for ``dt``, and write the new twists."""
+    for e in range(len(heading)):
+        ahead, aside = _shortened(wanted[e], wanted_left[e], top)
+        ahead, aside = _shortened(ahead - forward[e], aside - left[e], push)
+        turning = min(max(wanted_turn[e], -most), most)
+        out[0, e] = forward[e] + ahead
+        out[1, e] = min(max(turning, turn[e] - spin), turn[e] + spin)
+        out[2, e] = left[e] + aside
+    _arc(place, heading, out[0], out[2], out[1], dt)
+
+
+@kernel
+def _shortened(x: float, y: float, limit: float) -> tuple[float, float]:
+    """Return a vector, shortened to a length."""
+    share = min(1.0, limit / max(math.sqrt(x * x + y * y), 1e-300))
+    return x * share, y * share
+
+
+@kernel
 def _world_velocity(heading: Floats, forward: Floats, left: Floats) -> Floats:
     velocity = np.empty((len(heading), 2))
     for e in range(len(heading)):
@@ -50,6 +73,32 @@ def _world_velocity(heading: Floats, forward: Floats, left: Floats) -> Floats:
         velocity[e, 0] = cos * forward[e] - sin * left[e]
         velocity[e, 1] = sin * forward[e] + cos * left[e]
     return velocity
+
+
+@kernel
+def put_robot(
+    robot: int, active: NDArray[np.bool_], old_place: Floats, old_heading: Floats, place: Floats, heading: Floats,
+    forward: Floats, left: Floats, out_place: Floats, out_velocity: Floats, out_heading: Floats,
+) -> None:  # fmt: skip
+    """Write the pose and velocity of a robot into the arrays of a scene; an absent robot stands still.
+
+    Args:
+        robot: index of the robot.
+        active, old_place, old_heading: the agents ``[E, A]`` before the step.
+        place, heading, forward, left: pose and twist ``[E]`` of the robot after the step.
+        out_place, out_velocity, out_heading: arrays ``[E, A]`` of all agents after the step; modified in place.
+    """
+    for e in range(len(active)):
+        if not active[e, robot]:
+            out_place[e, robot, 0], out_place[e, robot, 1] = old_place[e, robot, 0], old_place[e, robot, 1]
+            out_heading[e, robot] = old_heading[e, robot]
+            out_velocity[e, robot, 0], out_velocity[e, robot, 1] = 0.0, 0.0
+            continue
+        cos, sin = math.cos(heading[e]), math.sin(heading[e])
+        out_place[e, robot, 0], out_place[e, robot, 1] = place[e, 0], place[e, 1]
+        out_heading[e, robot] = heading[e]
+        out_velocity[e, robot, 0] = cos * forward[e] - sin * left[e]
+        out_velocity[e, robot, 1] = sin * forward[e] + cos * left[e]
 
 
 @dataclass(frozen=True)
@@ -186,11 +235,13 @@ class Omnidirectional(Drive):
         """Return pose and twist ``dt`` [s] later; see :class:`Omnidirectional`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
-        forward, left = _shortened(wanted.forward, wanted.left, self.max_speed)
-        push, slide = _shortened(forward - twist.forward, left - twist.left, self.max_acceleration * dt)
-        turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
-        after = Twists(twist.forward + push, turn, twist.left + slide)
-        return integrate_twist(pose, after, dt), after
+        place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
+        columns = np.empty((3, len(heading)))
+        limits = (float(self.max_speed), float(self.max_turn_rate))
+        changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
+        now = (twist.forward, twist.turn, twist.left, wanted.forward, wanted.turn, wanted.left)
+        _omnidirectional(place, heading, *now, *limits, *changes, dt, columns)
+        return Pose(place, heading), Twists.of_columns(columns)
 
 
 def integrate_twist(pose: Pose, twist: Twists, dt: float) -> Pose:
@@ -212,16 +263,6 @@ def _each(name: str, value: ArrayLike, count: int) -> Floats:
     if not np.all(np.isfinite(array)):
         raise InputError(f"twist: {name} = {array.tolist()} must be finite")
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
-
-
-def _towards(now: Floats, wanted: Floats, limit: float, change: float) -> Floats:
-    return np.clip(np.clip(wanted, -limit, limit), now - change, now + change)
-
-
-def _shortened(x: Floats, y: Floats, limit: float) -> tuple[Floats, Floats]:
-    length = np.sqrt(x * x + y * y)
-    share = np.minimum(1.0, limit / np.maximum(length, 1e-300))
-    return x * share, y * share
 
 
 def check_limits(drive: Drive) -> None:

@@ -7,15 +7,39 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Twist, check_number
+from crowdbot.core import InputError, Pose, Twist, check_number, kernel
 
 from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 
 __all__ = ["CommandDelay", "Pending", "VelocityServo"]
 
+Floats = NDArray[np.float64]
+
 NEAR = 1e-9
 """Tolerance [m/s, rad/s] within which a velocity has reached its command."""
+
+
+@kernel
+def _approach(
+    forward: Floats, turn: Floats, left: Floats, wanted: Floats, wanted_turn: Floats, wanted_left: Floats,
+    sideways: bool, top: float, most: float, push: float, spin: float, gain: float, out: Floats,
+) -> None:  # fmt: skip
+    """Write the twists ``[3, E]`` that approach the commands by a share ``gain``, within limits."""
+    for e in range(len(forward)):
+        aside = wanted_left[e] if sideways else 0.0
+        share = min(1.0, top / max(math.hypot(wanted[e], aside), 1e-300))
+        goal_x, goal_y = wanted[e] * share, aside * share
+        error_x, error_y = goal_x - forward[e], goal_y - left[e]
+        push_x, push_y = error_x * gain, error_y * gain
+        share = min(1.0, push / max(math.hypot(push_x, push_y), 1e-300))
+        out[0, e] = goal_x if abs(error_x) < NEAR else forward[e] + push_x * share
+        out[2, e] = goal_y if abs(error_y) < NEAR else left[e] + push_y * share
+        turning = min(max(wanted_turn[e], -most), most)
+        twisting = turning - turn[e]
+        change = min(max(twisting * gain, -spin), spin)
+        out[1, e] = turning if abs(twisting) < NEAR else turn[e] + change
 
 
 @dataclass(frozen=True)
@@ -54,22 +78,13 @@ class VelocityServo(Drive):
         """Return pose and twist ``dt`` [s] later; see :class:`VelocityServo`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
-        left = wanted.left if self.sideways else np.zeros_like(wanted.left)
-        length = np.maximum(np.hypot(wanted.forward, left), 1e-300)
-        share = np.minimum(1.0, self.max_speed / length)
-        goal = np.stack([wanted.forward * share, left * share], axis=-1)
-        turning = np.clip(wanted.turn, -self.max_turn_rate, self.max_turn_rate)
         gain = -math.expm1(-dt / self.time_constant)
-        now = np.stack([twist.forward, twist.left], axis=-1)
-        error = goal - now
-        push = error * gain
-        size = np.maximum(np.hypot(push[:, 0], push[:, 1]), 1e-300)
-        push *= np.minimum(1.0, self.max_acceleration * dt / size)[:, None]
-        velocity = np.where(np.abs(error) < NEAR, goal, now + push)
-        twisting = turning - twist.turn
-        change = self.max_turn_acceleration * dt
-        turn = np.where(np.abs(twisting) < NEAR, turning, twist.turn + np.clip(twisting * gain, -change, change))
-        after = Twists(np.ascontiguousarray(velocity[:, 0]), turn, np.ascontiguousarray(velocity[:, 1]))
+        columns = np.empty((3, len(pose.heading)))
+        now = (twist.forward, twist.turn, twist.left, wanted.forward, wanted.turn, wanted.left)
+        limits = (float(self.max_speed), float(self.max_turn_rate))
+        changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
+        _approach(*now, self.sideways, *limits, *changes, gain, columns)
+        after = Twists.of_columns(columns)
         return integrate_twist(pose, after, dt), after
 
 

@@ -1,0 +1,29 @@
+"""Ghosts: robots that drive, but are absent to everybody else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from crowdbot.core import Scene
+
+__all__ = ["hide_ghosts", "show_ghosts"]
+
+
+def hide_ghosts(scene: Scene, ghosts: Sequence[int]) -> Scene:
+    """Return the scene as everybody perceives it: ghosts, given by agent index, are absent.
+
+    >>> hide_ghosts(Scene.of([[0.0, 0.0], [1.0, 0.0]]), [1]).active.tolist()
+    [[True, False]]
+    """
+    return _marked(scene, ghosts, present=False) if ghosts else scene
+
+
+def show_ghosts(scene: Scene, ghosts: Sequence[int]) -> Scene:
+    """Return the scene in which ghosts, given by agent index, are present."""
+    return _marked(scene, ghosts, present=True) if ghosts else scene
+
+
+def _marked(scene: Scene, ghosts: Sequence[int], present: bool) -> Scene:
+    active = scene.active.copy()
+    active[:, list(ghosts)] = present
+    return scene.replace(active=active)
