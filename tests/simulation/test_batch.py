@@ -190,6 +190,26 @@ def test_wrong_batches_are_refused() -> None:
     assert told == sorted(told)
 
 
+@pytest.mark.parametrize(
+    ("environments", "seeds", "message"),
+    [
+        ([2], [5], r"environments = \[2\]: each must be from 0 to 1"),
+        ([-1], [5], r"environments = \[-1\]: each must be from 0 to 1"),
+        ([0, 1], [5], r"environments = \[0, 1\] and 1 new ones: give each environment once"),
+        ([0, 0], [5, 6], r"environments = \[0, 0\] and 2 new ones: give each environment once"),
+        ([], [], r"environments = \[\] must be a list of one or more whole numbers"),
+        ([0.5], [5], r"environments = \[0.5\] must be a list of one or more whole numbers"),
+    ],
+)
+def test_wrong_environments_are_refused(environments: list[Any], seeds: list[int], message: str) -> None:
+    simulation = Simulation(TINY, [3, 4])
+    simulation.advance()
+    before = [digest(simulation.record(e)) for e in range(2)]
+    with pytest.raises(InputError, match=message):
+        simulation.restart(environments, seeds)
+    assert [digest(simulation.record(e)) for e in range(2)] == before
+
+
 def test_records_name_their_environment() -> None:
     taken: list[tuple[int, int]] = []
 

@@ -35,7 +35,7 @@ from .mounted_sensor import SensorReadings
 from .robot_control import RobotControl
 from .step_record import WALL, RobotContact, StepRecord
 from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, may_be_near, note_events
-from .world_builder import begin_world, check_clock
+from .world_builder import begin_world, check_clock, environment_index
 from .world_view import WorldView
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class Simulation:
         """Advance all environments by one step: parts 1 to 6.
 
         An exception in a crowd model, sensor or navigator ends the environment in which it occurs, see
-        :attr:`failures`. Such an environment stays as it is until it is restarted.
+        :attr:`failures`. Such an environment senses and decides nothing more until it is restarted.
         """
         if not self.begun.all():
             self.begin()
@@ -268,8 +268,9 @@ class Simulation:
 
         Raises:
             TrialError: people cannot be placed with a seed.
+            InputError: an environment does not exist or is given twice, or there is not one seed for each.
         """
-        index = np.asarray(environments, dtype=np.int64)
+        index = environment_index(environments, self.count, len(seeds))
         new = Simulation(self.trial, seeds, posed=self._posed)
         new.begin()
         kept = np.zeros(self.count, dtype=np.bool_)
@@ -282,7 +283,7 @@ class Simulation:
 
     def select(self, environments: Sequence[int] | Ints) -> Simulation:
         """Return an independent simulation of some environments, which may be repeated, in their current state."""
-        index = np.asarray(environments, dtype=np.int64)
+        index = environment_index(environments, self.count)
         some = copy.copy(self)
         some.seeds = [self.seeds[e] for e in index]
         some.world = select_environments(self.world, index)
@@ -300,7 +301,7 @@ class Simulation:
 
     def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
-        index = np.asarray(environments, dtype=np.int64)
+        index = environment_index(environments, self.count, other.count)
         self.world = put_environments(self.world, index, other.world)
         self._set_around()
         for mine, new in zip(self.robots, other.robots, strict=True):

@@ -30,7 +30,7 @@ from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, Replaye
 
 from .mounted_sensor import spatial
 
-__all__ = ["begin_world", "build_world", "check_clock", "limits_of", "own_walls", "start_scene"]
+__all__ = ["begin_world", "build_world", "check_clock", "environment_index", "limits_of", "own_walls", "start_scene"]
 
 
 def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWorld, InitialPeople]:
@@ -63,6 +63,27 @@ def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWor
             seed=seed,
         )
     return world, people
+
+
+def environment_index(environments: Sequence[int] | NDArray[Any], count: int, new: int | None = None) -> Any:
+    """Return indices of environments as an array.
+
+    Args:
+        environments: the indices.
+        count: number of environments.
+        new: number of environments that replace them, each once; None: they may be repeated.
+
+    Raises:
+        InputError: an environment does not exist, or the number is wrong.
+    """
+    index = np.asarray(environments)
+    if index.ndim != 1 or not index.size or index.dtype.kind not in "iu":
+        raise InputError(f"environments = {environments!r} must be a list of one or more whole numbers")
+    if index.min() < 0 or index.max() >= count:
+        raise InputError(f"environments = {index.tolist()}: each must be from 0 to {count - 1}")
+    if new is not None and (len(index) != new or len(np.unique(index)) != new):
+        raise InputError(f"environments = {index.tolist()} and {new} new ones: give each environment once")
+    return index.astype(np.int64)
 
 
 def check_clock(clock: Clock, own: Clock) -> None:
