@@ -317,3 +317,12 @@ def test_the_arrays_of_a_scene_are_dense_and_its_own():
             assert value.flags.carray
             assert not np.shares_memory(value, values)
     assert scene.radius.tolist() == values.tolist()
+
+
+def test_one_environment_is_the_same_as_a_selection_of_one():
+    scene = Scene.of(np.arange(12.0).reshape(3, 2, 2), time=[0.5, 1.0, 2.0])
+    scene = scene.replace(memory={"state": np.arange(6.0).reshape(3, 2)})
+    one, selection = scene.environment(2), scene.environments([2])
+    assert one.digest() == selection.digest()
+    assert (one.time, one.memory["state"].tolist()) == (2.0, selection.memory["state"].tolist())
+    assert np.shares_memory(one.position, scene.position)

@@ -256,6 +256,23 @@ class Scene:
             part.__dict__["bodies"] = self.bodies.environments(index)
         return part
 
+    def environment(self, number: int) -> Scene:
+        """Return one environment; its arrays are views, which must not be changed.
+
+        >>> Scene.of(np.zeros((2, 3, 2))).environment(1).shape
+        (1, 3)
+        """
+        rows, part = slice(number, number + 1), self._copy()
+        for name, value in self.__dict__.items():
+            if isinstance(value, np.ndarray):
+                part.__dict__[name] = value[rows]
+        if isinstance(self.time, np.ndarray):
+            part.__dict__["time"] = float(self.time[number])
+        part.__dict__["memory"] = {name: value[rows] for name, value in self.memory.items()}
+        if self.bodies is not None:
+            part.__dict__["bodies"] = self.bodies.environments(np.array([number]))
+        return part
+
     def _copy(self) -> Scene:
         """Return a shallow copy, ten times faster than ``dataclasses.replace``."""
         copy = object.__new__(type(self))

@@ -300,7 +300,7 @@ class PlanarWorld(World):
         scene, slots = self.scene, int(self.slots[environment])
         if len(self.slots) == 1:
             return scene
-        one = scene.environments([environment])
+        one = scene.environment(environment)
         return one if slots == scene.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
