@@ -53,13 +53,6 @@ class Clock:
         """Simulated time [s]."""
         return self.nanoseconds / SECOND
 
-    def every(self, period: float) -> int:
-        """Return the number of ticks in ``period`` [s]; the period must be a positive multiple of ``dt``."""
-        ticks = round(period * SECOND / self.step_ns)
-        if ticks < 1 or abs(ticks * self.step_ns - round(period * SECOND)) > 1000:
-            raise InputError(f"period {period} s is not a whole number of time steps of {self.dt} s")
-        return ticks
-
     def schedule(self, period: float) -> TickSchedule:
         """Return the ticks at which something with a period [s] is due.
 
