@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist, Walls
+from crowdbot.core import InputError, Scene, Twist, Walls
 from crowdbot.sensors import Reading
 
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -215,26 +214,10 @@ def _require(owner: Any, name: str, shape: tuple[int, ...], kind: Any = np.float
 def reading_of(reading: Reading, k: int, count: int) -> Reading:
     """Return the reading of environment ``k`` of ``count``, with one row.
 
-    Poses have one row for each environment. An array whose first axis has the length ``count`` is by environment,
-    except 1-D ``angles``, ``elevation`` and ``azimuth``, which describe beams.
-
     Raises:
         InputError: the reading has another number of rows.
     """
     rows = len(reading.pose.position)
     if rows != count:
         raise InputError(f"observations: a {type(reading).__name__} has {rows} rows, it must have {count}")
-    changes: dict[str, Any] = {}
-    for part in dataclasses.fields(reading):
-        value = getattr(reading, part.name)
-        if isinstance(value, Pose):
-            changes[part.name] = Pose(value.position[k : k + 1], value.heading[k : k + 1])
-        elif isinstance(value, SpatialPose):
-            changes[part.name] = SpatialPose(value.position[k : k + 1], value.rotation[k : k + 1])
-        elif isinstance(value, np.ndarray) and value.shape[:1] == (count,) and part.name not in BEAMS:
-            changes[part.name] = value[k : k + 1]
-    return dataclasses.replace(reading, **changes)
-
-
-BEAMS = ("angles", "elevation", "azimuth")
-"""Fields of readings that are shared by the environments."""
+    return reading.environment(k)

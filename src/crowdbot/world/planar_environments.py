@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import MissingExtra, Twist
 
 from .crowd.environment_rows import (
+    concatenate_arrays,
     join_models,
     pad_scene,
     put_arrays,
@@ -61,7 +62,7 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     whole._rngs = [rng for world in worlds for rng in world._rngs]
     set_models(whole, [model for world in worlds for model in _models(world)])
     _set_flow(whole, _join_flows([world._traffic for world in worlds], whole.scene.shape[1]))
-    whole.twists = {robot: _concatenated([world.twists[robot] for world in worlds]) for robot in first.twists}
+    whole.twists = {robot: concatenate_arrays([world.twists[robot] for world in worlds]) for robot in first.twists}
     whole._delayed = _join_delays(worlds)
     whole.slots = np.concatenate([world.slots for world in worlds])
     whole.contacts, begin = (), 0
@@ -208,12 +209,6 @@ def pad_ids(ids: Ints, agents: int) -> Ints:
     return np.concatenate([ids, least - 1 - np.arange(more)], axis=1)
 
 
-def _concatenated(twists: Sequence[Twists]) -> Twists:
-    names = [part.name for part in dataclasses.fields(twists[0])]
-    columns = {name: np.concatenate([getattr(one, name) for one in twists]) for name in names}
-    return dataclasses.replace(twists[0], **columns)
-
-
 def _wide(twist: Twist | Twists, count: int) -> Twists:
     return Twists.of(twist, count)
 
@@ -231,8 +226,8 @@ def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending
                 _wide(row[-k].command if k <= len(row) else Twist(), n)
                 for (row, _), n in zip(rows, counts, strict=True)
             ]
-            pending.append(Pending(most[-k].wait, _concatenated(parts)))
-        now = _concatenated([_wide(command, n) for (_, command), n in zip(rows, counts, strict=True)])
+            pending.append(Pending(most[-k].wait, concatenate_arrays(parts)))
+        now = concatenate_arrays([_wide(command, n) for (_, command), n in zip(rows, counts, strict=True)])
         found[robot] = (tuple(reversed(pending)), now)
     return found
 

@@ -13,6 +13,7 @@ from crowdbot.core import Scene
 from crowdbot.models import CrowdModel, Mixture
 
 __all__ = [
+    "concatenate_arrays",
     "join_models",
     "pad_scene",
     "put_arrays",
@@ -89,6 +90,15 @@ def take_arrays(value: T, index: NDArray[np.int64]) -> T:
     anything: Any = value
     names = [part.name for part in dataclasses.fields(anything)]
     found: T = dataclasses.replace(anything, **{name: getattr(anything, name)[index] for name in names})
+    return found
+
+
+def concatenate_arrays(values: Sequence[T]) -> T:
+    """Return dataclasses of arrays ``[E, ...]`` as one, with the environments of all."""
+    first: Any = values[0]
+    names = [part.name for part in dataclasses.fields(first)]
+    columns = {name: np.concatenate([getattr(one, name) for one in values]) for name in names}
+    found: T = dataclasses.replace(first, **columns)
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls
-from crowdbot.world.crowd.environment_rows import stack_scenes, take_arrays, trim_scene
+from crowdbot.world.crowd.environment_rows import concatenate_arrays, stack_scenes, take_arrays, trim_scene
 from crowdbot.world.environment_time import EnvironmentTime
+from crowdbot.world.planar_environments import pad_ids
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
@@ -83,12 +83,7 @@ class PhysicsBatch(World):
     def ids(self) -> Ints:  # type: ignore[override]
         """Identities ``[E, A]``; further slots of shorter environments have unique negative ones."""
         agents = int(self.slots.max())
-        rows = []
-        for world in self.worlds:
-            more = agents - world.ids.shape[1]
-            least = min(0, int(world.ids.min(initial=0)))
-            rows.append(np.concatenate([world.ids, least - 1 - np.arange(more)[None]], axis=1))
-        return np.concatenate(rows)
+        return np.concatenate([pad_ids(world.ids, agents) for world in self.worlds])
 
     @property
     def slots(self) -> Ints:  # type: ignore[override]
@@ -98,7 +93,9 @@ class PhysicsBatch(World):
     @property
     def twists(self) -> dict[int, Twists]:  # type: ignore[override]
         """Current twist of each robot."""
-        return {robot: _concatenated([world.twists[robot] for world in self.worlds]) for robot in self.worlds[0].twists}
+        return {
+            robot: concatenate_arrays([world.twists[robot] for world in self.worlds]) for robot in self.worlds[0].twists
+        }
 
     @property
     def contacts(self) -> tuple[Contact, ...]:  # type: ignore[override]
@@ -228,9 +225,3 @@ def physics_worlds(world: World) -> list[PhysicsWorld]:
     """Return the worlds of a batch, or the only one."""
     found: Any = world
     return found.worlds if isinstance(world, PhysicsBatch) else [found]
-
-
-def _concatenated(twists: Sequence[Twists]) -> Twists:
-    names = [part.name for part in dataclasses.fields(twists[0])]
-    columns = {name: np.concatenate([getattr(one, name) for one in twists]) for name in names}
-    return dataclasses.replace(twists[0], **columns)
