@@ -22,7 +22,7 @@ from .errors import (
     nearest_name,
 )
 from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
-from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
+from .model_parameter import Parameter, PerAgent, check_parameters, dense, parameter, parameters, per_agent
 from .optional_imports import import_optional
 from .output_lock import lock_output, release_stale_lock
 from .paper import Paper
@@ -109,6 +109,7 @@ __all__ = [
     "cache_folder",
     "check_number",
     "check_parameters",
+    "dense",
     "did_you_mean",
     "draw_svg",
     "each",
