@@ -237,20 +237,34 @@ def _certain_cost(work: _Work, radius: float, weights: Floats) -> float:
 
 
 @kernel
+def _row_minimum(row: Floats) -> tuple[float, int]:
+    """Return the smallest difference of a turn rate, and the first speed that has it; inf if all are tried."""
+    least, place = math.inf, int(np.int64(0))
+    for n in range(FORWARD):
+        if row[n] < least:
+            least, place = row[n], n
+    return least, place
+
+
+@kernel
 def _search(work: _Work, change: float, radius: float, walls: int, weights: Floats, prune: bool) -> tuple[int, int]:
     """Return speed and turn rate of the first candidate with the smallest cost, -1 if no cost is finite."""
     miss = work.miss
     best, speed, turn, steps = math.inf, int(np.int64(-1)), int(np.int64(-1)), len(work.number)
     certain = _certain_cost(work, radius, weights) if prune else 0.0
+    least, place = np.empty(TURNS), np.empty(TURNS, np.int64)
+    for m in range(TURNS):
+        least[m], place[m] = _row_minimum(miss[m])
     for _ in range(miss.size):
-        i, j, difference = int(np.int64(0)), int(np.int64(0)), math.inf
+        j, difference = int(np.int64(0)), math.inf
         for m in range(TURNS):
-            for n in range(FORWARD):
-                if miss[m, n] < difference:
-                    i, j, difference = n, m, miss[m, n]
+            if least[m] < difference:
+                j, difference = m, least[m]
         if not difference < math.inf or (prune and difference + certain > best):
             break
+        i = place[j]
         miss[j, i] = math.inf
+        least[j], place[j] = _row_minimum(miss[j])
         if work.known[j] < steps:
             _extend(work, j, change, steps)
         cost = _cost(work, i, j, difference, best if prune else math.inf, radius, walls, weights)
