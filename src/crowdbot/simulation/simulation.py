@@ -17,7 +17,7 @@ At tick 0, only parts 6 to 8 run. Sensors, navigators and recorders are due ever
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,10 +31,12 @@ from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import join_worlds, put_environments, select_environments, step_environments
 
 from .failure import RunFailure
-from .mounted_sensor import SensorReadings
+from .phases.decision import let_decide
+from .phases.evaluation import note_arrivals, robot_contacts
+from .phases.sensing import RobotReadings, read_sensors
 from .robot_control import RobotControl
-from .step_record import WALL, RobotContact, StepRecord
-from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, may_be_near, note_events
+from .step_record import RobotContact, StepRecord
+from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, note_events
 from .world_builder import begin_world, check_clock, environment_index
 from .world_view import WorldView
 
@@ -106,7 +108,7 @@ class Simulation:
             RobotControl.of(trial, robot, trial.people + k, self.world, self.seeds)
             for k, robot in enumerate(trial.robots)
         ]
-        self.readings: list[tuple[RobotControl, SensorReadings]] = []
+        self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
         self.ended = np.zeros(count, dtype=np.int64)
         self.failures: list[RunFailure | None] = [None] * count
@@ -333,36 +335,23 @@ class Simulation:
         self.world, errors = step_environments(self.world, commands)
         if self.around.world is not self.world:
             self._set_around()
+        self._fail_all(errors)
+        self.broken[list(errors)] = True
+        if self.count > len(errors):
+            leave_goal_zones(self.world, self._ways_out)
+            self.world.pose_people()
+            self._evaluate(ids)
+
+    def _observe(self, chosen: Bools) -> RobotReadings:
+        """Run part 6 in the environments ``chosen`` ``[E]`` and return the readings that arrive."""
+        found, errors = read_sensors(self.robots, self.around, chosen & ~self.failed)
+        self._fail_all(errors)
+        self._fail_all(let_decide(self.robots, self.around, chosen & ~self.failed))
+        return found
+
+    def _fail_all(self, errors: Mapping[int, Exception]) -> None:
         for e, error in errors.items():
             self.fail(e, error)
-            self.broken[e] = True
-        if self.count > len(errors):
-            self._let_leave()
-            self.world.pose_people()
-            self._judge(ids)
-
-    def _observe(self, chosen: Bools) -> list[tuple[RobotControl, SensorReadings]]:
-        """Run part 6 in the environments ``chosen`` ``[E]`` and return the readings that arrive."""
-        ticks, common = self.ticks, self.world.environment_time.common_tick
-        found: list[tuple[RobotControl, SensorReadings]] = []
-        if not chosen.any():
-            return found
-        for robot in self.robots:
-            for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
-                told, errors = sensor.work(ticks, chosen & ~self.failed, robot.agent, self.around)
-                found += [(robot, one) for one in told]
-                for e, error in errors:
-                    self.fail(e, error)
-        if self.failed.any():
-            kept = ((robot, one.without(self.failed)) for robot, one in found)
-            found = [(robot, one) for robot, one in kept if one is not None]
-        for robot in self.robots:
-            if common is not None and not robot.control.is_due(common):
-                continue
-            due = np.flatnonzero(chosen & ~self.failed & (common is not None or robot.control.is_due(ticks)))
-            for e, error in robot.decide(self.around, due).items() if len(due) else ():
-                self.fail(e, error)
-        return found
 
     def _collisions(self, environment: int, last: bool) -> tuple[BodyContactEvent, ...]:
         """Return the contact events that ended since the previous call, ordered by end."""
@@ -375,26 +364,12 @@ class Simulation:
         new, self._told[environment] = over[self._told[environment] :], len(over)
         return tuple(new)
 
-    def _let_leave(self) -> None:
-        leave_goal_zones(self.world, self._ways_out)
-
-    def _judge(self, ids: Ints) -> None:
+    def _evaluate(self, ids: Ints) -> None:
         """Detect contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
-        found: dict[int, list[RobotContact]] = {}
-        for one in self.world.contacts:
-            robot, other = ids[one.environment, [one.robot, one.other]].tolist()
-            contact = RobotContact(robot, other, one.clearance)
-            found.setdefault(one.environment, []).append(contact)
-        position = self.world.scene.position
-        for control in self.robots:
-            gap = self.world.wall_clearance(control.agent)
-            for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
-                found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
-            goal = control.robot.goal
-            if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
-                control.arrive(position[:, control.agent])
-        self._contacts = {e: tuple(found) for e, found in found.items()}
-        note_events(self.event, list(found), [control.arrived for control in self.robots], COLLISION, SUCCESS)
+        self._contacts = robot_contacts(self.world, self.robots, ids)
+        note_arrivals(self.world, self.robots)
+        arrivals = [control.arrived for control in self.robots]
+        note_events(self.event, list(self._contacts), arrivals, COLLISION, SUCCESS)
         agents = {robot.robot.name: robot.agent for robot in self.robots}
         if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
             self.ended = np.where(self.ended == 0, met, self.ended)

@@ -11,25 +11,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
-from crowdbot.metrics import step_clearance, step_wall_clearance
+from crowdbot.metrics import step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
 from .crowd.contact import ContactModel, ContactSurfaces
-from .crowd.departure import leave_at_goals, leave_in_zone
-from .crowd.environment_rows import stack_scenes, trim_scene, works_in_batches
+from .crowd.environment_rows import trim_scene, works_in_batches
 from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
 from .crowd.people_flow import PeopleFlow, environment_seeds
-from .crowd.portal import PortalTransfer, apply_portals
+from .crowd.portal import PortalTransfer
 from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
 from .environment_time import EnvironmentTime
+from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, step_models, widen_robots
+from .phases.people_exchange import exchange_people
+from .phases.robot_contacts import find_contacts
+from .phases.robot_motion import check_commands, initial_twist, move_robots
 from .planar_checks import check_arguments
-from .robots.drive import Drive, Twists, put_robot
+from .robots.drive import Drive, Twists
 from .robots.mount import MountPlacement
 from .robots.servo import CommandDelay, Pending
 from .world import Contact, World
@@ -135,7 +138,7 @@ class PlanarWorld(World):
 
     def __post_init__(self) -> None:
         self._check()
-        self.twists = {robot: self._initial_twist(robot) for robot in sorted(self.drives)}
+        self.twists = {robot: initial_twist(self.scene, robot) for robot in sorted(self.drives)}
         seeds = environment_seeds(self.seed, self.scene.shape[0])
         self.environment_time = EnvironmentTime.of(FreeClock(self.dt), self.scene.time, len(seeds))
         self._rngs = [stream(seed, "crowd") for seed in seeds]
@@ -169,12 +172,8 @@ class PlanarWorld(World):
             after = self.script.place(after, elapsed)
         after.check()
         self.contacts = self._find_contacts(before, after)
-        if self.leave_radius is not None:
-            after = leave_at_goals(after, self.leave_radius)
-        for zone in self.exits:
-            after = leave_in_zone(after, zone)
-        after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts)
+        exits = (self.leave_radius, self.exits, self.portals)
+        self.scene = show_ghosts(exchange_people(before, after, *exits, self._traffic, elapsed), self.ghosts)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -311,62 +310,31 @@ class PlanarWorld(World):
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
-        wide = before.radius.copy()
-        for robot in self.twists:
-            wide[:, robot] += self.robot_margin
-        crowd = earlier = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
-        h = self.dt / self.substeps
-        for k in range(self.substeps):
-            if k > 0:
-                crowd = self._resolve_overlaps(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
-            earlier = crowd
-            crowd = self._step_model(earlier, h)
-            if self.limits is not None:
-                crowd = self.limits.apply(earlier, crowd, h)
+        wide = widen_robots(before.radius, self.twists, self.robot_margin)
+        start = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
+        resolve, radius = self._resolve_overlaps, before.radius
+        earlier, crowd = move_people(start, self._step_model, resolve, self.limits, self.dt, self.substeps, radius)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:
-        """Return the scene after a step of the crowd model, called once if it works in batches."""
-        models = self._models
-        if models is None or len(models) == 1 or (self.joined and works_in_batches(self.model)):
-            return self.model.step(scene, dt, self._rngs[0])
-        alone = (scene.environments([e]).replace(walls=scene.walls) for e in range(len(models)))
-        rows = [model.step(one, dt, rng) for model, one, rng in zip(models, alone, self._rngs, strict=True)]
-        return stack_scenes(rows).replace(walls=scene.walls)
+        models = self._models or (self.model,)
+        whole = len(models) == 1 or (self.joined and works_in_batches(self.model))
+        return step_models(scene, dt, models, self._rngs, self.model if whole else None)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
-        """Return the scene with overlaps of people resolved."""
         if self.contact is None:
             return after
-        largest = float(after.radius[after.active].max(initial=0.0))
-        known = self._surfaces
-        if known is None or known.walls is not after.walls or known.reach < largest:
-            self._surfaces = known = ContactSurfaces.of(after.walls, largest)
-        return self.contact.resolve_overlaps(earlier, after, self.dt / self.substeps, known)
+        self._surfaces = contact_surfaces(after, self._surfaces)
+        return resolve_overlaps(earlier, after, self.contact, self.dt / self.substeps, self._surfaces)
 
     def _check(self) -> None:
         check_arguments(
             self.scene, self.drives, self.robot_margin, self.leave_radius, self.heading_jitter, self.substeps
         )
 
-    def _initial_twist(self, robot: int) -> Twists:
-        heading, velocity = self.scene.heading[:, robot], self.scene.velocity[:, robot]
-        cos, sin = np.cos(heading), np.sin(heading)
-        forward = cos * velocity[:, 0] + sin * velocity[:, 1]
-        left = cos * velocity[:, 1] - sin * velocity[:, 0]
-        return Twists(forward, np.zeros_like(forward), left)
-
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
-        for robot in commands:
-            if robot not in self.drives:
-                raise InputError(
-                    f"agent {robot} has a command but is not a robot; robots are {sorted(self.drives) or 'none'}"
-                )
-        missing = [robot for robot in self.twists if robot not in commands]
-        if missing:
-            raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stop")
-        asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        asked = check_commands(commands, self.twists, self.scene.shape[0])
         return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
@@ -379,22 +347,8 @@ class PlanarWorld(World):
         return Twists.of(self._delayed[robot][1], self.scene.shape[0])
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
-        position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
-        for robot, command in asked.items():
-            old = Pose(before.position[:, robot].copy(), before.heading[:, robot].copy())
-            pose, twist = self.drives[robot].step(old, self.twists[robot], command, self.dt)
-            self.twists[robot] = twist
-            put_robot(
-                robot, before.active, before.position, before.heading, pose.position, pose.heading,
-                twist.forward, twist.left, position, velocity, heading,
-            )  # fmt: skip
-        return after.replace(position=position, velocity=velocity, heading=heading)
+        scene, self.twists = move_robots(before, after, self.drives, self.twists, asked, self.dt)
+        return scene
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
-        found: list[Contact] = []
-        for number, robot in enumerate(self.twists):
-            gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
-            if least < 0.0 and robot not in self.ghosts:
-                gap[:, list(self.twists)[: number + 1]] = math.inf
-                found += [Contact(e, robot, a, float(gap[e, a])) for e, a in np.argwhere(gap < 0.0).tolist()]
-        return tuple(sorted(found))
+        return find_contacts(before, after, list(self.twists), self.ghosts)

@@ -1,0 +1,45 @@
+"""Evaluation, the fifth phase of a step: contacts, arrivals and end conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.simulation.robot_control import RobotControl
+from crowdbot.simulation.step_record import WALL, RobotContact
+from crowdbot.simulation.termination import may_be_near
+from crowdbot.world import World
+
+__all__ = ["note_arrivals", "robot_contacts"]
+
+
+def robot_contacts(
+    world: World, robots: Sequence[RobotControl], ids: NDArray[np.int64]
+) -> dict[int, tuple[RobotContact, ...]]:
+    """Return the contacts of robots in the last step by environment, with people and robots first, then with walls.
+
+    Args:
+        world: the world after the step.
+        robots: the robots.
+        ids: ``[E, A]`` identities before the step, since an index may be reused.
+    """
+    found: dict[int, list[RobotContact]] = {}
+    for one in world.contacts:
+        robot, other = ids[one.environment, [one.robot, one.other]].tolist()
+        found.setdefault(one.environment, []).append(RobotContact(robot, other, one.clearance))
+    for control in robots:
+        gap = world.wall_clearance(control.agent)
+        for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
+            found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
+    return {e: tuple(contacts) for e, contacts in found.items()}
+
+
+def note_arrivals(world: World, robots: Sequence[RobotControl]) -> None:
+    """Note which robots are at their goals."""
+    position = world.scene.position
+    for control in robots:
+        goal = control.robot.goal
+        if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
+            control.arrive(position[:, control.agent])
