@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, check_number
+from crowdbot.core import InputError, check_number, dense, kernel
 
 from .lidar import Lidar2D
 from .noise import Randomness, apply_noise
@@ -20,6 +20,8 @@ from .view import SensorView
 __all__ = ["GroundTruthPeople", "TrackedPeople"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+FLOAT, BOOL = np.dtype(np.float64), np.dtype(np.bool_)
 
 
 @dataclass(frozen=True)
@@ -91,36 +93,64 @@ class GroundTruthPeople(Sensor):
         self.check(view)
         scene, pose = view.scene, view.pose
         place = planar_pose(pose)
-        absent = ~scene.active[..., None]
-        away = np.where(absent, np.nan, scene.position) - place.position[:, None]
-        position = _turned(away, place.heading)
-        distance = np.hypot(position[..., 0], position[..., 1])
-        bearing = np.abs(np.arctan2(position[..., 1], position[..., 0]))
-        present = scene.active & (distance <= self.range_max) & (bearing <= 0.5 * self.field_of_view + 1e-12)
+        shape = scene.shape
+        pairs = (*shape, 2)
+        where = dense(place.position, (shape[0], 2), FLOAT)
+        active, cos, sin = dense(scene.active, shape, BOOL), np.cos(place.heading), np.sin(place.heading)
+        present, told = np.empty(shape, dtype=np.bool_), np.empty(pairs)
+        _locate(active, dense(scene.position, pairs, FLOAT), where, cos, sin, float(self.range_max), present, told)
+        half = 0.5 * self.field_of_view + 1e-12
+        if half < math.pi:
+            present &= np.abs(np.arctan2(told[..., 1], told[..., 0])) <= half
         if self.visible_only:
-            present &= _circle(self.rays, self.range_max).read(scene, pose).visible_agents(scene.shape[1])
-        told = apply_noise(np.where(present[..., None], position, np.nan), self.noises, rng)
-        present &= np.isfinite(told).all(axis=-1)
-        heading = scene.heading - place.heading[:, None]
-        heading = math.pi - (math.pi - np.where(present, heading, 0.0)) % (2.0 * math.pi)
-        reading = TrackedPeople(
-            scene.time,
-            pose,
-            present,
-            np.where(present[..., None], told, np.nan),
-            np.where(present[..., None], _turned(np.where(absent, 0.0, scene.velocity), place.heading), np.nan),
-            np.where(present, scene.radius, np.nan),
-            np.where(present, heading, np.nan),
-        )
-        return reading, None
+            present &= _circle(self.rays, self.range_max).read(scene, pose).visible_agents(shape[1])
+        if self.noises:
+            told = apply_noise(np.where(present[..., None], told, np.nan), self.noises, rng)
+            present &= np.isfinite(told).all(axis=-1)
+        velocity, radius, heading = np.empty(pairs), np.empty(shape), np.empty(shape)
+        _fill_rows(
+            present, dense(scene.velocity, pairs, FLOAT), dense(scene.radius, shape, FLOAT),
+            dense(scene.heading, shape, FLOAT), dense(place.heading, shape[:1], FLOAT), cos, sin,
+            told, velocity, radius, heading,
+        )  # fmt: skip
+        return TrackedPeople(scene.time, pose, present, told, velocity, radius, heading), None
+
+
+@kernel
+def _locate(
+    active: Bools, position: Floats, place: Floats, cos: Floats, sin: Floats, reach: float, present: Bools, told: Floats
+) -> None:
+    """Write the positions in the sensor frame, NaN for absent agents, and who is within reach."""
+    for e in range(len(active)):
+        for a in range(active.shape[1]):
+            present[e, a] = False
+            if not active[e, a]:
+                told[e, a, :] = math.nan
+                continue
+            x, y = position[e, a, 0] - place[e, 0], position[e, a, 1] - place[e, 1]
+            told[e, a, 0], told[e, a, 1] = cos[e] * x + sin[e] * y, cos[e] * y - sin[e] * x
+            present[e, a] = math.hypot(told[e, a, 0], told[e, a, 1]) <= reach
+
+
+@kernel
+def _fill_rows(
+    present: Bools, moving: Floats, size: Floats, direction: Floats, turn: Floats, cos: Floats, sin: Floats,
+    told: Floats, velocity: Floats, radius: Floats, heading: Floats,
+) -> None:  # fmt: skip
+    """Write velocities, radii and headings in the sensor frame, and NaN for agents that are not present."""
+    for e in range(len(present)):
+        for a in range(present.shape[1]):
+            if present[e, a]:
+                x, y = moving[e, a, 0], moving[e, a, 1]
+                velocity[e, a, 0], velocity[e, a, 1] = cos[e] * x + sin[e] * y, cos[e] * y - sin[e] * x
+                radius[e, a] = size[e, a]
+                heading[e, a] = math.pi - (math.pi - (direction[e, a] - turn[e])) % (2.0 * math.pi)
+            else:
+                told[e, a, :], velocity[e, a, :] = math.nan, math.nan
+                radius[e, a], heading[e, a] = math.nan, math.nan
 
 
 @functools.lru_cache(maxsize=16)
 def _circle(rays: int, reach: float) -> Lidar2D:
     return Lidar2D(rays=rays, range_min=0.0, range_max=reach)
 
-
-def _turned(vectors: Floats, heading: Floats) -> Floats:
-    cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
-    x, y = vectors[..., 0], vectors[..., 1]
-    return np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1)
