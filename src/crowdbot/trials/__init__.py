@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .camera import OVERVIEW, Camera, overview
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
+    from .element_edit import add_element, needs_trust, remove_element
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
@@ -59,6 +60,7 @@ __getattr__, __dir__ = lazy_exports(
         "camera": ["OVERVIEW", "Camera", "overview"],
         "crowd": ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"],
         "distribution": ["Distribution"],
+        "element_edit": ["add_element", "needs_trust", "remove_element"],
         "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
@@ -146,6 +148,7 @@ __all__ = [
     "Wall",
     "XmlReader",
     "Zone",
+    "add_element",
     "apply_values",
     "area",
     "attribute",
@@ -169,6 +172,7 @@ __all__ = [
     "map_files",
     "outline",
     "overview",
+    "needs_trust",
     "own",
     "parse_trial",
     "parse_trial_xml",
@@ -180,6 +184,7 @@ __all__ = [
     "read_trial_bytes",
     "readable",
     "recorded_trial",
+    "remove_element",
     "resolve_file",
     "restore_old_names",
     "schema",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from crowdbot.core import Element, InputError, did_you_mean
 from .fields import FieldSpec, outline, quote_value
 from .xml.old_names import current_name
 
-__all__ = ["set_value", "set_values", "text_of"]
+__all__ = ["element_at", "remove_at", "set_value", "set_values", "text_of"]
 
 STEP = re.compile(r"([A-Za-z][A-Za-z_-]*)(?:\[([^\[\]]+)\])?")
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -55,16 +55,45 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
     {'type': 'boids'}
     """
     *steps, last = _steps(path)
-    here: Element = root
-    inside: Any = kind
-    for step in steps:
-        here, inside = _inner(here, inside, step)
+    here, inside = _follow(root, kind, steps)
     last = current_name(here.tag, last)
     _check_attribute(here, inside, last)
     if last == "type" and here.attributes.get("type") != text and _is_mounted(inside):
         own = () if inside is None else tuple(part.word for part in outline(inside) if part.role == "attribute")
         here.attributes = {key: value for key, value in here.attributes.items() if key in (*own, "name")}
     here.attributes[last] = text
+
+
+def element_at(root: Element, kind: Any, path: str) -> tuple[Element, Any]:
+    """Return the element at a path and its class; an optional element that is missing is created.
+
+    Args:
+        root: the trial.
+        kind: class of the trial.
+        path: elements as in :func:`set_value`, such as ``stage``; empty for the trial itself.
+
+    Raises:
+        InputError: the path does not exist.
+    """
+    return _follow(root, kind, _steps(path) if path.strip("/ ") else [])
+
+
+def remove_at(root: Element, kind: Any, path: str) -> None:
+    """Remove the element at a path, such as ``stage/wall[2]``.
+
+    Raises:
+        InputError: the path does not exist.
+
+    >>> from crowdbot.trials import Trial
+    >>> root = Element("trial", {}, [Element("robot", {"name": "a"}), Element("robot", {"name": "b"})])
+    >>> remove_at(root, Trial, "robot[a]")
+    >>> [robot.attributes for robot in root.children]
+    [{'name': 'b'}]
+    """
+    *steps, last = _steps(path)
+    parent, inside = _follow(root, kind, steps)
+    element, _ = _inner(parent, inside, last, create=False)
+    parent.children = [child for child in parent.children if child is not element]
 
 
 def text_of(value: Any) -> str:
@@ -100,7 +129,13 @@ def _check_attribute(here: Element, kind: Any, last: str) -> None:
         raise InputError(f"names no attribute: <{here.tag}> has no {last!r}{near}; it takes {', '.join(words)}")
 
 
-def _inner(here: Element, kind: Any, step: str) -> tuple[Element, Any]:
+def _follow(root: Element, kind: Any, steps: Sequence[str]) -> tuple[Element, Any]:
+    for step in steps:
+        root, kind = _inner(root, kind, step)
+    return root, kind
+
+
+def _inner(here: Element, kind: Any, step: str, create: bool = True) -> tuple[Element, Any]:
     """Return the element of a step, created if it is optional and missing, and its class."""
     match = STEP.fullmatch(step)
     parts = {word: part for part in (outline(kind) if kind else ()) for word in part.words}
@@ -110,7 +145,7 @@ def _inner(here: Element, kind: Any, step: str) -> tuple[Element, Any]:
     part: FieldSpec = parts[match[1]]
     inner = None if part.role == "plugged" else part.elements[match[1]]
     there = [child for child in here.children if child.tag == match[1]]
-    if not there and part.role in ("child", "plugged"):
+    if create and not there and part.role in ("child", "plugged"):
         there = [Element(match[1])]
         here.children.append(there[0])
     return _chosen(here, there, inner, match[1], match[2]), inner
