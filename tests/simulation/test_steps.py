@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import random
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,11 @@ from crowdbot.recording import open_run, read_episode, record
 from crowdbot.sensors import Lidar2D, SensorView
 from crowdbot.simulation import EpisodeStatistics, Order, Simulation, SimulationRun, StepRecord, VelocityOrder
 from crowdbot.trials import Trial, parse_trial
-from crowdbot.world import DifferentialDrive
+from crowdbot.world import DifferentialDrive, World
 from trial_texts import BRIEF_FLOW, GOOD
 
 TRIAL = parse_trial(GOOD)
+simulation_module = importlib.import_module("crowdbot.simulation.simulation")
 EVENTS: list[tuple[str, float]] = []
 
 
@@ -91,13 +93,13 @@ def watched(monkeypatch: pytest.MonkeyPatch, world: str) -> Simulation:
         TRIAL, crowd=Crowd(), robots=[robot], recording=dataclasses.replace(TRIAL.recording, period=0.05), world=world
     )
     simulation = Simulation(trial, 3, Watched(0.05))
-    bodies = simulation._let_leave
+    bodies = simulation_module.leave_goal_zones
 
-    def leave() -> None:
-        EVENTS.append(("people's bodies", simulation.world.scene.time))
-        bodies()
+    def leave(world: World, zones: Any) -> None:
+        EVENTS.append(("people's bodies", world.scene.time))
+        bodies(world, zones)
 
-    monkeypatch.setattr(simulation, "_let_leave", leave)
+    monkeypatch.setattr(simulation_module, "leave_goal_zones", leave)
     return simulation
 
 

@@ -153,4 +153,3 @@ def _fill_rows(
 @functools.lru_cache(maxsize=16)
 def _circle(rays: int, reach: float) -> Lidar2D:
     return Lidar2D(rays=rays, range_min=0.0, range_max=reach)
-

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from .camera import OVERVIEW, Camera, overview
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
-    from .element_edit import add_element, needs_trust, remove_element
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from .trial import End, EndCondition, RecordingSpec, Trial
     from .validation.rates import trial_remarks
     from .variants import apply_values, expand_sweeps
+    from .xml.element_edit import add_element, needs_trust, remove_element
     from .xml.old_names import OldNameWarning, restore_old_names, update_names
     from .xml.reader import XmlReader
     from .xml.trial_text import parse_trial_xml, read_trial_bytes
@@ -60,7 +60,6 @@ __getattr__, __dir__ = lazy_exports(
         "camera": ["OVERVIEW", "Camera", "overview"],
         "crowd": ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"],
         "distribution": ["Distribution"],
-        "element_edit": ["add_element", "needs_trust", "remove_element"],
         "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
@@ -89,6 +88,7 @@ __getattr__, __dir__ = lazy_exports(
         "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
         "validation.rates": ["trial_remarks"],
         "variants": ["apply_values", "expand_sweeps"],
+        "xml.element_edit": ["add_element", "needs_trust", "remove_element"],
         "xml.old_names": ["OldNameWarning", "restore_old_names", "update_names"],
         "xml.reader": ["XmlReader"],
         "xml.trial_text": ["parse_trial_xml", "read_trial_bytes"],
@@ -170,9 +170,9 @@ __all__ = [
     "kind_of",
     "load_trial",
     "map_files",
+    "needs_trust",
     "outline",
     "overview",
-    "needs_trust",
     "own",
     "parse_trial",
     "parse_trial_xml",

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from crowdbot.core import InputError, TrialError, format_xml
+from crowdbot.trials.fields import outline
+from crowdbot.trials.parser import parse_trial
+from crowdbot.trials.trial import Trial
+from crowdbot.trials.value_path import element_at, remove_at
 
-from .fields import outline
-from .parser import parse_trial
-from .trial import Trial
-from .value_path import element_at, remove_at
-from .xml.trial_text import parse_trial_xml
-from .xml.writer import element_of, trial_xml
+from .trial_text import parse_trial_xml
+from .writer import element_of, trial_xml
 
 __all__ = ["add_element", "needs_trust", "remove_element"]
 
