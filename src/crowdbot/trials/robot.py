@@ -174,7 +174,7 @@ class RobotSpec:
         max=600.0,
     )
     holonomic: bool = attribute(
-        False, about="whether the orca navigator moves in every direction, with an omnidirectional drive"
+        False, about="whether the navigator moves in every direction, with an omnidirectional drive"
     )
     goal: RobotGoal = child(about="goal")
     planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
