@@ -1,6 +1,7 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
+from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
 from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
@@ -41,6 +42,7 @@ __all__ = [
     "Sink",
     "StepRecord",
     "StopRequest",
+    "UncommandedRobotWarning",
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",

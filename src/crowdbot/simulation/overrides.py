@@ -13,7 +13,7 @@ from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 from crowdbot.world import environment_seeds
 
 from .mounted_sensor import mounted_sensors
-from .robot_control import RobotControl
+from .robot_control import RobotControl, decision_schedule
 from .simulation import NONE, SUCCESS, Simulation
 from .world_builder import limits_of, own_walls
 
@@ -138,7 +138,7 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
         memories=old.memories if same else [None] * simulation.count,
         begun=old.begun if same else np.zeros_like(old.begun),
         limits=limits_of(robot.drive, robot.holonomic),
-        control=simulation.world.clock.schedule(robot.control_period),
+        control=decision_schedule(robot, simulation.world.clock),
         sensors=sensors,
         arrived=old.arrived if robot.goal == old.robot.goal else np.zeros_like(old.arrived),
     )

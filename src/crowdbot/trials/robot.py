@@ -26,7 +26,7 @@ from crowdbot.core import (
     did_you_mean,
     reads_only,
 )
-from crowdbot.navigation import Navigator, PathPlanner
+from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
@@ -208,6 +208,10 @@ class RobotSpec:
             raise InputError(
                 'has holonomic="true" but its drive cannot move sideways; take <drive type="omnidirectional"/>, or'
                 " leave it out"
+            )
+        if isinstance(self.navigator, ExternalNavigator) and self.deadline is not None:
+            raise InputError(
+                'has a deadline in addition to <navigator type="external"/>, which decides nothing; set its timeout'
             )
         for problem in rider_problems(self.rider, self.type):
             raise InputError(problem)
