@@ -101,7 +101,8 @@ def _scene(simulation: Simulation, trial: Trial) -> Any:
     }
     for control, robot in zip(simulation.robots, trial.robots, strict=True):
         top = limits_of(robot.drive).max_speed
-        values = (robot.radius, robot.goal.position, robot.visible and not robot.ghost, top, top)
+        goal = control.goal if robot.goal == control.robot.goal else robot.goal.position
+        values = (robot.radius, goal, robot.visible and not robot.ghost, top, top)
         for name, value in zip(columns, values, strict=True):
             columns[name][:, control.agent] = value
     return scene.replace(**columns)
@@ -131,14 +132,18 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
         fresh = mounted_sensors(simulation.trial, robot, simulation.world, simulation.seeds)
         for sensor, new in zip(sensors, fresh, strict=True):
             sensor.rngs = new.rngs
+    goal = robot.goal
+    same_goal, count = goal == old.robot.goal, simulation.count
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old.change_memory(simulation.trial, robot),
         robot=robot,
-        memories=old.memories if same else [None] * simulation.count,
+        memories=old.memories if same else [None] * count,
         begun=old.begun if same else np.zeros_like(old.begun),
         limits=limits_of(robot.drive, robot.holonomic),
         control=decision_schedule(robot, simulation.world.clock),
         sensors=sensors,
-        arrived=old.arrived if robot.goal == old.robot.goal else np.zeros_like(old.arrived),
+        arrived=old.arrived if same_goal else np.zeros_like(old.arrived),
+        goal=old.goal if same_goal else np.tile(np.array(goal.position, dtype=np.float64), (count, 1)),
+        tolerance=old.tolerance if same_goal else np.full(count, goal.tolerance),
     )

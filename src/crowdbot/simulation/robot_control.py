@@ -40,7 +40,7 @@ Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
-ROWS = ("command", "begun", "arrived", "path", "missed", "ordered")
+ROWS = ("command", "begun", "arrived", "path", "missed", "ordered", "goal", "tolerance")
 """Fields with one row for each environment."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
@@ -88,6 +88,8 @@ class RobotControl:
         path: ``[E, 9]`` state of the path planner; NaN before the first decision.
         tracks: history of the visible people in each environment, or empty.
         missed: ``[E]`` tick of the latest decision that took longer than the deadline of the robot, -1 for none.
+        goal: ``[E, 2]`` current goal [m], which orders can change.
+        tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
         replayed: ticks of the missed decisions of each environment that is replayed, otherwise None.
         timer: clock of the compute times [s], used only with a deadline.
@@ -107,6 +109,8 @@ class RobotControl:
     tracks: list[TrackHistory]
     missed: Ints
     ordered: Ints
+    goal: Floats
+    tolerance: Floats
     replayed: list[frozenset[int] | None]
     timer: Callable[[], float] = time.perf_counter
     _warm: bool = field(default=False, init=False)
@@ -134,6 +138,8 @@ class RobotControl:
             _empty_tracks(robot, count),
             np.full(count, NEVER, dtype=np.int64),
             np.full(count, NEVER, dtype=np.int64),
+            np.tile(np.array(robot.goal.position, dtype=np.float64), (count, 1)),
+            np.full(count, robot.goal.tolerance),
             [None] * count,
         )
 
@@ -325,9 +331,15 @@ class RobotControl:
 
     def arrive(self, position: Floats) -> None:
         """Note where the robot, at positions ``[E, 2]`` [m], is at its goal."""
-        x, y = self.robot.goal.position
-        away = np.hypot(position[:, 0] - x, position[:, 1] - y)
-        self.arrived |= away < self.robot.goal.tolerance
+        away = np.hypot(position[:, 0] - self.goal[:, 0], position[:, 1] - self.goal[:, 1])
+        self.arrived |= away < self.tolerance
+
+    def change_goal(self, environment: int, goal: tuple[float, float], tolerance: float | None = None) -> None:
+        """Set the goal [m] in one environment, and its tolerance [m] (default: as before); the robot drives again."""
+        self.goal[environment] = goal
+        self.arrived[environment] = False
+        if tolerance is not None:
+            self.tolerance[environment] = tolerance
 
     def select(self, environments: Ints) -> RobotControl:
         """Return an independent state of some environments."""

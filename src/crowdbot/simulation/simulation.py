@@ -390,8 +390,7 @@ class Simulation:
             gap = self.world.wall_clearance(control.agent)
             for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
                 found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
-            goal = control.robot.goal
-            if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
+            if not control.arrived.all() and may_be_near(position, control.agent, control.goal, control.tolerance):
                 control.arrive(position[:, control.agent])
         self._contacts = {e: tuple(found) for e, found in found.items()}
         note_events(self.event, list(found), [control.arrived for control in self.robots], COLLISION, SUCCESS)

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .sweep import Sweep
     from .trial import End, EndCondition, RecordingSpec, Trial
     from .validation.rates import trial_remarks
+    from .validation.trial_checks import robot_place_problem
     from .variants import apply_values, expand_sweeps
     from .xml.old_names import OldNameWarning, restore_old_names, update_names
     from .xml.reader import XmlReader
@@ -86,6 +87,7 @@ __getattr__, __dir__ = lazy_exports(
         "sweep": ["Sweep"],
         "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
         "validation.rates": ["trial_remarks"],
+        "validation.trial_checks": ["robot_place_problem"],
         "variants": ["apply_values", "expand_sweeps"],
         "xml.old_names": ["OldNameWarning", "restore_old_names", "update_names"],
         "xml.reader": ["XmlReader"],
@@ -182,6 +184,7 @@ __all__ = [
     "recorded_trial",
     "resolve_file",
     "restore_old_names",
+    "robot_place_problem",
     "schema",
     "skip_unreadable",
     "trial_remarks",
