@@ -224,6 +224,8 @@ class RobotControl:
             seen=seen,
             environments=rows,
             ids=ids,
+            predictor=None if self.robot.predictor is None else self.robot.predictor.build(),
+            predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),
         )
 

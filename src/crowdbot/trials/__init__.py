@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .placement.expansion import expand_spawners
     from .placement.population import place
     from .placement.spawn_placement import GAP, InitialPeople
+    from .predictor import RobotPredictor
     from .props import Cube, Light, Table, Tree
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
@@ -76,6 +77,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.expansion": ["expand_spawners"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "predictor": ["RobotPredictor"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -136,6 +138,7 @@ __all__ = [
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
+    "RobotPredictor",
     "RobotSpec",
     "Routing",
     "SourceSpec",
