@@ -4,6 +4,7 @@ from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
 from .goal_order import GoalOrder
+from .joint_order import JointOrder
 from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
 from .parameter_order import ParameterOrder
@@ -24,6 +25,7 @@ __all__ = [
     "EpisodeLog",
     "EpisodeStatistics",
     "GoalOrder",
+    "JointOrder",
     "MissedDecisionOrder",
     "MoveOrder",
     "Order",

@@ -14,6 +14,7 @@ from crowdbot.world import environment_seeds
 
 from .mounted_sensor import mounted_sensors
 from .robot_control import RobotControl, decision_schedule
+from .robot_joints import restore_joints
 from .simulation import NONE, SUCCESS, Simulation
 from .world_builder import limits_of, own_walls
 
@@ -63,6 +64,8 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         _robot_control(simulation, control, robot, seed)
         for control, robot in zip(simulation.robots, trial.robots, strict=True)
     ]
+    for control in simulation.robots:
+        restore_joints(control, world)
     if [robot.goal for robot in old.robots] != [robot.goal for robot in trial.robots]:
         simulation.event[simulation.event == SUCCESS] = NONE
 

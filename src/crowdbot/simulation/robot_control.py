@@ -26,7 +26,7 @@ from crowdbot.navigation import (
 )
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import Twists, World
+from crowdbot.world import Twists, World, free_joints
 
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
@@ -40,7 +40,7 @@ Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
-ROWS = ("command", "begun", "arrived", "path", "missed", "ordered", "goal", "tolerance")
+ROWS = ("command", "begun", "arrived", "path", "missed", "ordered", "goal", "tolerance", "joints")
 """Fields with one row for each environment."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
@@ -91,6 +91,7 @@ class RobotControl:
         goal: ``[E, 2]`` current goal [m], which orders can change.
         tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
+        joints: ``[E, J]`` target of each joint [rad or m] that an order has moved, otherwise NaN.
         replayed: ticks of the missed decisions of each environment that is replayed, otherwise None.
         timer: clock of the compute times [s], used only with a deadline.
     """
@@ -111,6 +112,7 @@ class RobotControl:
     ordered: Ints
     goal: Floats
     tolerance: Floats
+    joints: Floats
     replayed: list[frozenset[int] | None]
     timer: Callable[[], float] = time.perf_counter
     _warm: bool = field(default=False, init=False)
@@ -140,6 +142,7 @@ class RobotControl:
             np.full(count, NEVER, dtype=np.int64),
             np.tile(np.array(robot.goal.position, dtype=np.float64), (count, 1)),
             np.full(count, robot.goal.tolerance),
+            np.full((count, len(free_joints(robot.body))), np.nan),
             [None] * count,
         )
 

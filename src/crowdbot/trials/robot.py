@@ -276,14 +276,19 @@ class RobotSpec:
             made = dataclasses.replace(self._kind, drive=self.drive)
         return dataclasses.replace(made, latency=self.latency)
 
-    def frame_of(self, mount: Mount) -> Floats:
-        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor), in its driving posture."""
+    def frame_of(self, mount: Mount, joints: Mapping[str, float] | None = None) -> Floats:
+        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor).
+
+        The robot is in its driving posture, except for other joint positions [rad or m].
+        """
         if not mount.link:
             return mount.origin
-        return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
+        return np.asarray(self.body.model.poses({**self.body.posture, **(joints or {})})[mount.link] @ mount.origin)
 
-    def sensor_pose(self, mount: Mount) -> tuple[float, float, float, float, float, float]:
-        """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot.
+    def sensor_pose(
+        self, mount: Mount, joints: Mapping[str, float] | None = None
+    ) -> tuple[float, float, float, float, float, float]:
+        """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot, as :meth:`frame_of`.
 
         >>> from crowdbot.navigation import Straight
         >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
@@ -292,7 +297,7 @@ class RobotSpec:
         """
         if not mount.link:
             return mount.x, mount.y, mount.z, mount.roll, mount.pitch, mount.heading
-        found = self.frame_of(mount)
+        found = self.frame_of(mount, joints)
         x, y, z = (round(float(value), 12) for value in found[:3, 3])
         pitch = math.atan2(-found[2, 0], math.hypot(found[0, 0], found[1, 0]))
         roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
