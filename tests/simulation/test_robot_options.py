@@ -41,7 +41,15 @@ def with_robot(trial: Trial, **changes: Any) -> Trial:
     return dataclasses.replace(trial, robots=(dataclasses.replace(trial.robots[0], **changes),))
 
 
-@pytest.mark.parametrize("text", [ROOM, STRAIGHT, OMNI], ids=["orca", "straight", "holonomic"])
+TEXTS = {
+    "orca": ROOM,
+    "straight": STRAIGHT,
+    "holonomic": OMNI,
+    "both": OMNI.replace('"orca"/>\n    <s', '"straight"/>\n    <s'),
+}
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_a_robot_with_a_planner_reaches_the_other_room(text: str) -> None:
     assert valid(text)
     trial = parse_trial(text)

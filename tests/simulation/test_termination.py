@@ -27,8 +27,9 @@ def test_success_needs_all_robots_and_at_least_one() -> None:
 def test_an_agent_that_is_near_is_never_missed() -> None:
     place = stream(1, "near").uniform(-2.0, 2.0, (2000, 1, 2))
     away = np.hypot(place[:, 0, 0] - 0.5, place[:, 0, 1] + 0.25)
+    point = np.array([[0.5, -0.25]])
     for e in range(len(place)):
         for distance in (away[e], np.nextafter(away[e], 9.0), 0.9 * away[e]):
-            may = may_be_near(place[e : e + 1], 0, 0.5, -0.25, float(distance))
+            may = may_be_near(place[e : e + 1], 0, point, np.array([distance]))
             assert may or not away[e] < distance
-    assert not may_be_near(place[:1], 0, 0.5, -0.25, 0.9 * float(away[0]))
+    assert not may_be_near(place[:1], 0, point, 0.9 * away[:1])

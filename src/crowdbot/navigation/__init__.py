@@ -4,6 +4,7 @@ from .action import Action
 from .contract import check_navigator
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
+from .external import ExternalNavigator
 from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -18,6 +19,7 @@ __all__ = [
     "AgentsInView",
     "Decisions",
     "DriveLimits",
+    "ExternalNavigator",
     "Navigator",
     "ORCANavigator",
     "Observation",

@@ -16,7 +16,7 @@ class Action:
 
     Fields:
         twist: velocity asked of the drive [m/s], [rad/s].
-        joints: target positions of joints by name [rad] or [m]; empty, since no world moves joints yet.
+        joints: target positions of joints by name [rad] or [m]; must be empty, since only orders move joints.
 
     >>> Action(Twist(0.5))
     Action(twist=Twist(forward=0.5, turn=0.0, left=0.0), joints={})

@@ -19,6 +19,7 @@ __all__ = [
     "regular_rows",
     "slow_speed",
     "twists_towards",
+    "velocities_towards",
 ]
 
 Floats = NDArray[np.float64]
@@ -119,6 +120,21 @@ def twists_towards(
         out[e, 0] = slow_speed(limits[0], remaining, limits[2]) * ahead
         out[e, 1] = turn_towards(bearing, limits[1], limits[3])
         out[e, 2] = 0.0
+
+
+@kernel
+def velocities_towards(
+    asking: NDArray[np.bool_], pose: Floats, goal: Floats, waypoint: Floats, limits: Floats, out: Floats
+) -> None:
+    """Write the velocities ``[N, 2]`` of the world towards the waypoints; limits as in :func:`twists_towards`."""
+    for e in range(len(pose)):
+        if not asking[e]:
+            continue
+        x, y, tx, ty = pose[e, 0], pose[e, 1], waypoint[e, 0], waypoint[e, 1]
+        away = exact_distance(x, y, tx, ty)
+        remaining = away + exact_distance(tx, ty, goal[e, 0], goal[e, 1])
+        speed = slow_speed(limits[0], remaining, limits[2]) / max(away, 1e-9)
+        out[e, 0], out[e, 1] = (tx - x) * speed, (ty - y) * speed
 
 
 @kernel

@@ -16,7 +16,7 @@ from crowdbot.prediction import Predictor
 from crowdbot.sensors import Odometry, Reading, Scan
 
 from .goal_motion import SLOWING_TIME, TURN_GAIN
-from .track_history import TrackHistory
+from .track_history import HORIZON, TrackHistory, choose_predictor
 
 __all__ = ["DriveLimits", "Observation", "VisiblePeople"]
 
@@ -93,6 +93,8 @@ class Observation:
         readings: latest reading of each sensor by its name; sensors without a reading yet are missing.
         waypoint: next point x, y [m] of the planned path, in sight of the robot; default: the goal.
         tracks: past positions of the visible people, or None.
+        predictor: default predictor of :meth:`forecast`, or None.
+        predictor_step: time between rows of a forecast [s]; default: of the tracks.
 
     Raises:
         InputError: a number is not finite or a radius, limit or ``dt`` is not above 0.
@@ -115,6 +117,8 @@ class Observation:
     readings: Mapping[str, Reading] = field(default_factory=dict)
     waypoint: tuple[float, float] = AT_GOAL
     tracks: TrackHistory | None = None
+    predictor: Predictor | None = None
+    predictor_step: float | None = None
 
     def __post_init__(self) -> None:
         if self.waypoint is AT_GOAL:
@@ -263,22 +267,34 @@ class Observation:
         top = min(speed, self.limits.max_speed, remaining / SLOWING_TIME, self.braking_speed(remaining))
         return Twist(top * ahead, self.turn_by(bearing))
 
-    def forecast(self, predictor: Predictor, seconds: float, *, samples: int = 1, seed: int = 0) -> Forecast:
+    def forecast(
+        self,
+        predictor: Predictor | None = None,
+        seconds: float = HORIZON,
+        *,
+        samples: int = 1,
+        seed: int = 0,
+        dt: float | None = None,
+    ) -> Forecast:
         """Return where a predictor expects the people of the newest row of ``tracks``.
 
         Args:
-            predictor: any predictor whose goal does not require the future.
-            seconds: time to predict [s], rounded up to rows of the tracks.
+            predictor: any predictor whose goal does not require the future; default: that of the robot in the trial.
+            seconds: time to predict [s], rounded up to rows of the forecast.
             samples: number of futures.
             seed: random seed; the stream also depends on the time.
+            dt: time between rows of the past and of the forecast [s]; default: of the predictor in the trial, or of
+                the tracks.
 
         Raises:
-            InputError: there are no tracks, or the predictor cannot use them.
+            InputError: there are no tracks or no predictor, or the predictor cannot use the tracks.
         """
         if self.tracks is None:
             raise InputError("observation: forecast needs tracks, but they are None")
-        dt = None if len(self.tracks.times) > 1 else self.dt
-        return self.tracks.forecast(predictor, seconds, dt=dt, walls=self.walls, samples=samples, seed=seed)
+        known, step = choose_predictor(predictor, self.predictor, dt, self.predictor_step)
+        if step is None and len(self.tracks.times) < 2:
+            step = self.dt
+        return self.tracks.forecast(known, seconds, dt=step, walls=self.walls, samples=samples, seed=seed)
 
     def turn_by(self, angle: float) -> float:
         """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad] quickly and without overshoot."""

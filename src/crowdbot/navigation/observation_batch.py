@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Twist, Walls
+from crowdbot.data import Forecast
+from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
 
+from .forecast_tracks import forecast_tracks
 from .observation import DriveLimits, Observation, VisiblePeople
-from .track_history import TrackHistory
+from .track_history import HORIZON, TrackHistory, choose_predictor
 
 __all__ = ["AgentsInView", "ObservationBatch", "reading_of"]
 
@@ -68,6 +71,7 @@ class ObservationBatch:
         arrived: ``[N]`` bool by name of a sensor, whether its reading has arrived in the environment; a sensor that is
             not listed has a reading everywhere.
         tracks: N histories of the visible people, or empty.
+        predictor, predictor_step: default predictor of :meth:`forecast` and the time between its rows [s], or None.
 
     Raises:
         InputError: a shape is wrong.
@@ -93,6 +97,8 @@ class ObservationBatch:
     readings: Mapping[str, Reading] = field(default_factory=dict)
     arrived: Mapping[str, Bools] = field(default_factory=dict)
     tracks: Sequence[TrackHistory] = ()
+    predictor: Predictor | None = None
+    predictor_step: float | None = None
 
     def __post_init__(self) -> None:
         N = len(self.pose)
@@ -197,7 +203,30 @@ class ObservationBatch:
             readings=readings,
             waypoint=(float(self.waypoint[k, 0]), float(self.waypoint[k, 1])),
             tracks=self.tracks[k] if self.tracks else None,
+            predictor=self.predictor,
+            predictor_step=self.predictor_step,
         )
+
+    def forecast(
+        self,
+        predictor: Predictor | None = None,
+        seconds: float = HORIZON,
+        *,
+        samples: int = 1,
+        seed: int = 0,
+        dt: float | None = None,
+    ) -> Forecast:
+        """Return the forecasts in all environments, equal to those of each :meth:`environment`.
+
+        Window k of the forecast is environment k; its people are ``tracks[k].ids``, then places without a prediction.
+        A built-in predictor predicts environments with equally many rows in one call. Arguments and errors are those of
+        :meth:`Observation.forecast`.
+        """
+        if not self.tracks:
+            raise InputError("observation: forecast needs tracks, but they are None")
+        known, step = choose_predictor(predictor, self.predictor, dt, self.predictor_step)
+        steps = [step if step or len(one.times) > 1 else self.dt for one in self.tracks]
+        return forecast_tracks(self.tracks, known, seconds, steps, self.walls, samples, seed)
 
 
 def _require(owner: Any, name: str, shape: tuple[int, ...], kind: Any = np.float64) -> None:

@@ -12,12 +12,14 @@ from crowdbot.core import InputError, Walls, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 
-__all__ = ["TrackHistory"]
+__all__ = ["HORIZON", "TrackHistory", "choose_predictor", "forecast_problem"]
 
 Floats = NDArray[np.float64]
 
 LENGTH = 40
 """Default number of rows: 4 s at 10 Hz."""
+HORIZON = 4.8
+"""Default time of a forecast [s]: 12 rows of 0.4 s, as usual for people."""
 SAME = 1e-6
 """Tolerance of times [s]."""
 
@@ -145,16 +147,40 @@ class TrackHistory:
         Raises:
             InputError: ``seconds`` is not above 0, the predictor requires the future, or :meth:`windows` fails.
         """
-        if not isinstance(predictor, Predictor):
-            raise InputError(f"forecast: {predictor!r} is not a predictor; pass an instance of crowdbot.Predictor")
-        goal = getattr(predictor, "goal", None)
-        if getattr(goal, "knows_future", False):
-            raise InputError(f"forecast: {type(goal).__name__} requires the future, which a robot does not know")
-        if not 0.0 < seconds < math.inf:
-            raise InputError(f"forecast: seconds = {seconds} must be finite and above 0")
+        if problem := forecast_problem(predictor, seconds):
+            raise InputError(problem)
         past = self.windows(dt, walls)
         steps = math.ceil(seconds / past.dt - SAME)
         return predictor.predict(past, steps, samples, stream(seed, "forecast", int(past.frame[0, -1])))
+
+
+def choose_predictor(
+    given: Predictor | None, usual: Predictor | None, dt: float | None, usual_dt: float | None
+) -> tuple[Predictor, float | None]:
+    """Return the predictor of a forecast and the time between its rows [s], None: of the tracks.
+
+    Args:
+        given, dt: arguments of the forecast.
+        usual, usual_dt: predictor of the robot in the trial, and its time step [s]; both apply together.
+
+    Raises:
+        InputError: there is no predictor.
+    """
+    if given is not None:
+        return given, dt
+    if usual is None:
+        raise InputError("observation: forecast needs a predictor: pass one, or name it in the trial with <predictor>")
+    return usual, usual_dt if dt is None else dt
+
+
+def forecast_problem(predictor: object, seconds: float) -> str:
+    """Return why a predictor cannot forecast people around a robot; empty if it can."""
+    if not isinstance(predictor, Predictor):
+        return f"forecast: {predictor!r} is not a predictor; pass an instance of crowdbot.Predictor"
+    goal = getattr(predictor, "goal", None)
+    if getattr(goal, "knows_future", False):
+        return f"forecast: {type(goal).__name__} requires the future, which a robot does not know"
+    return "" if 0.0 < seconds < math.inf else f"forecast: seconds = {seconds} must be finite and above 0"
 
 
 def _rings(walls: Walls) -> tuple[Floats, ...]:

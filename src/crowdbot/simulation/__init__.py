@@ -1,7 +1,10 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
+from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
+from .goal_order import GoalOrder
+from .joint_order import JointOrder
 from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
 from .parameter_order import ParameterOrder
@@ -21,6 +24,8 @@ __all__ = [
     "EpisodeDigest",
     "EpisodeLog",
     "EpisodeStatistics",
+    "GoalOrder",
+    "JointOrder",
     "MissedDecisionOrder",
     "MoveOrder",
     "Order",
@@ -41,6 +46,7 @@ __all__ = [
     "Sink",
     "StepRecord",
     "StopRequest",
+    "UncommandedRobotWarning",
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",

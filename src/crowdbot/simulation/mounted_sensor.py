@@ -96,6 +96,7 @@ class MountedSensor:
         state: state of the sensor in all environments if ``together``, otherwise a list with one for each.
         waiting: readings not yet delivered, with their ticks of arrival ``[N]``.
         latest, latest_row: ``[E]`` latest readings and the row of the environment in them.
+        moved: ``[E, 6]`` place on the robot after its joints moved, as ``placed``; None before.
         seen, seen_ids: ``[E, A]`` agents in the latest reading, and their ids then.
     """
 
@@ -109,6 +110,7 @@ class MountedSensor:
     waiting: list[tuple[Ints, SensorReadings]] = field(default_factory=list)
     latest: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=object))
     latest_row: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    moved: NDArray[np.float64] | None = None
     seen: Bools | None = None
     seen_ids: Ints | None = None
 
@@ -228,8 +230,19 @@ class MountedSensor:
 
     def pose(self, agent: int, around: WorldView, environment: int | None = None) -> Pose | SpatialPose:
         """Return the pose of the sensor, in the plane or in space: in all environments, or in one."""
-        mount = MountPlacement(self.mount.link, self.mount.origin, self.placed)
+        placed: Any = self.placed
+        if self.moved is not None:
+            placed = tuple(
+                np.ascontiguousarray(self.moved.T) if environment is None else self.moved[environment].tolist()
+            )
+        mount = MountPlacement(self.mount.link, self.mount.origin, placed)
         return around.sensor_pose(agent, mount, self.space, environment)
+
+    def move(self, environments: int | Ints, placed: Any) -> None:
+        """Set x, y, z [m], roll, pitch, yaw [rad] on the robot in some environments."""
+        moved = np.tile(np.array(self.placed), (len(self.rngs), 1)) if self.moved is None else self.moved.copy()
+        moved[environments] = placed
+        self.moved = moved
 
     def select(self, environments: Ints) -> MountedSensor:
         """Return an independent sensor with some environments."""
@@ -245,6 +258,7 @@ class MountedSensor:
             if (part := readings.matching(environments)) is not None:
                 other.waiting.append((arrival[rows], part))
         other.latest, other.latest_row = self.latest[environments], self.latest_row[environments]
+        other.moved = None if self.moved is None else self.moved[environments]
         other.seen = None if self.seen is None else self.seen[environments]
         other.seen_ids = None if self.seen_ids is None else self.seen_ids[environments]
         return other
@@ -258,6 +272,8 @@ class MountedSensor:
             self.latest[e], self.latest_row[e] = other.latest[k], other.latest_row[k]
             if not self.together:
                 self.state[e] = other.state[k]
+        if self.moved is not None or other.moved is not None:
+            self.move(environments, other.placed if other.moved is None else other.moved)
         kept = []
         for arrival, readings in self.waiting:
             stays = ~np.isin(readings.environments, environments)

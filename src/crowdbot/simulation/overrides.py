@@ -13,7 +13,8 @@ from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 from crowdbot.world import environment_seeds
 
 from .mounted_sensor import mounted_sensors
-from .robot_control import RobotControl
+from .robot_control import RobotControl, decision_schedule
+from .robot_joints import restore_joints
 from .simulation import NONE, SUCCESS, Simulation
 from .world_builder import limits_of, own_walls
 
@@ -63,6 +64,8 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         _robot_control(simulation, control, robot, seed)
         for control, robot in zip(simulation.robots, trial.robots, strict=True)
     ]
+    for control in simulation.robots:
+        restore_joints(control, world)
     if [robot.goal for robot in old.robots] != [robot.goal for robot in trial.robots]:
         simulation.event[simulation.event == SUCCESS] = NONE
 
@@ -101,7 +104,8 @@ def _scene(simulation: Simulation, trial: Trial) -> Any:
     }
     for control, robot in zip(simulation.robots, trial.robots, strict=True):
         top = limits_of(robot.drive).max_speed
-        values = (robot.radius, robot.goal.position, robot.visible and not robot.ghost, top, top)
+        goal = control.goal if robot.goal == control.robot.goal else robot.goal.position
+        values = (robot.radius, goal, robot.visible and not robot.ghost, top, top)
         for name, value in zip(columns, values, strict=True):
             columns[name][:, control.agent] = value
     return scene.replace(**columns)
@@ -131,14 +135,18 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
         fresh = mounted_sensors(simulation.trial, robot, simulation.world, simulation.seeds)
         for sensor, new in zip(sensors, fresh, strict=True):
             sensor.rngs = new.rngs
+    goal = robot.goal
+    same_goal, count = goal == old.robot.goal, simulation.count
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old.change_memory(simulation.trial, robot),
         robot=robot,
-        memories=old.memories if same else [None] * simulation.count,
+        memories=old.memories if same else [None] * count,
         begun=old.begun if same else np.zeros_like(old.begun),
         limits=limits_of(robot.drive, robot.holonomic),
-        control=simulation.world.clock.schedule(robot.control_period),
+        control=decision_schedule(robot, simulation.world.clock),
         sensors=sensors,
-        arrived=old.arrived if robot.goal == old.robot.goal else np.zeros_like(old.arrived),
+        arrived=old.arrived if same_goal else np.zeros_like(old.arrived),
+        goal=old.goal if same_goal else np.tile(np.array(goal.position, dtype=np.float64), (count, 1)),
+        tolerance=old.tolerance if same_goal else np.full(count, goal.tolerance),
     )

@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, TickSchedule, Twist
+from crowdbot.core import Clock, InputError, MissingExtra, TickSchedule, Twist
 from crowdbot.navigation import (
     Decisions,
     DriveLimits,
+    ExternalNavigator,
     Observation,
     ObservationBatch,
     PathPlanner,
@@ -25,13 +26,13 @@ from crowdbot.navigation import (
 )
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import Twists, World
+from crowdbot.world import Twists, World, free_joints
 
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
 
-__all__ = ["RobotControl"]
+__all__ = ["RobotControl", "decision_schedule"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,12 +40,12 @@ Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
-ROWS = ("command", "begun", "arrived", "path", "missed")
+ROWS = ("command", "begun", "arrived", "path", "missed", "ordered", "goal", "tolerance", "joints")
 """Fields with one row for each environment."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
 NEVER = -1
-"""Tick of the latest missed decision before there is one."""
+"""Tick of the latest missed decision, or of the latest order, before there is one."""
 
 
 class _Known(NamedTuple):
@@ -87,6 +88,10 @@ class RobotControl:
         path: ``[E, 9]`` state of the path planner; NaN before the first decision.
         tracks: history of the visible people in each environment, or empty.
         missed: ``[E]`` tick of the latest decision that took longer than the deadline of the robot, -1 for none.
+        goal: ``[E, 2]`` current goal [m], which orders can change.
+        tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
+        ordered: ``[E]`` tick of the latest velocity order, -1 for none.
+        joints: ``[E, J]`` target of each joint [rad or m] that an order has moved, otherwise NaN.
         replayed: ticks of the missed decisions of each environment that is replayed, otherwise None.
         timer: clock of the compute times [s], used only with a deadline.
     """
@@ -104,6 +109,10 @@ class RobotControl:
     path: Floats
     tracks: list[TrackHistory]
     missed: Ints
+    ordered: Ints
+    goal: Floats
+    tolerance: Floats
+    joints: Floats
     replayed: list[frozenset[int] | None]
     timer: Callable[[], float] = time.perf_counter
     _warm: bool = field(default=False, init=False)
@@ -120,7 +129,7 @@ class RobotControl:
             robot,
             agent,
             limits_of(robot.drive, robot.holonomic),
-            world.clock.schedule(robot.control_period),
+            decision_schedule(robot, world.clock),
             mounted_sensors(trial, robot, world, seeds),
             np.zeros((count, 3)),
             [None] * count,
@@ -130,6 +139,10 @@ class RobotControl:
             np.full((count, PATH_COLUMNS), np.nan),
             _empty_tracks(robot, count),
             np.full(count, NEVER, dtype=np.int64),
+            np.full(count, NEVER, dtype=np.int64),
+            np.tile(np.array(robot.goal.position, dtype=np.float64), (count, 1)),
+            np.full(count, robot.goal.tolerance),
+            np.full((count, len(free_joints(robot.body))), np.nan),
             [None] * count,
         )
 
@@ -214,6 +227,8 @@ class RobotControl:
             seen=seen,
             environments=rows,
             ids=ids,
+            predictor=None if self.robot.predictor is None else self.robot.predictor.build(),
+            predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),
         )
 
@@ -228,6 +243,9 @@ class RobotControl:
         Raises:
             MissingExtra: the navigator needs a package that is not installed.
         """
+        if isinstance(self.robot.navigator, ExternalNavigator):
+            self._wait_for_orders(self.robot.navigator, around, environments)
+            return {}
         if around.world.walls_fixed and len(environments) > 1:
             found: dict[int, Exception] = {}
             for e in environments:
@@ -297,15 +315,36 @@ class RobotControl:
         for e, history in zip(environments.tolist(), known.tracks, strict=False):
             self.tracks[e] = history
 
-    def ask(self, environments: int | Ints | slice, twist: Twist) -> None:
-        """Set the command in some environments."""
+    def _wait_for_orders(self, navigator: ExternalNavigator, around: WorldView, environments: Ints) -> None:
+        """Stop where the latest order is too old; plan paths and keep tracks for the program outside."""
+        world = around.world
+        ticks, ordered = world.ticks[environments], self.ordered[environments]
+        stale = (ordered == NEVER) | navigator.is_stale(ticks - ordered, world.clock.step_ns)
+        self.command[environments[stale]] = 0.0
+        self.begun[environments] = True
+        if self.planner is None and self.robot.tracks is None:
+            return
+        due = environments[world.clock.schedule(self.robot.control_period).is_due(ticks)]
+        for part in np.split(due, len(due)) if world.walls_fixed and len(due) > 1 else [due]:
+            if len(part):
+                self._remember(part, self._observe(around, part)[1])
+
+    def ask(self, environments: int | Ints | slice, twist: Twist, ticks: Ints) -> None:
+        """Set the command in some environments, by an order at the current ticks ``[E]``."""
         self.command[environments] = tuple(map(float, twist))
+        self.ordered[environments] = ticks[environments]
 
     def arrive(self, position: Floats) -> None:
         """Note where the robot, at positions ``[E, 2]`` [m], is at its goal."""
-        x, y = self.robot.goal.position
-        away = np.hypot(position[:, 0] - x, position[:, 1] - y)
-        self.arrived |= away < self.robot.goal.tolerance
+        away = np.hypot(position[:, 0] - self.goal[:, 0], position[:, 1] - self.goal[:, 1])
+        self.arrived |= away < self.tolerance
+
+    def change_goal(self, environment: int, goal: tuple[float, float], tolerance: float | None = None) -> None:
+        """Set the goal [m] in one environment, and its tolerance [m] (default: as before); the robot drives again."""
+        self.goal[environment] = goal
+        self.arrived[environment] = False
+        if tolerance is not None:
+            self.tolerance[environment] = tolerance
 
     def select(self, environments: Ints) -> RobotControl:
         """Return an independent state of some environments."""
@@ -345,3 +384,8 @@ def _updated(history: TrackHistory, batch: ObservationBatch, k: int) -> TrackHis
         return history
     seen = people.seen[k]
     return history.update(now, people.ids[k, seen], people.position[k, seen])
+
+
+def decision_schedule(robot: RobotSpec, clock: Clock) -> TickSchedule:
+    """Return the ticks at which the navigator decides; the timeout of an external one is judged at each tick."""
+    return clock.schedule(clock.dt if isinstance(robot.navigator, ExternalNavigator) else robot.control_period)

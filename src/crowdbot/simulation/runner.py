@@ -13,6 +13,7 @@ from crowdbot.core import Clock
 from crowdbot.trials import Trial, check_trial
 
 from .episode import Episode, EpisodeLog
+from .external_robots import warn_of_missing_source
 from .failure import RunFailure, RunFailureWarning
 from .simulation import Simulation
 from .simulation_run import OrderSource, SimulationRun, Sink, StopRequest
@@ -81,6 +82,7 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
     """
     for seed in seeds:
         check_trial(trial, int(seed))
+    warn_of_missing_source(trial, ())
     logs = [EpisodeLog(trial, int(seed)) for seed in seeds]
     with catch_interrupt() as stop:
         run = SimulationRun(Simulation(trial, seeds), [_EpisodeLogs(logs)], stop=stop)
@@ -130,6 +132,7 @@ def run_to_end(
         sources: programs that steer the simulation.
     """
     total = simulation.trial.ticks
+    warn_of_missing_source(simulation.trial, sources, 1)
     running = SimulationRun(simulation, sinks, sources, ticks=ticks, stop=stop)
     told = -1
     while (outcome := running.outcome) is None:

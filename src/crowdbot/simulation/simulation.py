@@ -174,7 +174,7 @@ class Simulation:
         Raises:
             InputError: there is no robot of this name.
         """
-        self._robot(robot).ask(environment, twist)
+        self._robot(robot).ask(environment, twist, self.ticks)
 
     def contacts(self, environment: int = 0) -> tuple[RobotContact, ...]:
         """Return the contacts of robots in the latest step of an environment."""

@@ -18,6 +18,7 @@ from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
 from .failure import RunFailure
+from .goal_order import GoalOrder
 from .orders import write_order
 from .step_record import StepRecord
 
@@ -109,6 +110,10 @@ class EpisodeStatistics:
     def keep(self, frame: StepRecord) -> None:
         """Add a record that the digest already contains."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
+        for order in frame.orders:
+            if isinstance(order, GoalOrder) and order.tolerance is not None:
+                names = [robot.name for robot in self.trial.robots]
+                self.travels[names.index(order.robot)].tolerance = float(order.tolerance)
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
         if frame.due:
             self.end = frame.nanoseconds / 1e9
@@ -116,6 +121,7 @@ class EpisodeStatistics:
             if self.travels:
                 now = _instant(frame)
                 for travel in self.travels:
+                    travel.goal = frame.scene.goal[0, travel.robot]
                     travel.update(now, travel.robot in self._touching)
             self._touching = set()
 

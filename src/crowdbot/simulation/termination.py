@@ -92,22 +92,24 @@ def _find_close(
 
 
 @kernel
-def _is_any_near(position: Floats, agent: int, x: float, y: float, reach2: float) -> bool:
+def _is_any_near(position: Floats, agent: int, point: Floats, distance: Floats) -> bool:
     for e in range(len(position)):
-        dx, dy = position[e, agent, 0] - x, position[e, agent, 1] - y
-        if dx * dx + dy * dy < reach2:
+        dx, dy = position[e, agent, 0] - point[e, 0], position[e, agent, 1] - point[e, 1]
+        if dx * dx + dy * dy < distance[e] * distance[e] * (1.0 + ROUNDING):
             return True
     return False
 
 
-def may_be_near(position: Floats, agent: int, x: float, y: float, distance: float) -> bool:
-    """Return False if an agent is in no environment within a distance [m] of a point, with a margin for rounding.
+def may_be_near(position: Floats, agent: int, point: Floats, distance: Floats) -> bool:
+    """Return False if an agent is in no environment within a distance ``[E]`` [m] of a point ``[E, 2]`` [m].
 
-    >>> may_be_near(np.zeros((4, 2, 2)), 1, 3.0, 4.0, 4.9), may_be_near(np.zeros((4, 2, 2)), 1, 3.0, 4.0, 5.0)
-    (False, True)
+    A margin covers rounding.
+
+    >>> points = np.tile([3.0, 4.0], (4, 1))
+    >>> [may_be_near(np.zeros((4, 2, 2)), 1, points, np.full(4, distance)) for distance in (4.9, 5.0)]
+    [False, True]
     """
-    reach2 = float(distance) * float(distance) * (1.0 + ROUNDING)
-    return bool(_is_any_near(np.ascontiguousarray(position), agent, float(x), float(y), reach2))
+    return bool(_is_any_near(np.ascontiguousarray(position), agent, point, distance))
 
 
 def note_events(

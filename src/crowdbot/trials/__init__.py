@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .placement.expansion import expand_spawners
     from .placement.population import place
     from .placement.spawn_placement import GAP, InitialPeople
+    from .predictor import RobotPredictor
     from .props import Cube, Light, Table, Tree
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from .sweep import Sweep
     from .trial import End, EndCondition, RecordingSpec, Trial
     from .validation.rates import trial_remarks
+    from .validation.trial_checks import robot_place_problem
     from .variants import apply_values, expand_sweeps
     from .xml.element_edit import add_element, needs_trust, remove_element
     from .xml.old_names import OldNameWarning, restore_old_names, update_names
@@ -76,6 +78,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.expansion": ["expand_spawners"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "predictor": ["RobotPredictor"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -87,6 +90,7 @@ __getattr__, __dir__ = lazy_exports(
         "sweep": ["Sweep"],
         "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
         "validation.rates": ["trial_remarks"],
+        "validation.trial_checks": ["robot_place_problem"],
         "variants": ["apply_values", "expand_sweeps"],
         "xml.element_edit": ["add_element", "needs_trust", "remove_element"],
         "xml.old_names": ["OldNameWarning", "restore_old_names", "update_names"],
@@ -136,6 +140,7 @@ __all__ = [
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
+    "RobotPredictor",
     "RobotSpec",
     "Routing",
     "SourceSpec",
@@ -187,6 +192,7 @@ __all__ = [
     "remove_element",
     "resolve_file",
     "restore_old_names",
+    "robot_place_problem",
     "schema",
     "skip_unreadable",
     "trial_remarks",

@@ -19,14 +19,13 @@ from crowdbot.core import (
     Clock,
     InputError,
     Pose,
-    RobotError,
     TickSchedule,
     Twist,
     Walls,
     did_you_mean,
-    reads_only,
 )
-from crowdbot.navigation import Navigator, PathPlanner
+from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner
+from crowdbot.prediction import Predictor
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
@@ -34,6 +33,8 @@ from .fields import FieldProblem, attribute, check, child, children, mounted_fie
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
+from .predictor import RobotPredictor, forecast_problems
+from .robot_types import robot_folder_of, robot_of_type
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
@@ -174,10 +175,11 @@ class RobotSpec:
         max=600.0,
     )
     holonomic: bool = attribute(
-        False, about="whether the orca navigator moves in every direction, with an omnidirectional drive"
+        False, about="whether the navigator moves in every direction, with an omnidirectional drive"
     )
     goal: RobotGoal = child(about="goal")
     planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
+    predictor: RobotPredictor | None = child(None, about="predictor of the observation's forecast (default: none)")
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
@@ -194,6 +196,8 @@ class RobotSpec:
             raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
             object.__setattr__(self, "sensors", _merge_sensors(self.type_sensors, self.sensors))
+        if isinstance(self.predictor, Predictor):
+            object.__setattr__(self, "predictor", RobotPredictor(predictor=self.predictor))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(
@@ -209,6 +213,12 @@ class RobotSpec:
                 'has holonomic="true" but its drive cannot move sideways; take <drive type="omnidirectional"/>, or'
                 " leave it out"
             )
+        if isinstance(self.navigator, ExternalNavigator) and self.deadline is not None:
+            raise InputError(
+                'has a deadline in addition to <navigator type="external"/>, which decides nothing; set its timeout'
+            )
+        for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
+            raise InputError(problem)
         for problem in rider_problems(self.rider, self.type):
             raise InputError(problem)
         for mount in self.sensors:
@@ -225,7 +235,7 @@ class RobotSpec:
         ]
         try:
             if values.get("type"):
-                _kind(values["type"], values["folder"], values["trust"])
+                robot_of_type(values["type"], values["folder"], values["trust"])
         except InputError as error:
             return [(("type",), str(error)), *said]
         return said
@@ -266,14 +276,19 @@ class RobotSpec:
             made = dataclasses.replace(self._kind, drive=self.drive)
         return dataclasses.replace(made, latency=self.latency)
 
-    def frame_of(self, mount: Mount) -> Floats:
-        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor), in its driving posture."""
+    def frame_of(self, mount: Mount, joints: Mapping[str, float] | None = None) -> Floats:
+        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor).
+
+        The robot is in its driving posture, except for other joint positions [rad or m].
+        """
         if not mount.link:
             return mount.origin
-        return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
+        return np.asarray(self.body.model.poses({**self.body.posture, **(joints or {})})[mount.link] @ mount.origin)
 
-    def sensor_pose(self, mount: Mount) -> tuple[float, float, float, float, float, float]:
-        """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot.
+    def sensor_pose(
+        self, mount: Mount, joints: Mapping[str, float] | None = None
+    ) -> tuple[float, float, float, float, float, float]:
+        """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot, as :meth:`frame_of`.
 
         >>> from crowdbot.navigation import Straight
         >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
@@ -282,7 +297,7 @@ class RobotSpec:
         """
         if not mount.link:
             return mount.x, mount.y, mount.z, mount.roll, mount.pitch, mount.heading
-        found = self.frame_of(mount)
+        found = self.frame_of(mount, joints)
         x, y, z = (round(float(value), 12) for value in found[:3, 3])
         pitch = math.atan2(-found[2, 0], math.hypot(found[0, 0], found[1, 0]))
         roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
@@ -315,7 +330,7 @@ class RobotSpec:
 
     def files(self) -> tuple[Path, ...]:
         """Return the files of the robot folder; none for a built-in robot."""
-        place = _folder(self.type, self.folder, self.trust) if self.type else None
+        place = robot_folder_of(self.type, self.folder, self.trust) if self.type else None
         if place is None:
             return ()
         return tuple(sorted(path for path in place.rglob("*") if path.is_file()))[:MOST_FILES]
@@ -324,7 +339,7 @@ class RobotSpec:
     def _kind(self) -> world.Robot:
         if not isinstance(self.type, str):
             raise InputError(f"Robot: type={quote_value(self.type)} is not a str")
-        return _kind(self.type, self.folder, self.trust)
+        return robot_of_type(self.type, self.folder, self.trust)
 
 
 def _moves_sideways(drive: Drive) -> bool:
@@ -344,54 +359,3 @@ def _merge_sensors(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
     names = {mount.name for mount in carried}
     others = [mount for mount in own if getattr(mount, "name", "") not in names]
     return (*(named.get(mount.name, mount) for mount in carried), *others)
-
-
-def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
-    """Return the robot folder next to the trial, None for a built-in robot."""
-    root = folder or Path.cwd()
-    known = builtin_robots()
-    try:
-        place = (root / name).resolve()
-        there = (place / "robot.xml").is_file()
-    except (OSError, ValueError, RuntimeError):
-        there = False
-    if there and not trust and not place.is_relative_to(root.resolve()):
-        raise InputError(
-            f"type={quote_value(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass"
-            " --trust to allow it"
-        )
-    if there:
-        return place
-    if name in known:
-        return None
-    raise InputError(
-        f"type={quote_value(name)} is not a robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
-        f" is in {root.resolve()}; built-in robots are {', '.join(known)}"
-    )
-
-
-def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
-    place = _folder(name, folder, trust)
-    if place is None:
-        return _load_builtin(name)
-    return _load_folder(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
-
-
-@functools.cache
-def _load_builtin(name: str) -> world.Robot:
-    return world.Robot.load(_assets(name))
-
-
-def _assets(name: str) -> Path:
-    import importlib.resources
-
-    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots", name)))
-
-
-@functools.lru_cache(maxsize=16)
-def _load_folder(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
-    try:
-        return world.Robot.load(place, trust=trust)
-    except RobotError as error:
-        more = f" (and {len(error.problems) - 1} more; see crowdbot check)" if len(error.problems) > 1 else ""
-        raise InputError(f"type={quote_value(place.name)}: {error.problems[0]}{more}") from None

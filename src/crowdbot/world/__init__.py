@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .robot_contract import check_robot
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
     from .robots.servo import CommandDelay, Pending, VelocityServo
@@ -111,15 +112,18 @@ _LAZY = {
     "add_person": "live_changes",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
+    "check_joint": "robots.joint_motion",
     "check_place": "live_changes",
     "check_room": "live_changes",
     "check_robot": "robot_contract",
     "describe": "urdf",
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
+    "free_joints": "robots.joint_motion",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
     "move_agent": "live_changes",
+    "move_joint": "robots.joint_motion",
     "permitted_speed": "physics.body_region_limits",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
@@ -188,15 +192,18 @@ __all__ = [
     "add_person",
     "builtin_robots",
     "check_goal",
+    "check_joint",
     "check_place",
     "check_robot",
     "check_room",
     "describe",
     "environment_seeds",
     "frame",
+    "free_joints",
     "integrate_twist",
     "join_worlds",
     "move_agent",
+    "move_joint",
     "permitted_speed",
     "put_environments",
     "quaternion",

@@ -40,6 +40,5 @@ def note_arrivals(world: World, robots: Sequence[RobotControl]) -> None:
     """Note which robots are at their goals."""
     position = world.scene.position
     for control in robots:
-        goal = control.robot.goal
-        if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
+        if not control.arrived.all() and may_be_near(position, control.agent, control.goal, control.tolerance):
             control.arrive(position[:, control.agent])

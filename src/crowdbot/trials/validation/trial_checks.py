@@ -28,7 +28,7 @@ from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_sto
 from .rates import fitting, misfits
 from .zones import areas, shape_problem
 
-__all__ = ["problems_of"]
+__all__ = ["problems_of", "robot_place_problem"]
 
 MOST_VALUES = 100_000_000
 """Largest number of recorded scenes times agents; an episode is kept in memory."""
@@ -267,17 +267,34 @@ def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
 
 
 def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
+    reach = there.tolerance if has_kind(there, RobotGoal) else 0.0
+    if problem := robot_place_problem(stage, robot, there.position, reach):
+        yield robot, f"{word} {problem}"
+
+
+def robot_place_problem(stage: Stage, robot: RobotSpec, place: tuple[float, float], reach: float = 0.0) -> str:
+    """Return why a robot cannot be at a place, as the end of a sentence; empty if it can.
+
+    Args:
+        stage: the stage.
+        robot: the robot.
+        place: x, y [m].
+        reach: distance to the place [m] that is close enough.
+
+    >>> from crowdbot.navigation import Straight
+    >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
+    >>> robot_place_problem(Stage(walkable=[(-1, -1), (9, -1), (9, 1), (-1, 1)]), robot, (12.0, 0.0))
+    'at 12,0 outside the walkable area'
+    """
     import shapely
 
-    spot, reach = there.position, there.tolerance if has_kind(there, RobotGoal) else 0.0
-    room = float(stage.clearance([spot])[0])
-    block = stage.block_around(shapely.Point(spot))
-    if not stage.holds(shapely.Point(spot)):
-        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} outside the walkable area"
-    elif block:
-        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} inside {block}"
-    elif room + reach < robot.radius:
-        yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+    room = float(stage.clearance([place])[0])
+    block = stage.block_around(shapely.Point(place))
+    if not stage.holds(shapely.Point(place)):
+        return f"at {place[0]:g},{place[1]:g} outside the walkable area"
+    if block:
+        return f"at {place[0]:g},{place[1]:g} inside {block}"
+    return f"{room:.2f} m from a wall, and its radius is {robot.radius:g} m" if room + reach < robot.radius else ""
 
 
 def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:

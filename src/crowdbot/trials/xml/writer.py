@@ -6,7 +6,16 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml, plugin_address
+from crowdbot.core import (
+    Element,
+    InputError,
+    builtin_classes,
+    builtin_name,
+    format_xml,
+    kebab_case,
+    plugin_address,
+    required_fields,
+)
 from crowdbot.trials.fields import FieldSpec, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -104,6 +113,16 @@ def _is_default(field: dataclasses.Field[Any], value: Any) -> bool:
         return False
 
 
+def _is_default_part(value: Any) -> bool:
+    """Return whether a value is a built-in part with its defaults, such as the crowd model of a predictor."""
+    cls = type(value)
+    if not dataclasses.is_dataclass(value) or not cls.__module__.startswith("crowdbot."):
+        return False
+    return not required_fields(cls) and all(
+        _is_default(part, getattr(value, part.name)) for part in dataclasses.fields(cls)
+    )
+
+
 def _text(value: Any, what: str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -115,4 +134,6 @@ def _text(value: Any, what: str) -> str:
         return str(value)
     if isinstance(value, tuple):
         return " ".join(_text(one, what) for one in value)
+    if _is_default_part(value):
+        return kebab_case(type(value).__name__)
     raise InputError(f"{what} = {str(value)[:60]!r} cannot be written as an attribute of a trial file")

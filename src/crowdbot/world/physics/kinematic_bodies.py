@@ -33,6 +33,7 @@ class KinematicBodies:
 
     Attributes:
         people: bodies of people.
+        joints: joint positions of robots that differ from their posture [rad or m], by agent and name.
     """
 
     def __init__(
@@ -50,6 +51,7 @@ class KinematicBodies:
         agents = np.array([a for a in range(scene.shape[1]) if a not in self.robots], dtype=np.int64)
         self.people = PeopleMotion(scene, agents, people, seed, riders)
         self._renderer: Renderer | None = None
+        self.joints: Mapping[int, Mapping[str, float]] = {}
 
     def copy(self) -> KinematicBodies:
         """Return independent bodies in the same state."""
@@ -60,7 +62,7 @@ class KinematicBodies:
 
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
-        found = scene_bodies(scene, self.people, self.robots, self.stage, skins=skins)
+        found = scene_bodies(scene, self.people, self.robots, self.stage, joints=self.joints, skins=skins)
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 
     def renderer(self, scene: Scene) -> Renderer:
@@ -68,7 +70,7 @@ class KinematicBodies:
         now = scene.replace(walls=self._walls(scene))
         if self._renderer is None:
             self._renderer = Renderer(now, self.robots, self.stage, self.people)
-        self._renderer.show(now)
+        self._renderer.show(now, self.joints)
         return self._renderer
 
     def _walls(self, scene: Scene) -> Walls:

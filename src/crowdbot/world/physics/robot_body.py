@@ -60,6 +60,7 @@ class RobotBody:
         self._asked: Twist | Twists = STILL
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
+        self._held: dict[int, float] = {}
         self._posed()
 
     @property
@@ -108,6 +109,9 @@ class RobotBody:
 
     def drive(self) -> None:
         """Send the command for the next engine step to the motors, after delay, limits and ramps."""
+        for index, position in self._held.items():
+            self._data.qpos[self._model.jnt_qposadr[index]] = position
+            self._data.qvel[self._model.jnt_dofadr[index]] = 0.0
         now = self._asked
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
@@ -149,6 +153,14 @@ class RobotBody:
             if not math.isfinite(value):
                 raise InputError(f"the command {value} for joint {name!r} of {self.robot.name} is not finite")
             self._data.ctrl[self._motor(name)] = value
+
+    def hold(self, joint: str, position: float) -> None:
+        """Move a joint to a position [rad or m] by its position motor; a joint without one is held there."""
+        motor = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + joint)
+        if motor >= 0 and self._model.actuator_biasprm[motor, 1] != 0.0:
+            self._data.ctrl[motor] = position
+        else:
+            self._held[self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint)] = position
 
     def joints(self) -> dict[str, tuple[float, float]]:
         """Return position and velocity of each joint with one coordinate."""

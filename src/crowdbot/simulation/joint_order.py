@@ -1,0 +1,60 @@
+"""JointOrder: moves a joint of a robot while it runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core import InputError
+from crowdbot.world import check_joint
+
+from .orders import Order
+from .robot_control import RobotControl
+from .robot_joints import move_robot_joint, tilt_problem
+
+__all__ = ["JointOrder"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointOrder(Order):
+    """Move a joint of a robot, such as its head, to a position, which is kept until another order replaces it.
+
+    Sensors and cameras on the moved links move, and so does the body that sensors of other robots see. In the physics
+    world, the position motor of the joint moves it with its force and speed; a joint without one is held at the
+    position. In the plane, the joint is there at once. The disc of the robot stays the same.
+
+    Fields:
+        robot: name of the robot.
+        joint: name of the joint in its URDF.
+        position: target [rad or m].
+
+    >>> JointOrder(robot="pepper", joint="HeadYaw", position=0.5).position
+    0.5
+    """
+
+    robot: str
+    joint: str
+    position: float
+
+    def check(self, simulation: Any) -> None:
+        """Raise :class:`InputError` if there is no such robot or joint, or it cannot be at the position."""
+        super().check(simulation)
+        control = self._control(simulation)
+        try:
+            if not isinstance(self.position, int | float):
+                raise InputError(f"position = {self.position!r} must be a number")
+            check_joint(control.robot.body, self.joint, float(self.position))
+            values = (self.environment, self.joint, float(self.position))
+            if problem := tilt_problem(control, simulation.world, *values):
+                raise InputError(problem)
+        except InputError as error:
+            raise InputError(f"JointOrder: robot {self.robot!r}: {error}") from None
+
+    def apply(self, simulation: Any) -> None:
+        """Move the joint."""
+        values = (self.environment, self.joint, float(self.position))
+        move_robot_joint(self._control(simulation), simulation.world, *values)
+
+    def _control(self, simulation: Any) -> RobotControl:
+        agent = simulation.agent_of(self.robot)
+        return next(control for control in simulation.robots if control.agent == agent)
