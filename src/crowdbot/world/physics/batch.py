@@ -187,7 +187,7 @@ class PhysicsBatch(World):
 
     def environment_renderer(self, environment: int) -> Renderer:
         """Return the renderer of one environment."""
-        return self.worlds[environment].renderer
+        return self.worlds[environment].environment_renderer(0)
 
     @property
     def renderer(self) -> Renderer:

@@ -69,6 +69,8 @@ def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats
     rings = []
     for number, prop in enumerate(stage.props):
         ring = prop.outline()
+        if ring is None and not prop.movable:
+            continue
         if ring is None:
             matrix, half = frames[number], 0.5 * float(getattr(prop, "size", 1.0))
             corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -14,7 +14,7 @@ from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
 
-__all__ = ["CubeBody", "LightSource", "PhysicsStage", "PropBody", "TableBody", "TreeBody"]
+__all__ = ["AbsentProp", "CubeBody", "LightSource", "PhysicsStage", "PropBody", "TableBody", "TreeBody"]
 
 Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
@@ -170,6 +170,22 @@ class TreeBody(PropBody):
     def outline(self) -> Floats | None:
         """Return the outline that people avoid."""
         return self._ring(2.0 * self.trunk, 2.0 * self.trunk)
+
+
+@dataclass(frozen=True)
+class AbsentProp(PropBody):
+    """The place of a prop that was removed: the numbers of the other props do not change."""
+
+    x: float = 0.0
+    y: float = 0.0
+
+    def body(self, name: str) -> Element:
+        """Return an empty body."""
+        return Element("body", {"name": name})
+
+    def outline(self) -> Floats | None:
+        """Return None: people do not avoid it."""
+        return None
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
+from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.rendering.camera import CameraImages, SceneCamera
 from crowdbot.world.rendering.renderer import Renderer
@@ -24,15 +25,17 @@ from crowdbot.world.world import Contact
 
 from .colliders import scene_bodies
 from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
-from .contacts import ContactBody, ContactReader
+from .contacts import ContactBody
 from .engine import engine
-from .mjcf_model import build_mjcf_model
+from .engine_models import RobotStart, motors_of
+from .mjcf_model import MjcfModel
 from .nearby_people import movers, people_near
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
+from .world_bodies import WorldBodies
 from .world_checks import check_arguments
 
 __all__ = ["PhysicsWorld"]
@@ -44,8 +47,6 @@ NEAR = 0.8
 """A person within this clearance [m] of a robot or a movable prop gets a body in the engine."""
 FAST = 3.0
 """Largest assumed closing speed [m/s] within one step."""
-SETTLING = 1.0
-"""Time [s] for which robots settle on the floor before the start."""
 
 
 class PhysicsWorld(PlanarWorld):
@@ -124,8 +125,36 @@ class PhysicsWorld(PlanarWorld):
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
-        self._renderer: Renderer | None = None
+        self._renderers: dict[bool, Renderer] = {}
         self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
+
+    @property
+    def robot_bodies(self) -> dict[int, RobotBody]:
+        """Bodies of the robots by agent."""
+        return self.rigid.robots
+
+    @property
+    def engine_model(self) -> Any:
+        """The ``mujoco.MjModel``, shared with other worlds of the same stage and robots; not to be changed."""
+        return self.rigid.main.compiled.base
+
+    @property
+    def data(self) -> Any:
+        """The ``mujoco.MjData`` of all bodies that can touch each other."""
+        return self.rigid.main.data
+
+    @property
+    def built(self) -> MjcfModel:
+        """The MJCF model."""
+        return self.rigid.main.compiled.built
+
+    @property
+    def _people_bodies(self) -> PeopleBodies:
+        return self.rigid.people
+
+    @property
+    def _movable(self) -> list[int]:
+        return [k for k, prop in enumerate(self.stage.props) if prop.movable]
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
@@ -162,16 +191,22 @@ class PhysicsWorld(PlanarWorld):
 
     @property
     def renderer(self) -> Renderer:
-        """Renderer of the current state, also for cameras of :mod:`crowdbot.sensors`; see :meth:`Renderer.render`."""
-        if self._renderer is None:
-            robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
-            self._renderer = Renderer.of_physics(self.built, robots, self.stage, self.people, self.scene)
-        self._renderer.show_engine(self.scene, self.data.qpos)
-        return self._renderer
+        """Renderer of the current state with ghosts, for films; see :meth:`Renderer.render`."""
+        return self._shown(bool(self.rigid.ghosts))
 
     def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer; see :class:`World`."""
-        return self.renderer
+        """Return the renderer without ghosts, for cameras of :mod:`crowdbot.sensors`; see :class:`World`."""
+        return self._shown(False)
+
+    def _shown(self, ghosts: bool) -> Renderer:
+        """Return the renderer of the current state, with ghosts or without."""
+        whole = self.rigid.picture() if ghosts else self.rigid.main
+        scene = self.scene if ghosts else hide_ghosts(self.scene, self.ghosts)
+        if ghosts not in self._renderers:
+            robots = {agent: body.robot for agent, body in whole.robots.items()}
+            self._renderers[ghosts] = Renderer.of_physics(whole.compiled.built, robots, self.stage, self.people, scene)
+        self._renderers[ghosts].show_engine(scene, whole.data.qpos)
+        return self._renderers[ghosts]
 
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
@@ -190,25 +225,30 @@ class PhysicsWorld(PlanarWorld):
 
         See :class:`World`.
         """
+        if robot in self.ghosts:
+            return np.array([math.inf])
         depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
     def copy(self) -> PhysicsWorld:
         """Return an independent world in the same state, on a free clock."""
-        shared = [self._mj, self.built, self.stage, self.router, self.people.people, self.people.gait, self.model]
+        shared = [self._mj, self.stage, self.router, self.people.people, self.people.gait, self.model]
         shared += [body.robot for body in self.robot_bodies.values()]
-        renderer, self._renderer = self._renderer, None
+        shared += [start.robot for start in self.rigid.starts.values()]
+        shared += [part.compiled.base for part in self.rigid.parts]
+        renderers, self._renderers = self._renderers, {}
+        known = {id(one): one for one in shared} | {id(part.data): copy.copy(part.data) for part in self.rigid.parts}
         try:
-            other = copy.deepcopy(self, {id(one): one for one in shared})
+            other = copy.deepcopy(self, known)
         finally:
-            self._renderer = renderer
+            self._renderers = renderers
         other.environment_time = other.environment_time.select([0])
         return other
 
     def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
-            self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
+            self._plane = (self.scene, hide_ghosts(self.scene, self.ghosts).replace(walls=self._outlines()))
         return self._plane[1]
 
     def embody(
@@ -235,14 +275,16 @@ class PhysicsWorld(PlanarWorld):
 
     def bodies(self, skins: int | None = None) -> Bodies:
         """Return the current shapes for range sensors; ``skins`` is a level of detail, see :func:`scene_bodies`."""
-        frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.robot_bodies.items()}
-        robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
+        frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.rigid.main.robots.items()}
+        robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
         moved = {number: self.prop(number) for number in self._movable}
-        return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
+        scene = hide_ghosts(self.scene, self.ghosts)
+        return scene_bodies(scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
     def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
-        return self.scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
+        scene = hide_ghosts(self.scene, self.ghosts)
+        return scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
     def prop(self, number: int) -> Floats:
         """Return the frame ``[4, 4]`` of a prop in the world."""
@@ -264,38 +306,22 @@ class PhysicsWorld(PlanarWorld):
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         self._mj = engine()
-        self.built = build_mjcf_model(self.scene, self.stage, robots, slots, motors)
-        self.engine_model = self.built.load(self.physics_dt)
-        self.data = self._mj.MjData(self.engine_model)
-        both = self.engine_model, self.data
-        prefixes = self.built.prefixes
-        self.robot_bodies = {
-            a: RobotBody(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())
+        x, y, heading = *self.scene.position[0].T, self.scene.heading[0]
+        starts = {
+            a: RobotStart(a, robot, float(x[a]), float(y[a]), float(heading[a]), motors_of(a, motors))
+            for a, robot in sorted(robots.items())
         }
-        self._people_bodies = PeopleBodies(*both, slots, self.physics_dt)
-        self._contact_reader = ContactReader(
-            *both, prefixes, self._people_bodies.agent_of, self._people_bodies.swing_of
-        )
+        walls = self.scene.walls
+        self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
         self._contact_tracker = BodyContactTracker(
             self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
         )
-        self._movable = [k for k, prop in enumerate(self.stage.props) if prop.movable]
-        self._settle()
-
-    def _settle(self) -> None:
-        """Let robots come to rest on the floor, at their initial poses."""
-        for agent in self.robot_bodies:
-            self._put(agent, self.scene)
-        self._mj.mj_step(self.engine_model, self.data, round(SETTLING / self.physics_dt))
-        for agent in self.robot_bodies:
-            self._put(agent, self.scene)
-        self.data.time = 0.0
-        self._mj.mj_forward(self.engine_model, self.data)
+        self._at = {a: (start.x, start.y, start.heading) for a, start in starts.items()}
 
     def _put(self, agent: int, scene: Scene) -> None:
         x, y = scene.position[0, agent]
         self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
-        self._at = {**getattr(self, "_at", {}), agent: (float(x), float(y), float(scene.heading[0, agent]))}
+        self._at[agent] = (float(x), float(y), float(scene.heading[0, agent]))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         earlier, crowd = super()._step_crowd(before.replace(walls=self._outlined))
@@ -320,8 +346,11 @@ class PhysicsWorld(PlanarWorld):
         gait, ends = self._prepared(before, after)
         end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
-        for k in range(self._steps):
-            self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+        with self.rigid.engine_steps():
+            for k in range(self._steps):
+                self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+        for ghost in self.rigid.ghosts.values():
+            ghost.step_alone(self._steps)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
         if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
@@ -345,7 +374,7 @@ class PhysicsWorld(PlanarWorld):
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
         near, mass, ahead = people_near(
-            scene, persons, movers(self.robot_bodies, self.stage, self._movable, self.data), NEAR + FAST * self.dt
+            scene, persons, movers(self.rigid.main.robots, self.stage, self._movable, self.data), NEAR + FAST * self.dt
         )
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
@@ -353,13 +382,14 @@ class PhysicsWorld(PlanarWorld):
         )
 
     def _substep(self, share: float, time: float) -> None:
-        for robot_bodies in self.robot_bodies.values():
+        model, data, reader = self.rigid.model, self.data, self.rigid.reader
+        for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
-        self._mj.mj_step1(self.engine_model, self.data)
-        self._contact_reader.look()
-        self._mj.mj_step2(self.engine_model, self.data)
-        contacts = self._contact_reader.read()
+        self._mj.mj_step1(model, data)
+        reader.look()
+        self._mj.mj_step2(model, data)
+        contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)
         for contact in contacts:
@@ -370,9 +400,6 @@ class PhysicsWorld(PlanarWorld):
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
         """Return the scene with simulated robots and pushed people, and whether anyone was pushed."""
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
-        self._mj.mj_kinematics(self.engine_model, self.data)
-        self._mj.mj_comPos(self.engine_model, self.data)
-        self._mj.mj_comVel(self.engine_model, self.data)
         for agent, robot_bodies in self.robot_bodies.items():
             pose, twist = robot_bodies.pose, robot_bodies.twist
             self.twists[agent] = twist
