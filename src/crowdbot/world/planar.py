@@ -29,10 +29,11 @@ from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
 from .environment_time import EnvironmentTime
 from .planar_checks import check_arguments
+from .planar_live_changes import PlanarLiveChanges, keep_added_robots
 from .robots.drive import Drive, Twists, put_robot
 from .robots.mount import MountPlacement
 from .robots.servo import CommandDelay, Pending
-from .world import Contact, World
+from .world import Contact
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
@@ -54,7 +55,7 @@ CHANGEABLE = (
 
 
 @dataclass
-class PlanarWorld(World):
+class PlanarWorld(PlanarLiveChanges):
     """People and robots as discs in the plane, E environments at once.
 
     People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
@@ -174,7 +175,7 @@ class PlanarWorld(World):
         for zone in self.exits:
             after = leave_in_zone(after, zone)
         after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts)
+        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts, before)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -190,6 +191,7 @@ class PlanarWorld(World):
         Raises:
             InputError: the parameter cannot change in a running world, or a value is not allowed.
         """
+        how = keep_added_robots(self, how)
         for name in how:
             if name not in CHANGEABLE:
                 raise InputError(f"{name} cannot change in a running world; these can: {', '.join(CHANGEABLE)}")
@@ -279,7 +281,7 @@ class PlanarWorld(World):
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
         """Replace robots and stage; see :class:`World`."""
         for bodies in self._bodies or ():
-            bodies.robots, bodies.stage, bodies.walls = dict(robots), stage, walls
+            bodies.robots, bodies.stage, bodies.walls = {**bodies.robots, **robots}, stage, walls
 
     def pose_people(self) -> None:
         """Move the bodies of people to the current scene; see :class:`World`."""
@@ -305,9 +307,8 @@ class PlanarWorld(World):
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene with replayed people as external agents."""
-        return (
-            scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
-        )
+        script = self.script
+        return scene if script is None else scene.replace(external=scene.external | script.follower_mask(scene))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
@@ -323,7 +324,7 @@ class PlanarWorld(World):
             crowd = self._step_model(earlier, h)
             if self.limits is not None:
                 crowd = self.limits.apply(earlier, crowd, h)
-        own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
+        own = {name: getattr(before, name) for name in ("radius", "goal", "preferred_velocity")}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:
@@ -363,16 +364,15 @@ class PlanarWorld(World):
                 raise InputError(
                     f"agent {robot} has a command but is not a robot; robots are {sorted(self.drives) or 'none'}"
                 )
-        missing = [robot for robot in self.twists if robot not in commands]
+        missing = [one for one in self.twists if one not in commands and self.scene.active[:, one].any()]
         if missing:
             raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stop")
-        asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        asked = {robot: Twists.of(commands.get(robot, Twist()), self.scene.shape[0]) for robot in self.twists}
         return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
         """Return the command in force during the next step."""
-        latency = self.latency.get(robot, 0.0)
-        if latency == 0.0:
+        if (latency := self.latency.get(robot, 0.0)) == 0.0:
             return command
         pending, now = self._delayed.get(robot, ((), Twist()))
         self._delayed[robot] = CommandDelay(latency).step(pending, now, command, self.dt)

@@ -109,9 +109,7 @@ class PeopleBodies:
         pushed: ``[S]`` whether a contact displaced the body during this step of the world.
     """
 
-    def __init__(
-        self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None
-    ) -> None:
+    def __init__(self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None) -> None:
         self.step = step
         self._model: Any = None
         self.agent = np.full(slots, -1, dtype=np.int64)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,12 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
+from crowdbot.core import Bodies, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.ghosts import hide_ghosts
-from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.rendering.camera import CameraImages, SceneCamera
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
@@ -28,11 +25,9 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
-from .mjcf_model import MjcfModel
 from .nearby_people import movers, people_near
-from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
-from .robot_body import RobotBody
+from .rigid_world import SLOTS, RigidWorld
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_bodies import WorldBodies
@@ -49,7 +44,7 @@ FAST = 3.0
 """Largest assumed closing speed [m/s] within one step."""
 
 
-class PhysicsWorld(PlanarWorld):
+class PhysicsWorld(RigidWorld):
     """Planar crowd with rigid bodies for robots, nearby people, walls and props (MuJoCo); E = 1.
 
     The crowd supports all options of :class:`PlanarWorld` and is bit-identical to it until the first contact. Commands
@@ -115,98 +110,25 @@ class PhysicsWorld(PlanarWorld):
     ) -> None:
         stage = stage or PhysicsStage()
         check_arguments(scene, robots, dt, physics_dt, slots)
+        self._slots_fixed = slots is not None
         self._steps = round(dt / physics_dt)
         self._outlined = add_rings(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
+        self._prop_names = [f"prop{number}" for number in range(len(stage.props))]
         self.people = PeopleMotion(self.scene, persons, people, seed, riders)
         self._plane: tuple[Scene, Scene] | None = None
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
         self._renderers: dict[bool, Renderer] = {}
-        self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
-
-    @property
-    def robot_bodies(self) -> dict[int, RobotBody]:
-        """Bodies of the robots by agent."""
-        return self.rigid.robots
-
-    @property
-    def engine_model(self) -> Any:
-        """The ``mujoco.MjModel``, shared with other worlds of the same stage and robots; not to be changed."""
-        return self.rigid.main.compiled.base
-
-    @property
-    def data(self) -> Any:
-        """The ``mujoco.MjData`` of all bodies that can touch each other."""
-        return self.rigid.main.data
-
-    @property
-    def built(self) -> MjcfModel:
-        """The MJCF model."""
-        return self.rigid.main.compiled.built
-
-    @property
-    def _people_bodies(self) -> PeopleBodies:
-        return self.rigid.people
-
-    @property
-    def _movable(self) -> list[int]:
-        return [k for k, prop in enumerate(self.stage.props) if prop.movable]
+        self._compose(robots, min(len(persons), SLOTS) if slots is None else slots, motors)
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All contact events so far, ordered by start time."""
         return self._contact_tracker.contact_events
-
-    def command(self, robot: int, joints: Mapping[str, float]) -> None:
-        """Set the commands of joint motors of a robot; they stay in force until changed.
-
-        Raises:
-            InputError: the agent is not a robot, a joint has no motor or is a wheel, or a value is not finite.
-        """
-        self.robot_body(robot).command(joints)
-
-    def robot_body(self, robot: int) -> RobotBody:
-        """Return the body of a robot.
-
-        Raises:
-            InputError: the agent is not a robot.
-        """
-        if robot not in self.robot_bodies:
-            raise InputError(f"agent {robot} is not a robot; robots are {sorted(self.robot_bodies) or 'none'}")
-        return self.robot_bodies[robot]
-
-    def render(
-        self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
-    ) -> CameraImages:
-        """Return the current images of a camera, with the skins of people. No display is needed.
-
-        Raises:
-            InputError: no OpenGL backend works, or the robot or link of the camera is unknown.
-        """
-        return self.renderer.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
-
-    @property
-    def renderer(self) -> Renderer:
-        """Renderer of the current state with ghosts, for films; see :meth:`Renderer.render`."""
-        return self._shown(bool(self.rigid.ghosts))
-
-    def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer without ghosts, for cameras of :mod:`crowdbot.sensors`; see :class:`World`."""
-        return self._shown(False)
-
-    def _shown(self, ghosts: bool) -> Renderer:
-        """Return the renderer of the current state, with ghosts or without."""
-        whole = self.rigid.picture() if ghosts else self.rigid.main
-        scene = self.scene if ghosts else hide_ghosts(self.scene, self.ghosts)
-        if ghosts not in self._renderers:
-            robots = {agent: body.robot for agent, body in whole.robots.items()}
-            self._renderers[ghosts] = Renderer.of_physics(whole.compiled.built, robots, self.stage, self.people, scene)
-        self._renderers[ghosts].show_engine(scene, whole.data.qpos)
-        return self._renderers[ghosts]
 
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
@@ -230,21 +152,6 @@ class PhysicsWorld(PlanarWorld):
         depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
-    def copy(self) -> PhysicsWorld:
-        """Return an independent world in the same state, on a free clock."""
-        shared = [self._mj, self.stage, self.router, self.people.people, self.people.gait, self.model]
-        shared += [body.robot for body in self.robot_bodies.values()]
-        shared += [start.robot for start in self.rigid.starts.values()]
-        shared += [part.compiled.base for part in self.rigid.parts]
-        renderers, self._renderers = self._renderers, {}
-        known = {id(one): one for one in shared} | {id(part.data): copy.copy(part.data) for part in self.rigid.parts}
-        try:
-            other = copy.deepcopy(self, known)
-        finally:
-            self._renderers = renderers
-        other.environment_time = other.environment_time.select([0])
-        return other
-
     def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
@@ -265,11 +172,6 @@ class PhysicsWorld(PlanarWorld):
         """Start the activities of people; their bodies, robots and stage are those of the constructor."""
         self._begin_activity(activity)
 
-    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
-        for agent, robot in robots.items():
-            self.robot_body(agent).robot = robot
-
     def pose_people(self) -> None:
         """Do nothing: a step moves the bodies of people."""
 
@@ -286,13 +188,6 @@ class PhysicsWorld(PlanarWorld):
         scene = hide_ghosts(self.scene, self.ghosts)
         return scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
-    def prop(self, number: int) -> Floats:
-        """Return the frame ``[4, 4]`` of a prop in the world."""
-        body = self.data.body(f"prop{number}")
-        found = np.eye(4)
-        found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
-        return found
-
     def _outlines(self) -> Walls:
         if not self._movable:
             return self._outlined
@@ -305,7 +200,6 @@ class PhysicsWorld(PlanarWorld):
         return command  # RobotBody applies the delay, in engine steps
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
-        self._mj = engine()
         x, y, heading = *self.scene.position[0].T, self.scene.heading[0]
         starts = {
             a: RobotStart(a, robot, float(x[a]), float(y[a]), float(heading[a]), motors_of(a, motors))
@@ -382,13 +276,13 @@ class PhysicsWorld(PlanarWorld):
         )
 
     def _substep(self, share: float, time: float) -> None:
-        model, data, reader = self.rigid.model, self.data, self.rigid.reader
+        mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
         for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
-        self._mj.mj_step1(model, data)
+        mj.mj_step1(model, data)
         reader.look()
-        self._mj.mj_step2(model, data)
+        mj.mj_step2(model, data)
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)

@@ -68,12 +68,13 @@ class WorldBodies:
     @contextmanager
     def engine_steps(self) -> Iterator[None]:
         """Use a model for the engine steps inside; afterwards, all frames are up to date."""
-        with self.main.compiled.borrow() as self.model:
+        with self.main.compiled.borrow() as model:
             try:
-                self.people.install(self.model)
-                self.reader.use(self.model, self.people.shapes.size)
+                self.model = model
+                self.people.install(model)
+                self.reader.use(model, self.people.shapes.size)
                 yield
-                update_frames(self.model, self.main.data)
+                update_frames(model, self.main.data)
             finally:
                 self.model = None
                 self.people.release()
@@ -153,6 +154,7 @@ class WorldBodies:
 
     def _design(self, robots: tuple[RobotStart, ...], number: int = -1) -> BodyDesign:
         """Return the design with some robots on the bare stage, and the movable prop of this number."""
+
         def left(k: int, prop: PropBody) -> PropBody:
             return AbsentProp() if prop.movable and k != number else prop
 
