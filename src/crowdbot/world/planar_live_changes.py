@@ -75,7 +75,7 @@ def robot_environments(world: World, agent: int, environments: Sequence[int] | N
         environments = np.flatnonzero(active[:, agent]).tolist()
     chosen = chosen_environments(len(active), environments)
     if agent not in robots or not chosen or not active[chosen, agent].all():
-        present = [one for one in robots if active[chosen, one].all()]
+        present = [one for one in robots if active[chosen or slice(None), one].all()]
         raise InputError(f"agent {agent} is not a robot that is present; present are {present or 'none'}")
     return chosen
 

@@ -189,9 +189,9 @@ class PhysicsBatch(World):
 
     def add_prop(self, prop: PropBody, name: str = "") -> str:
         """Add a prop in all environments; see :class:`World`."""
-        longest = max((world._prop_names for world in self.worlds), key=len)
+        name = name or new_prop_name(max((world._prop_names for world in self.worlds), key=len), "")
         for world in self.worlds:
-            new_prop_name(world._prop_names, name := new_prop_name(longest, name) if not name else name)
+            new_prop_name(world._prop_names, name)
         for world in self.worlds:
             world.add_prop(prop, name)
         return name
