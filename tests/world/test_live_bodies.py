@@ -113,7 +113,7 @@ def test_the_first_robot_can_go_and_its_command_is_ignored() -> None:
     world.step({})
     np.testing.assert_array_equal(world.scene.position[0, COUNT], place)
     assert (world.robot_bodies, world.contacts, bool(world.scene.active[0, COUNT])) == ({}, (), False)
-    assert not any(name.startswith("robot") for name in map(lambda k: world.engine_model.body(k).name, range(5)))
+    assert not any(name.startswith("robot") for name in (world.engine_model.body(k).name for k in range(5)))
     other = hall()
     remove_person(other, COUNT)
     assert other.robot_bodies == {}

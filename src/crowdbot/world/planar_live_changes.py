@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Twist, Walls, did_you_mean
 
-from .crowd.environment_rows import pad_scene
+from .crowd.environment_rows import pad_ids, pad_scene, set_models
 from .robots.drive import Drive, Twists
 from .robots.robot import Robot
 from .world import World
@@ -82,8 +82,6 @@ def robot_environments(world: World, agent: int, environments: Sequence[int] | N
 
 def widen(world: Any, agents: int) -> None:
     """Add absent agents to all environments of a planar or physics world, so that each has at least ``agents``."""
-    from .planar_environments import pad_ids, set_models
-
     if agents > world.scene.shape[1]:
         world.scene, world._previous = pad_scene(world.scene, agents), pad_scene(world._previous, agents)
         world._traffic.ids = pad_ids(world._traffic.ids, agents)
@@ -159,8 +157,10 @@ def keep_added_robots(world: Any, how: dict[str, Any]) -> dict[str, Any]:
     kept = world.added_robots
     if not kept:
         return how
-    rest = {name: {agent: getattr(world, name)[agent] for agent in kept} | dict(how[name]) for name in (
-        "drives", "latency") if name in how}  # fmt: skip
+    rest: dict[str, Any] = {}
+    for name in ("drives", "latency"):
+        if name in how:
+            rest[name] = {agent: getattr(world, name)[agent] for agent in kept} | dict(how[name])
     if "ghosts" in how:
         rest["ghosts"] = [*how["ghosts"], *(agent for agent in world.ghosts if agent in kept)]
     return {**how, **rest}

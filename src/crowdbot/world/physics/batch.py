@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls
-from crowdbot.world.crowd.environment_rows import concatenate_arrays, stack_scenes, take_arrays, trim_scene
+from crowdbot.world.crowd.environment_rows import concatenate_arrays, pad_ids, stack_scenes, take_arrays, trim_scene
 from crowdbot.world.environment_time import EnvironmentTime
-from crowdbot.world.planar_environments import pad_ids
 from crowdbot.world.planar_live_changes import (
     check_robot_place,
     chosen_environments,

@@ -121,7 +121,7 @@ class CompiledBodies:
                 self._free.append(model)
 
     @functools.cached_property
-    def settled(self) -> Any:
+    def rest_state(self) -> Any:
         """State in which the robots rest on the floor at their starts, and props at theirs."""
         mj, design = engine(), self.design
         data = copy.copy(self.first)

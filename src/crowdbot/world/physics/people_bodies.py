@@ -68,9 +68,11 @@ class BodyShapes(NamedTuple):
     @classmethod
     def of(cls, model: Any, geoms: Ints, bodies: Ints) -> BodyShapes:
         """Return a copy of the shapes of a model."""
-        found = [getattr(model, name)[geoms] for name in (*POSES, "geom_solref")]
-        found = [array.reshape(len(bodies), LIMB_COUNT, *array.shape[1:]) for array in found]
-        return cls(*found, model.body_mass[bodies], model.body_invweight0[bodies])
+        position, rotation, size, bound, softness = (
+            array.reshape(len(bodies), LIMB_COUNT, *array.shape[1:])
+            for array in (getattr(model, name)[geoms] for name in (*POSES, "geom_solref"))
+        )
+        return cls(position, rotation, size, bound, softness, model.body_mass[bodies], model.body_invweight0[bodies])
 
     def copy(self) -> BodyShapes:
         """Return an independent copy."""

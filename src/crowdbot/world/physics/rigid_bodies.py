@@ -36,7 +36,7 @@ class RigidBodies:
         self, design: BodyDesign, known: Mapping[int, RobotBody] | None = None, *, settled: bool = True
     ) -> None:
         self.compiled = compile_bodies(design)
-        self.data = copy.copy(self.compiled.settled if settled else self.compiled.first)
+        self.data = copy.copy(self.compiled.rest_state if settled else self.compiled.first)
         self.robots: dict[int, RobotBody] = {}
         for start in design.robots:
             prefix = self.compiled.built.prefixes[start.agent]

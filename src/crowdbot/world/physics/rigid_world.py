@@ -79,7 +79,7 @@ class RigidWorld(PlanarWorld):
         return self.rigid.main.data
 
     @property
-    def built(self) -> MjcfModel:
+    def mjcf(self) -> MjcfModel:
         """The MJCF model."""
         return self.rigid.main.compiled.built
 

@@ -200,9 +200,9 @@ class PhysicsWorld(RigidWorld):
         return command  # RobotBody applies the delay, in engine steps
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
-        x, y, heading = *self.scene.position[0].T, self.scene.heading[0]
+        place, heading = self.scene.position[0].tolist(), self.scene.heading[0].tolist()
         starts = {
-            a: RobotStart(a, robot, float(x[a]), float(y[a]), float(heading[a]), motors_of(a, motors))
+            a: RobotStart(a, robot, place[a][0], place[a][1], heading[a], motors_of(a, motors))
             for a, robot in sorted(robots.items())
         }
         walls = self.scene.walls
