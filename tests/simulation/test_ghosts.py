@@ -8,20 +8,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, TrialError, Twist
+from crowdbot.core import Twist
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.sensors import Scan
 from crowdbot.simulation import Simulation, apply_overrides, simulate
 from crowdbot.simulation.termination import goal_zones
 from crowdbot.simulation.world_builder import begin_world, build_world
 from crowdbot.trials import Planner, Trial, builtin_trials, expand_sweeps, load_trial, parse_trial, trial_xml
-from crowdbot.world import PlanarWorld
+from crowdbot.world import PhysicsWorld, PlanarWorld
 from samples import sample
 from space_trials import LEAN, room
 from trial_schema import valid
 from trial_texts import FLOW, GOOD
 
 SECONDS = 2.0
+PHYSICS_SECONDS = 0.6
 NAMES = [name for name in sorted(builtin_trials()) if load_trial(name).robots]
 KEPT = ["bottleneck", "challenge-both-50", "circle-crossing", "one-way-with", "two-crowds", "frontal"]
 
@@ -200,13 +201,111 @@ def test_a_robot_becomes_a_ghost_in_a_branch() -> None:
     assert simulation.world.plane_scene().active.all()
 
 
-def test_ghosts_of_the_physics_world_are_refused() -> None:
+def with_bodies(trial: Trial) -> Trial:
+    return dataclasses.replace(trial, world="physics")
+
+
+@pytest.mark.parametrize("name", sample(NAMES, KEPT))
+def test_a_ghost_with_a_body_disturbs_nobody(name: str) -> None:
+    trial = with_bodies(planar(name))
+    count = len(trial.robots)
+    ghost = with_robots(trial, ghost=True)
+    driving = positions(Simulation(ghost, 0), PHYSICS_SECONDS, count)
+    reckless = positions(Simulation(with_robots(ghost, navigator=Reckless()), 0), PHYSICS_SECONDS, count)
+    still = positions(Simulation(with_robots(ghost, navigator=Still()), 0), PHYSICS_SECONDS, count)
+    absent = positions(without_robots(trial), PHYSICS_SECONDS, 0)
+    for other in (driving, reckless, absent):
+        np.testing.assert_array_equal(other, still)
+    assert len(still) == round(PHYSICS_SECONDS / trial.step)
+
+
+def everything(simulation: Simulation, robot: int) -> list[np.ndarray]:
+    """Return the state of people, props and other robots in the physics world."""
+    world = simulation.world
+    assert isinstance(world, PhysicsWorld)
+    scene = np.delete(world.scene.position[0], robot, axis=0)
+    others = [body.joints() for agent, body in sorted(world.robot_bodies.items()) if agent != robot]
+    joints = np.array([value for found in others for value in found.values()]).ravel()
+    return [scene, world.people.ends, world.data.qpos.copy(), world.data.qvel.copy(), joints]
+
+
+def test_people_props_and_robots_do_not_notice_a_ghost_with_a_body() -> None:
+    """A ghost drives through people, a box that moves and another robot; all of them move as if it stood."""
     trial = parse_trial(room("physics", LEAN))
-    with pytest.raises(InputError, match='has a robot with ghost="true" in the physics world'):
-        with_robots(trial, ghost=True)
-    text = room("physics", LEAN).replace("<robot ", '<robot ghost="true" ')
-    with pytest.raises(TrialError, match=r':2: <trial> has a robot with ghost="true" in the physics world, in which'):
-        parse_trial(text)
+    second = dataclasses.replace(trial.robots[0], name="second", x=2.0, y=4.0)
+    spec = dataclasses.replace(second, ghost=True, navigator=Reckless(), heading=-0.6)
+    trial = dataclasses.replace(trial, robots=(trial.robots[0], spec), duration=4.0)
+    agent = trial.people + 1
+    runs = [Simulation(trial, 3), Simulation(with_second(trial, Still()), 3)]
+    for k in range(60):
+        for run in runs:
+            run.advance()
+        for one, two in zip(*(everything(run, agent) for run in runs), strict=True):
+            np.testing.assert_array_equal(one, two, err_msg=str(k))
+    moved = runs[0].world.scene.position[0, agent] - runs[1].world.scene.position[0, agent]
+    assert np.hypot(*moved) > 0.8
+
+
+def with_second(trial: Trial, navigator: Navigator) -> Trial:
+    return dataclasses.replace(
+        trial, robots=(trial.robots[0], dataclasses.replace(trial.robots[1], navigator=navigator))
+    )
+
+
+def test_a_ghost_with_a_body_stops_at_a_wall_without_a_contact() -> None:
+    trial = with_robots(parse_trial(room("physics", LEAN)), ghost=True, navigator=Reckless(), x=10.5, y=0.8)
+    simulation = Simulation(dataclasses.replace(trial, duration=5.0), 3)
+    for _ in range(100):
+        simulation.advance()
+        assert simulation.contacts() == ()
+        assert np.isinf(simulation.world.wall_clearance(trial.people)).all()
+    assert simulation.world.scene.position[0, trial.people, 0] == pytest.approx(12.0 - trial.robots[0].radius, abs=0.05)
+
+
+def test_sensors_and_navigators_miss_a_ghost_with_a_body() -> None:
+    seen, missed = Simulation(with_bodies(facing(False)), 0), Simulation(with_bodies(facing(True)), 0)
+    first = seen.trial.people
+    for simulation, there in ((seen, True), (missed, False)):
+        simulation.begin()
+        assert (first in hits(simulation, "other")) is there
+        assert (first in simulation.observation("other").people.ids) is there
+        assert first + 1 in simulation.observation("robot").people.ids
+        assert first + 1 in hits(simulation, "robot")
+
+
+def test_environments_with_bodies_and_a_ghost_are_their_single_runs() -> None:
+    trial = with_bodies(with_robots(dataclasses.replace(parse_trial(FLOW), duration=2.0), ghost=True))
+    many, singles = Simulation(trial, range(2)), [Simulation(trial, seed) for seed in range(2)]
+    for _ in range(8):
+        for one in (many, *singles):
+            one.advance()
+    again = many.select([1, 0])
+    for one in (again, *singles):
+        one.advance()
+    for e, one in enumerate(reversed(singles)):
+        np.testing.assert_array_equal(
+            again.world.environment_scene(e).position, one.world.environment_scene(0).position
+        )
+
+
+def test_a_robot_with_a_body_becomes_a_ghost_in_a_branch() -> None:
+    trial = with_bodies(facing(False, navigator=Reckless()))
+    simulation = Simulation(trial, 0)
+    for _ in range(10):
+        simulation.advance()
+    world: Any = simulation.world
+    before = [(body.pose.position.copy(), body.joints()) for body in world.robot_bodies.values()]
+    apply_overrides(simulation, with_robots(trial, ghost=True))
+    assert sorted(world.rigid.ghosts) == [0, 1]
+    after = [(body.pose.position.copy(), body.joints()) for body in world.robot_bodies.values()]
+    for (place, joints), (other, same) in zip(before, after, strict=True):
+        np.testing.assert_array_equal(place, other)
+        assert joints == same
+    assert not world.plane_scene().active.any()
+    simulation.advance()
+    apply_overrides(simulation, trial)
+    assert (world.rigid.ghosts, world.plane_scene().active.all()) == ({}, True)
+    simulation.advance()
 
 
 def test_values_are_set_by_path_and_written() -> None:

@@ -52,8 +52,8 @@ class Watched:
 
     def __init__(self, world) -> None:
         self.world, self.rows, self._last = world, [], None
-        look, add = world._contact_reader.look, world._contact_tracker.add
-        world._contact_reader.look = lambda: (look(), self._seen())
+        look, add = world.rigid.reader.look, world._contact_tracker.add
+        world.rigid.reader.look = lambda: (look(), self._seen())
         world._contact_tracker.add = lambda time, contacts: (add(time, contacts), self._record(time, contacts))
 
     def _seen(self) -> None:

@@ -60,6 +60,7 @@ def test_rays_equal_mujocos_on_people_walls_and_props(world, height):
     held._late[slots] = False
     ends = world.people.ends[world.people.row[held.agent[slots]]]
     held._pose(slots, ends - np.tile(np.column_stack([place, np.zeros(len(place))]), 2)[:, None])
+    held.install(world.engine_model)
     for axis in (0, 1):
         world.data.qpos[held._place[slots] + axis] = place[:, axis]
     pose = SpatialPose.of((-0.9, 0.7, height), 0.02, 0.05, 0.3)

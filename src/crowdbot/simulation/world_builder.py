@@ -171,6 +171,7 @@ def _with_bodies(
         people=figures.people,
         riders=figures.riders,
         physics_dt=trial.physics_step,
+        ghosts=[agent for agent, robot in robots.items() if robot.ghost],
         **whole,
     )
 

@@ -16,7 +16,6 @@ from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg
 from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
-from .partial_element import readable
 from .people import SourceSpec, Spawner
 from .recorded_people import RecordedPeople
 from .robot import Mount, RobotGoal, RobotSpec
@@ -146,12 +145,6 @@ class Trial:
             raise InputError(
                 f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='
                 f'"{self.physics_step:g}" s'
-            )
-        ghosts = [robot for robot in self.robots if (0, True) in readable([robot], "ghost")]
-        if self.world == "physics" and ghosts:
-            raise InputError(
-                'has a robot with ghost="true" in the physics world, in which robots have bodies and contacts; take'
-                ' world="planar", or visible="false" for a robot that people do not react to'
             )
 
     def _repr_svg_(self) -> str:

@@ -12,6 +12,7 @@ from crowdbot.core import MissingExtra, Twist
 
 from . import planar_environments as planar
 from .environment_time import EnvironmentTime
+from .planar_live_changes import match_robots
 from .robots.drive import Twists
 from .world import World
 
@@ -59,6 +60,7 @@ def put_environments(world: World, environments: Sequence[int] | Ints, other: Wo
     anything: Any = world
     if not world.walls_fixed:
         new: Any = other
+        match_robots(world, other)
         planar.put_environments(anything, environments, new)
     elif len(world.slots) > 1:
         anything.put(environments, other)

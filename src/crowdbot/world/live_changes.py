@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .crowd.environment_rows import pad_scene
 from .crowd.journey import JOURNEY, STOP
 from .crowd.routing import WAY, fresh
 from .crowd.source import TOP
-from .planar_environments import pad_ids, set_models
+from .planar_live_changes import widen
 from .world import World
 
 __all__ = [
@@ -28,6 +27,8 @@ __all__ = [
     "slot_of",
 ]
 
+MOST = 20_000
+"""Largest number of people and robots in an environment."""
 FARTHEST = 1e6
 """Largest coordinate [m] of a person."""
 
@@ -73,7 +74,11 @@ def remove_person(world: World, person: int, environment: int = 0) -> None:
     >>> world.scene.active.tolist()
     [[True, False]]
     """
-    _put(world, environment, slot_of(world, person, environment), active=False)
+    slot = slot_of(world, person, environment)
+    if slot in world.twists:
+        world.remove_robot(slot, [environment])
+    else:
+        _put(world, environment, slot, active=False)
 
 
 def move_agent(world: World, person: int, x: float, y: float, heading: float | None, environment: int = 0) -> None:
@@ -105,9 +110,12 @@ def add_person(
         radius: [m].
         environment: index of the environment.
 
+    In a world with bodies, a person without a free one gets a random adult body.
+
     Raises:
-        InputError: the world has bodies, and all of them are in use.
+        InputError: the environment has :data:`MOST` agents.
     """
+    check_room(world, environment)
     slot = _free_slot(world, environment)
     own = _own(world, environment)
     row = environment if own is world else 0
@@ -129,13 +137,10 @@ def add_person(
 
 
 def check_room(world: World, environment: int = 0) -> None:
-    """Raise :class:`InputError` if nobody can be added: in a world with bodies, all may be in use."""
-    slots = int(world.slots[environment])
-    free = ~world.scene.active[environment, :slots] & ~world.scene.external[environment, :slots]
-    if not free.any() and (world.walls_fixed or _own(world, environment)._bodies is not None):
-        raise InputError(
-            "nobody can be added: every body of this world is in use; a source in the trial provides more bodies"
-        )
+    """Raise :class:`InputError` if an environment has :data:`MOST` agents: nobody can be added."""
+    present = int(np.count_nonzero(world.scene.active[environment]))
+    if present >= MOST:
+        raise InputError(f"nobody can be added: {present} people and robots are present, the limit is {MOST}")
 
 
 def _own(world: Any, environment: int) -> Any:
@@ -144,20 +149,15 @@ def _own(world: Any, environment: int) -> Any:
 
 
 def _free_slot(world: World, environment: int) -> int:
-    """Return an index without an agent; the arrays of a world without bodies grow."""
+    """Return an index without an agent; arrays and bodies grow if there is none."""
     scene, slots = world.scene, int(world.slots[environment])
     free = np.flatnonzero(~scene.active[environment, :slots] & ~scene.external[environment, :slots])
     if len(free):
         return int(free[0])
-    check_room(world, environment)
     own = _own(world, environment)
-    if slots == scene.shape[1]:
-        agents = slots + 1
-        world.scene, own._previous = pad_scene(scene, agents), pad_scene(own._previous, agents)
-        own._traffic.ids = pad_ids(own._traffic.ids, agents)
-        own.ids = own._traffic.ids
-        set_models(own, [own.model] * len(own.slots) if own._models is None else own._models)
-    own.slots[environment] = slots + 1
+    widen(own, slots + 1)
+    own.slots[environment if own is world else 0] = slots + 1
+    own.embody_person(slots, environment if own is world else 0)
     return slots
 
 

@@ -32,10 +32,11 @@ from .phases.people_exchange import exchange_people
 from .phases.robot_contacts import find_contacts
 from .phases.robot_motion import check_commands, initial_twist, move_robots
 from .planar_checks import check_arguments
+from .planar_live_changes import PlanarLiveChanges, keep_added_robots
 from .robots.drive import Drive, Twists
 from .robots.mount import MountPlacement
 from .robots.servo import CommandDelay, Pending
-from .world import Contact, World
+from .world import Contact
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
@@ -57,7 +58,7 @@ CHANGEABLE = (
 
 
 @dataclass
-class PlanarWorld(World):
+class PlanarWorld(PlanarLiveChanges):
     """People and robots as discs in the plane, E environments at once.
 
     People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
@@ -173,7 +174,7 @@ class PlanarWorld(World):
         after.check()
         self.contacts = self._find_contacts(before, after)
         exits = (self.leave_radius, self.exits, self.portals)
-        self.scene = show_ghosts(exchange_people(before, after, *exits, self._traffic, elapsed), self.ghosts)
+        self.scene = show_ghosts(exchange_people(before, after, *exits, self._traffic, elapsed), self.ghosts, before)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -189,6 +190,7 @@ class PlanarWorld(World):
         Raises:
             InputError: the parameter cannot change in a running world, or a value is not allowed.
         """
+        how = keep_added_robots(self, how)
         for name in how:
             if name not in CHANGEABLE:
                 raise InputError(f"{name} cannot change in a running world; these can: {', '.join(CHANGEABLE)}")
@@ -278,7 +280,7 @@ class PlanarWorld(World):
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
         """Replace robots and stage; see :class:`World`."""
         for bodies in self._bodies or ():
-            bodies.robots, bodies.stage, bodies.walls = dict(robots), stage, walls
+            bodies.robots, bodies.stage, bodies.walls = {**bodies.robots, **robots}, stage, walls
 
     def pose_people(self) -> None:
         """Move the bodies of people to the current scene; see :class:`World`."""
@@ -304,9 +306,8 @@ class PlanarWorld(World):
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene with replayed people as external agents."""
-        return (
-            scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
-        )
+        script = self.script
+        return scene if script is None else scene.replace(external=scene.external | script.follower_mask(scene))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
@@ -334,13 +335,12 @@ class PlanarWorld(World):
         )
 
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
-        asked = check_commands(commands, self.twists, self.scene.shape[0])
+        asked = check_commands(commands, self.twists, self.scene.active)
         return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
         """Return the command in force during the next step."""
-        latency = self.latency.get(robot, 0.0)
-        if latency == 0.0:
+        if (latency := self.latency.get(robot, 0.0)) == 0.0:
             return command
         pending, now = self._delayed.get(robot, ((), Twist()))
         self._delayed[robot] = CommandDelay(latency).step(pending, now, command, self.dt)

@@ -14,10 +14,11 @@ from crowdbot.core import MissingExtra, Twist
 
 from .crowd.environment_rows import (
     concatenate_arrays,
-    join_models,
+    pad_ids,
     pad_scene,
     put_arrays,
     put_scene,
+    set_models,
     stack_scenes,
     take_arrays,
     works_in_batches,
@@ -29,10 +30,8 @@ from .robots.servo import Pending
 
 __all__ = [
     "join_worlds",
-    "pad_ids",
     "put_environments",
     "select_environments",
-    "set_models",
     "step_one_by_one",
     "undo_point",
 ]
@@ -176,14 +175,6 @@ def _models(world: PlanarWorld) -> list[Any]:
     return world._models if world._models is not None else [world.model] * len(world.slots)
 
 
-def set_models(world: PlanarWorld, models: list[Any]) -> None:
-    """Set the model of each environment, as one model if a call for all equals a call for each."""
-    joined = join_models(models, world.scene.shape[1])
-    world._models = models
-    world.joined = joined is not None
-    world.model = models[0] if joined is None else joined
-
-
 def _set_flow(world: PlanarWorld, flow: PeopleFlow) -> None:
     world._traffic = flow
     world.ids = flow.ids
@@ -198,15 +189,6 @@ def _join_flows(flows: Sequence[PeopleFlow], agents: int) -> PeopleFlow:
         following=np.concatenate([flow.following for flow in flows]),
         arrivals=None if first.arrivals is None else first.arrivals.join([f.arrivals for f in flows[1:] if f.arrivals]),
     )
-
-
-def pad_ids(ids: Ints, agents: int) -> Ints:
-    """Return identities with unique negative ones for further slots."""
-    more = agents - ids.shape[1]
-    if more <= 0:
-        return ids
-    least = np.minimum(ids.min(axis=1, initial=0), 0)[:, None]
-    return np.concatenate([ids, least - 1 - np.arange(more)], axis=1)
 
 
 def _wide(twist: Twist | Twists, count: int) -> Twists:

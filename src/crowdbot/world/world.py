@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .crowd.source import PeopleSource
     from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.people_motion import PeopleMotion
-    from .physics.stage import PhysicsStage
+    from .physics.stage import PhysicsStage, PropBody
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
@@ -203,3 +203,84 @@ class World(ABC):
     @abstractmethod
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
         """Change parameters of a running world; see :meth:`PlanarWorld.reconfigure`."""
+
+    @abstractmethod
+    def add_robot(
+        self,
+        robot: Robot,
+        x: float,
+        y: float,
+        heading: float = 0.0,
+        *,
+        ghost: bool = False,
+        environments: Sequence[int] | None = None,
+    ) -> int:
+        """Add a robot between two steps, at rest, and return its agent, which is the same in all environments.
+
+        From then on, :meth:`step` takes a command for it. In environments without the robot, its agent is absent.
+        Nothing else changes: positions, velocities, poses, random numbers and contacts of everybody else are kept to
+        the last bit. The new agent comes after all others.
+
+        Args:
+            robot: the robot.
+            x, y, heading: place [m] and heading [rad].
+            ghost: whether the robot is absent to everybody else.
+            environments: environments that get the robot (default: all).
+
+        Raises:
+            InputError: a value is not finite, an environment does not exist, or the robot cannot drive in this world.
+
+        >>> from crowdbot.models import ORCA
+        >>> from crowdbot.world import PlanarWorld, Robot
+        >>> world = PlanarWorld(Scene.of([[3.0, 0.0]]), ORCA(), {}, dt=0.1)
+        >>> agent = world.add_robot(Robot.load("turtlebot2"), 0.0, 1.0)
+        >>> world.step({agent: Twist(0.3)}).position[0].round(3).tolist()
+        [[3.0, 0.0], [0.005, 1.0]]
+        >>> world.remove_robot(agent)
+        >>> world.step({}).active.tolist()
+        [[True, False]]
+        """
+
+    @abstractmethod
+    def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
+        """Remove a robot between two steps; its agent stays, absent, and commands for it have no effect.
+
+        Args:
+            agent: agent of the robot.
+            environments: environments that lose the robot (default: all in which it is present).
+
+        Raises:
+            InputError: the agent is not a robot that is present in these environments.
+        """
+
+    @abstractmethod
+    def add_prop(self, prop: PropBody, name: str = "") -> str:
+        """Add a prop between two steps to the stage of all environments, and return its name.
+
+        People avoid its outline. Routes of a router do not: give a new router with :meth:`reconfigure`.
+
+        Args:
+            prop: the prop.
+            name: name of the prop (default: ``prop`` and its number on the stage).
+
+        Raises:
+            InputError: another prop has this name.
+
+        >>> from crowdbot.models import ORCA
+        >>> from crowdbot.world import CubeBody, PlanarWorld
+        >>> world = PlanarWorld(Scene.of([[3.0, 0.0]]), ORCA(), {}, dt=0.1)
+        >>> name = world.add_prop(CubeBody(1.0, 1.0, fixed=True), "box")
+        >>> len(world.scene.walls)
+        4
+        >>> world.remove_prop("box")
+        >>> len(world.scene.walls)
+        0
+        """
+
+    @abstractmethod
+    def remove_prop(self, name: str) -> None:
+        """Remove a prop between two steps; the props of the constructor are ``prop0``, ``prop1`` and so on.
+
+        Raises:
+            InputError: there is no prop of this name.
+        """

@@ -15,9 +15,11 @@ from crowdbot.models import CrowdModel, Mixture
 __all__ = [
     "concatenate_arrays",
     "join_models",
+    "pad_ids",
     "pad_scene",
     "put_arrays",
     "put_scene",
+    "set_models",
     "stack_scenes",
     "take_arrays",
     "trim_scene",
@@ -68,6 +70,23 @@ def pad_scene(scene: Scene, agents: int) -> Scene:
 
     arrays = {name: padded(getattr(scene, name), FILLS.get(name, 0)) for name in _names(scene)}
     return scene.replace(**arrays, memory={name: padded(value) for name, value in scene.memory.items()})
+
+
+def pad_ids(ids: NDArray[np.int64], agents: int) -> NDArray[np.int64]:
+    """Return identities with unique negative ones for further slots."""
+    more = agents - ids.shape[1]
+    if more <= 0:
+        return ids
+    least = np.minimum(ids.min(axis=1, initial=0), 0)[:, None]
+    return np.concatenate([ids, least - 1 - np.arange(more)], axis=1)
+
+
+def set_models(world: Any, models: list[Any]) -> None:
+    """Set the model of each environment, as one model if a call for all equals a call for each."""
+    joined = join_models(models, world.scene.shape[1])
+    world._models = models
+    world.joined = joined is not None
+    world.model = models[0] if joined is None else joined
 
 
 def trim_scene(scene: Scene, agents: int) -> Scene:

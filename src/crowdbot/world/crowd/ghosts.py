@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from crowdbot.core import Scene
 
@@ -15,15 +16,15 @@ def hide_ghosts(scene: Scene, ghosts: Sequence[int]) -> Scene:
     >>> hide_ghosts(Scene.of([[0.0, 0.0], [1.0, 0.0]]), [1]).active.tolist()
     [[True, False]]
     """
-    return _marked(scene, ghosts, present=False) if ghosts else scene
+    return _with_presence(scene, ghosts, False) if ghosts else scene
 
 
-def show_ghosts(scene: Scene, ghosts: Sequence[int]) -> Scene:
-    """Return the scene in which ghosts, given by agent index, are present."""
-    return _marked(scene, ghosts, present=True) if ghosts else scene
+def show_ghosts(scene: Scene, ghosts: Sequence[int], before: Scene) -> Scene:
+    """Return the scene in which those ghosts are present that were present before."""
+    return _with_presence(scene, ghosts, before.active[:, list(ghosts)]) if ghosts else scene
 
 
-def _marked(scene: Scene, ghosts: Sequence[int], present: bool) -> Scene:
+def _with_presence(scene: Scene, ghosts: Sequence[int], present: Any) -> Scene:
     active = scene.active.copy()
     active[:, list(ghosts)] = present
     return scene.replace(active=active)

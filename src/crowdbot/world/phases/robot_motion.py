@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
 from crowdbot.world.robots.drive import Drive, Twists, put_robot
 
 __all__ = ["check_commands", "initial_twist", "move_robots"]
+
+STILL = Twist()
 
 
 def initial_twist(scene: Scene, robot: int) -> Twists:
@@ -21,8 +24,15 @@ def initial_twist(scene: Scene, robot: int) -> Twists:
     return Twists(forward, np.zeros_like(forward), left)
 
 
-def check_commands(commands: Mapping[int, Twist | Twists], robots: Iterable[int], count: int) -> dict[int, Twists]:
-    """Return the command of each robot for ``count`` environments.
+def check_commands(
+    commands: Mapping[int, Twist | Twists], robots: Iterable[int], active: NDArray[np.bool_]
+) -> dict[int, Twists]:
+    """Return the command of each robot in all environments; absent robots need none.
+
+    Args:
+        commands: commands by agent index.
+        robots: agent indices of all robots.
+        active: ``[E, A]`` present agents.
 
     Raises:
         InputError: a robot has no command, or an agent that is not a robot has one.
@@ -32,9 +42,9 @@ def check_commands(commands: Mapping[int, Twist | Twists], robots: Iterable[int]
         if robot not in known:
             raise InputError(f"agent {robot} has a command but is not a robot; robots are {sorted(known) or 'none'}")
     for robot in known:
-        if robot not in commands:
+        if robot not in commands and active[:, robot].any():
             raise InputError(f"robot {robot} has no command; give one in every step, Twist() to stop")
-    return {robot: Twists.of(commands[robot], count) for robot in known}
+    return {robot: Twists.of(commands.get(robot, STILL), len(active)) for robot in known}
 
 
 def move_robots(

@@ -11,9 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls
-from crowdbot.world.crowd.environment_rows import concatenate_arrays, stack_scenes, take_arrays, trim_scene
+from crowdbot.world.crowd.environment_rows import concatenate_arrays, pad_ids, stack_scenes, take_arrays, trim_scene
 from crowdbot.world.environment_time import EnvironmentTime
-from crowdbot.world.planar_environments import pad_ids
+from crowdbot.world.planar_live_changes import (
+    check_robot_place,
+    chosen_environments,
+    match_robots,
+    new_prop_name,
+    robot_environments,
+)
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
@@ -25,7 +31,7 @@ if TYPE_CHECKING:
     from crowdbot.world.robots.robot import Robot
 
     from .contact_events import BodyContactEvent, ContactForce
-    from .stage import PhysicsStage
+    from .stage import PhysicsStage, PropBody
     from .world import PhysicsWorld
 
 __all__ = ["PhysicsBatch", "physics_worlds"]
@@ -149,10 +155,51 @@ class PhysicsBatch(World):
 
     def put(self, environments: Sequence[int] | Ints, other: World) -> None:
         """Replace some environments by those of another world, which must not be used any more."""
+        for world in physics_worlds(other):
+            match_robots(self.worlds[0], world)
+        for one in self.worlds:
+            match_robots(one, physics_worlds(other)[0])
         for k, (e, world) in enumerate(zip(environments, physics_worlds(other), strict=True)):
             self.environment_time.put([e], other.environment_time.select([k]))
             self.worlds[int(e)] = world
             world.environment_time = world.environment_time.select([0])
+
+    def add_robot(
+        self,
+        robot: Robot,
+        x: float,
+        y: float,
+        heading: float = 0.0,
+        *,
+        ghost: bool = False,
+        environments: Sequence[int] | None = None,
+    ) -> int:
+        """Add a robot, at rest on the floor; see :class:`World`."""
+        check_robot_place(robot, x, y, heading)
+        chosen, agent = chosen_environments(len(self.worlds), environments), int(self.slots.max())
+        for e in sorted(range(len(self.worlds)), key=lambda e: e not in chosen):  # an error changes nothing
+            self.worlds[e].place_robot(agent, robot, (x, y, heading), ghost, e in chosen)
+        return agent
+
+    def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
+        """Remove a robot and its body; see :class:`World`."""
+        for e in robot_environments(self, agent, environments):
+            self.worlds[e].remove_robot(agent)
+
+    def add_prop(self, prop: PropBody, name: str = "") -> str:
+        """Add a prop in all environments; see :class:`World`."""
+        name = name or new_prop_name(max((world._prop_names for world in self.worlds), key=len), "")
+        for world in self.worlds:
+            new_prop_name(world._prop_names, name)
+        for world in self.worlds:
+            world.add_prop(prop, name)
+        return name
+
+    def remove_prop(self, name: str) -> None:
+        """Remove a prop in all environments that have it; see :class:`World`."""
+        holders = [world for world in self.worlds if name in world._prop_names]
+        for world in holders or self.worlds:
+            world.remove_prop(name)
 
     def pose(self, robot: int) -> Pose:
         """Return the pose of a robot in every environment."""
@@ -187,7 +234,7 @@ class PhysicsBatch(World):
 
     def environment_renderer(self, environment: int) -> Renderer:
         """Return the renderer of one environment."""
-        return self.worlds[environment].renderer
+        return self.worlds[environment].environment_renderer(0)
 
     @property
     def renderer(self) -> Renderer:

@@ -91,6 +91,11 @@ class ContactReader:
         self._number = [number for _, number, _ in rows]
         self._part = [part for _, _, part in rows]
         self._found: list[_ContactPoint] = []
+        self._sizes: Floats = np.zeros((0, len(LIMB_NAMES), 3))
+
+    def use(self, model: Any, sizes: Floats) -> None:
+        """Use a model in the following engine steps; ``sizes`` ``[S, L, 3]`` [m] are those of the limbs."""
+        self._model, self._sizes = model, sizes
 
     def look(self) -> None:
         """Record active contacts and their surface velocities, between the two halves of an engine step."""
@@ -173,7 +178,7 @@ class ContactReader:
         limb = LIMB_NAMES.index(self._part[geom])
         ends = self._swing()[self._number[geom], limb]
         axis = self._data.geom_xmat[geom].reshape(3, 3)[:, 2]
-        half = max(float(self._model.geom_size[geom, 1]), 1e-9)
+        half = max(float(self._sizes[self._number[geom], limb, 1]), 1e-9)
         along = float(np.clip(0.5 + 0.5 * (point - self._data.geom_xpos[geom]) @ axis / half, 0.0, 1.0))
         return np.asarray((1.0 - along) * ends[:3] + along * ends[3:])
 

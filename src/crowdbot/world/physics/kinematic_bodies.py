@@ -60,6 +60,10 @@ class KinematicBodies:
         other._renderer = None
         return other
 
+    def forget_renderer(self) -> None:
+        """Make the next image with a new renderer, since robots, people or props were added or removed."""
+        self._renderer = None
+
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
         found = scene_bodies(scene, self.people, self.robots, self.stage, joints=self.joints, skins=skins)

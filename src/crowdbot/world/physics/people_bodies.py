@@ -8,7 +8,7 @@ returns to the path of the crowd model with limited force.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,58 @@ CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "fo
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
+class BodyShapes(NamedTuple):
+    """Limbs and masses of the bodies, which are parts of the engine model; S bodies, L limbs.
+
+    Fields:
+        position, rotation: ``[S, L, 3]`` [m] and quaternions ``[S, L, 4]`` of the limbs relative to their bodies.
+        size: radius, half length and 0 ``[S, L, 3]`` [m].
+        bound: radius of the bounding sphere ``[S, L]`` [m].
+        softness: stiffness and damping of contacts ``[S, L, 2]``, negated.
+        mass: ``[S]`` [kg].
+        inverse_weight: inverse of mass and inertia ``[S, 2]``.
+    """
+
+    position: Floats
+    rotation: Floats
+    size: Floats
+    bound: Floats
+    softness: Floats
+    mass: Floats
+    inverse_weight: Floats
+
+    @classmethod
+    def of(cls, model: Any, geoms: Ints, bodies: Ints) -> BodyShapes:
+        """Return a copy of the shapes of a model."""
+        position, rotation, size, bound, softness = (
+            array.reshape(len(bodies), LIMB_COUNT, *array.shape[1:])
+            for array in (getattr(model, name)[geoms] for name in (*POSES, "geom_solref"))
+        )
+        return cls(position, rotation, size, bound, softness, model.body_mass[bodies], model.body_invweight0[bodies])
+
+    def copy(self) -> BodyShapes:
+        """Return an independent copy."""
+        return BodyShapes(*(array.copy() for array in self))
+
+    def write_all(self, model: Any, geoms: Ints, bodies: Ints) -> None:
+        """Write the shapes to a model."""
+        if not len(bodies):
+            return
+        self.write_poses(model, geoms)
+        model.geom_solref[int(geoms[0]) : int(geoms[-1]) + 1] = self.softness.reshape(-1, 2)
+        model.body_mass[bodies], model.body_invweight0[bodies] = self.mass, self.inverse_weight
+
+    def write_poses(self, model: Any, geoms: Ints) -> None:
+        """Write poses and sizes of the limbs to a model."""
+        rows = slice(int(geoms[0]), int(geoms[-1]) + 1)
+        for name, array in zip(POSES, self, strict=False):
+            getattr(model, name)[rows] = array.reshape(len(geoms), *array.shape[2:])
+
+
+POSES = ("geom_pos", "geom_quat", "geom_size", "geom_rbound")
+"""Arrays of an engine model with the poses and sizes of limbs, in the order of :class:`BodyShapes`."""
+
+
 class PeopleBodies:
     """Pool of bodies in the engine, assigned to nearby people.
 
@@ -52,23 +104,22 @@ class PeopleBodies:
         model, data: model and data of the engine.
         slots: number of bodies S.
         step: time step of the engine [s].
+        shapes: limbs and masses at the start; None: those of the model.
 
     Attributes:
         agent: ``[S]`` agent of each body, -1 for a free one.
         pushed: ``[S]`` whether a contact displaced the body during this step of the world.
     """
 
-    def __init__(self, model: Any, data: Any, slots: int, step: float) -> None:
-        self._model, self._data, self.step = model, data, step
+    def __init__(self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None) -> None:
+        self.step = step
+        self._model: Any = None
         self.agent = np.full(slots, -1, dtype=np.int64)
         self.pushed = np.zeros(slots, dtype=np.bool_)
         self._off = np.zeros((slots, 2))
         self._mass = np.full(slots, 70.0)
-        first = int(model.geom("person0/" + LIMB_NAMES[0]).id) if slots else 0
-        self.geoms = first + np.arange(slots * LIMB_COUNT).reshape(slots, LIMB_COUNT)
-        self.bodies = np.array([model.body(f"person{s}").id for s in range(slots)], dtype=np.int64)
-        self._place = np.array([model.joint(f"person{s}/x").qposadr[0] for s in range(slots)], dtype=np.int64)
-        self._speed = np.array([model.joint(f"person{s}/x").dofadr[0] for s in range(slots)], dtype=np.int64)
+        self.bind(model, data)
+        self.shapes = BodyShapes.of(model, self.geoms.ravel(), self.bodies) if shapes is None else shapes.copy()
         self._way = np.zeros((slots, 2))
         self._limbs: tuple[Floats, Floats] = (np.zeros((0, LIMB_COUNT, 6)), np.zeros((0, LIMB_COUNT, 6)))
         self._limbs_now = np.zeros((slots, LIMB_COUNT, 6))
@@ -83,6 +134,36 @@ class PeopleBodies:
         self.swing = np.zeros((slots, LIMB_COUNT, 6))
         """Velocities [m/s] of both ends of the limbs relative to the body."""
         self._park(np.arange(slots))
+
+    def bind(self, model: Any, data: Any) -> None:
+        """Continue in another model and state of the engine, in which the bodies have the same order."""
+        slots = len(self.agent)
+        self._data = data
+        first = int(model.geom("person0/" + LIMB_NAMES[0]).id) if slots else 0
+        self.geoms = first + np.arange(slots * LIMB_COUNT).reshape(slots, LIMB_COUNT)
+        self.bodies = np.array([model.body(f"person{s}").id for s in range(slots)], dtype=np.int64)
+        self._place = np.array([model.joint(f"person{s}/x").qposadr[0] for s in range(slots)], dtype=np.int64)
+        self._speed = np.array([model.joint(f"person{s}/x").dofadr[0] for s in range(slots)], dtype=np.int64)
+
+    def install(self, model: Any) -> None:
+        """Use a model in the following engine steps, in which nobody else uses it."""
+        self._model = model
+        self.shapes.write_all(model, self.geoms.ravel(), self.bodies)
+
+    def release(self) -> None:
+        """Use the model no longer."""
+        self._model = None
+
+    def grow(self, model: Any, data: Any, shapes: BodyShapes) -> None:
+        """Continue in a model with more bodies, whose limbs and masses at the start are ``shapes``."""
+        more = PeopleBodies(model, data, len(shapes.mass), self.step, shapes)
+        old, kept = len(self.agent), dict(self.__dict__)
+        self.__dict__.update(more.__dict__)
+        for name, array in kept.items():
+            if isinstance(array, np.ndarray) and name not in ("geoms", "bodies", "_place", "_speed"):
+                getattr(self, name)[:old] = array
+        for array, before in zip(self.shapes, kept["shapes"], strict=True):
+            array[:old] = before
 
     def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools) -> int:
         """Assign bodies to people and return the number of people without a free body.
@@ -141,6 +222,7 @@ class PeopleBodies:
         if not len(here):
             return
         self._move(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
+        self.shapes.write_poses(self._model, self.geoms.ravel())
         force = np.zeros((len(here), 2))
         if np.any(self.pushed):
             force = self._braced(here)
@@ -228,22 +310,21 @@ class PeopleBodies:
         self.pushed[slots], self._late[slots], self._fresh[slots] = False, False, True
         if not len(slots):
             return
-        self._model.geom_pos[self.geoms[slots].ravel()] = (0.0, 0.0, PARKED)
+        self.shapes.position[slots] = (0.0, 0.0, PARKED)
         for axis in (0, 1):
             self._data.qpos[self._place[slots] + axis] = 2.0 * slots if axis else 0.0
             self._data.qvel[self._speed[slots] + axis] = 0.0
             self._data.qfrc_applied[self._speed[slots] + axis] = 0.0
 
     def _embody(self, slot: int, mass: float, radius: Floats, other: float, ahead: bool) -> None:
-        model = self._model
-        body, geoms = self.bodies[slot], self.geoms[slot]
+        shapes = self.shapes
         self._mass[slot] = mass
-        model.body_mass[body] = mass
-        model.body_invweight0[body] = (1.0 / mass, 0.0)
-        model.geom_size[geoms, 0] = radius
-        for geom, region in zip(geoms, REGIONS[ahead], strict=True):
+        shapes.mass[slot] = mass
+        shapes.inverse_weight[slot] = (1.0 / mass, 0.0)
+        shapes.size[slot, :, 0] = radius
+        for limb, region in enumerate(REGIONS[ahead]):
             stiffness, damping = softness(region, mass, other, self.step)
-            model.geom_solref[geom] = (-stiffness, -damping)
+            shapes.softness[slot, limb] = (-stiffness, -damping)
 
     def _move(self, here: Ints, walk: Floats) -> None:
         """Move limbs according to the gait. Limbs of people in contact keep their pose and return slowly afterwards.
@@ -269,15 +350,15 @@ class PeopleBodies:
 
     def _pose(self, here: Ints, limbs: Floats) -> None:
         """Set the poses of the capsules relative to their bodies."""
-        model = self._model
-        geoms = self.geoms[here].ravel()
+        shapes, kept = self.shapes, (len(here), LIMB_COUNT)
         ends = limbs.reshape(-1, 6)
         axis = ends[:, 3:] - ends[:, :3]
         length = np.maximum(np.sqrt(np.sum(axis * axis, axis=1)), 1e-9)
-        model.geom_pos[geoms] = 0.5 * (ends[:, 3:] + ends[:, :3])
-        model.geom_size[geoms, 1] = 0.5 * length
-        model.geom_rbound[geoms] = 0.5 * length + model.geom_size[geoms, 0]
-        model.geom_quat[geoms] = _upright_to(axis / length[:, None])
+        half = (0.5 * length).reshape(kept)
+        shapes.position[here] = (0.5 * (ends[:, 3:] + ends[:, :3])).reshape(*kept, 3)
+        shapes.size[here, :, 1] = half
+        shapes.bound[here] = half + shapes.size[here, :, 0]
+        shapes.rotation[here] = _upright_to(axis / length[:, None]).reshape(*kept, 4)
 
 
 STEADY = 1e-4

@@ -77,11 +77,54 @@ class PeopleMotion:
             )
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))
-        seats = [CHAIR] * len(self.afoot) + [WHEELCHAIR] * len(riders)
-        self.gait = Gait(self.people, seed, seat=seats)
+        self.gait = self._new_gait(seed, range(len(agents)))
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity, self._busy("walk"))
         self.ends, self.radius = self._measured(self.state)
+
+    def grow(self, agents: int, new: Sequence[int] = ()) -> None:
+        """Add agents, of which ``new`` are people with a random adult body; nothing changes for the others.
+
+        Args:
+            agents: number of agents afterwards.
+            new: indices of the new people. The body and the gait of a person depend on the seed and this index.
+        """
+        self.row = np.pad(self.row, (0, max(0, agents - len(self.row))), constant_values=-1)
+        new = [agent for agent in new if self.row[agent] < 0]
+        if not new:
+            return
+        first, seed = len(self.afoot), self.gait.seed
+        more = [People.sample(1, stream(seed, "people", "agent", agent)) for agent in new]
+        persons, variation = self.people.persons, np.concatenate([one.variation for one in more])
+        self.people = People(
+            (*persons[:first], *(one.persons[0] for one in more), *persons[first:]),
+            np.insert(self.people.variation, first, variation),
+            np.insert(self.people.height, first, np.concatenate([one.height for one in more])),
+        )
+        numbers = list(self.gait.ids or ())
+        following = max(numbers, default=-1) + 1
+        numbers[first:first] = range(following, following + len(new))
+        self.afoot = np.concatenate([self.afoot, np.array(new, dtype=np.int64)])
+        self.agents = np.insert(self.agents, first, new)
+        self.row[self.agents] = np.arange(len(self.agents))
+        self.gait = self._new_gait(seed, numbers)
+        self._start_rows(slice(first, first + len(new)))
+
+    def _new_gait(self, seed: int, numbers: Sequence[int]) -> Gait:
+        seats = [CHAIR] * len(self.afoot) + [WHEELCHAIR] * (len(self.agents) - len(self.afoot))
+        return Gait(self.people, seed, ids=list(numbers), seat=seats)
+
+    def _start_rows(self, rows: slice) -> None:
+        """Insert the states of new people, who stand at the origin until they are present."""
+        count = len(self.agents)
+        fresh = self.gait.start(np.zeros((count, 2)), np.zeros(count))
+        ends, radius = self._measured(fresh)
+
+        def joined(old: Floats, start: Floats) -> Floats:
+            return np.concatenate([old[: rows.start], start[rows], old[rows.start :]])
+
+        self.state = type(self.state)(*(joined(old, new) for old, new in zip(self.state, fresh, strict=True)))
+        self.ends, self.radius = joined(self.ends, ends), joined(self.radius, radius)
 
     def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
         """Restart at the poses in ``scene``, with one activity for all or one for each person.

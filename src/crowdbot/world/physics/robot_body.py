@@ -40,7 +40,24 @@ class RobotBody:
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
         self.robot, self.prefix, self.step = robot, prefix, step
-        self._model, self._data, self._mj = model, data, engine()
+        self._mj = engine()
+        self.bind(model, data)
+        units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
+        self._step_robots = [joint for joint in units[0] if joint in self._wheels]
+        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
+        self._steers = any(wheel.steering for wheel in robot.wheels)
+        self._delay = CommandDelay(robot.latency)
+        self._pending: tuple[Pending, ...] = ()
+        self._current: Twist | Twists = STILL
+        self._asked: Twist | Twists = STILL
+        self._forced: Twist | Twists | None = None
+        self._aim = Twists.of(STILL, 1)
+        self._held: dict[str, float] = {}
+
+    def bind(self, model: Any, data: Any) -> None:
+        """Continue in another model and state of the engine."""
+        robot, prefix = self.robot, self.prefix
+        self._model, self._data = model, data
         self.body = int(model.body(prefix + robot.model.root).id)
         self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
         self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
@@ -48,19 +65,11 @@ class RobotBody:
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
-        self._steers = any(wheel.steering for wheel in robot.wheels)
-        units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
-        self._step_robots = [joint for joint in units[0] if joint in self._wheels]
-        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
+
+    def prepare(self) -> None:
+        """Set posture and weight of the robot in a new model."""
         if self._servo:  # the engine takes the mean over three directions; a planar base lacks one
-            model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
-        self._delay = CommandDelay(robot.latency)
-        self._pending: tuple[Pending, ...] = ()
-        self._current: Twist | Twists = STILL
-        self._asked: Twist | Twists = STILL
-        self._forced: Twist | Twists | None = None
-        self._aim = Twists.of(STILL, 1)
-        self._held: dict[int, float] = {}
+            self._model.body_invweight0[self.body, 0] = 1.0 / self.robot.model.mass
         self._posed()
 
     @property
@@ -109,9 +118,9 @@ class RobotBody:
 
     def drive(self) -> None:
         """Send the command for the next engine step to the motors, after delay, limits and ramps."""
-        for index, position in self._held.items():
-            self._data.qpos[self._model.jnt_qposadr[index]] = position
-            self._data.qvel[self._model.jnt_dofadr[index]] = 0.0
+        for name, position in self._held.items():
+            joint = self._model.joint(name)
+            self._data.qpos[joint.qposadr[0]], self._data.qvel[joint.dofadr[0]] = position, 0.0
         now = self._asked
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
@@ -160,7 +169,7 @@ class RobotBody:
         if motor >= 0 and self._model.actuator_biasprm[motor, 1] != 0.0:
             self._data.ctrl[motor] = position
         else:
-            self._held[self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint)] = position
+            self._held[self.prefix + joint] = position
 
     def joints(self) -> dict[str, tuple[float, float]]:
         """Return position and velocity of each joint with one coordinate."""

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Element, Walls
+from crowdbot.core import Element, InputError, Walls
 from crowdbot.world.urdf.geoms import row
 
 from .layers import GROUND, STANDING
-from .stage import PhysicsStage
+from .stage import AbsentProp, PhysicsStage, PropBody
 
-__all__ = ["add_rings", "outline_props", "scenery"]
+__all__ = ["add_rings", "outline_props", "prop_outline", "remove_ring", "scenery"]
 
 Floats = NDArray[np.float64]
 THIN, THICK = 0.01, 0.025
@@ -43,7 +43,7 @@ def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Elem
             board = _board(walls.start[edge], walls.end[edge], stage.wall_height, thin=len(ring) == 2)
             name = f"wall/{number}.{k}"
             world.append(Element("geom", {"name": name, "rgba": rgba, "group": "0", **board, **STANDING}))
-    world += [prop.body(f"prop{k}") for k, prop in enumerate(stage.props)]
+    world += [prop.body(f"prop{k}") for k, prop in enumerate(stage.props) if not isinstance(prop, AbsentProp)]
     return assets, world
 
 
@@ -64,17 +64,52 @@ def add_rings(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
     )
 
 
+def remove_ring(walls: Walls, ring: Floats) -> Walls:
+    """Return walls without a ring that was added.
+
+    >>> ring = np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0]])
+    >>> len(remove_ring(add_rings(Walls.of([[(0, 0), (1, 0)]]), (ring,)), ring))
+    2
+
+    Raises:
+        InputError: the walls do not have this ring.
+    """
+    points = Walls.of([ring]).start
+    for edges in _rings(walls):
+        if np.array_equal(walls.start[edges], points):
+            kept = np.setdiff1d(np.arange(len(walls)), edges)
+            number = np.zeros(len(walls), dtype=np.int64)
+            number[kept] = np.arange(len(kept))
+            return Walls(
+                walls.start[kept], walls.end[kept], number[walls.previous[kept]], number[walls.next[kept]],
+                walls.convex[kept],
+            )  # fmt: skip
+    raise InputError("the walls have no such outline of a prop")
+
+
+def prop_outline(prop: PropBody) -> Floats:
+    """Return the outline ``[N, 2]`` [m] of a prop at its place, also of a movable one."""
+    ring = prop.outline()
+    return _square(prop, (prop.x, prop.y), prop.heading) if ring is None else ring
+
+
+def _square(prop: PropBody, place: Sequence[float] | Floats, turn: float) -> Floats:
+    half = 0.5 * float(getattr(prop, "size", 1.0))
+    corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    cos, sin = np.cos(turn), np.sin(turn)
+    return np.asarray(corners @ np.array([[cos, sin], [-sin, cos]]) + place)
+
+
 def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats]) -> Walls:
     """Return walls with the outlines of all props; ``frames`` ``[4, 4]`` are those of movable props by number."""
     rings = []
     for number, prop in enumerate(stage.props):
         ring = prop.outline()
+        if ring is None and not prop.movable:
+            continue
         if ring is None:
-            matrix, half = frames[number], 0.5 * float(getattr(prop, "size", 1.0))
-            corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-            turn = np.arctan2(matrix[1, 0], matrix[0, 0])
-            cos, sin = np.cos(turn), np.sin(turn)
-            ring = corners @ np.array([[cos, sin], [-sin, cos]]) + matrix[:2, 3]
+            matrix = frames[number]
+            ring = _square(prop, matrix[:2, 3], np.arctan2(matrix[1, 0], matrix[0, 0]))
         rings.append(ring)
     return add_rings(walls, tuple(rings))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,16 @@ from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
 
-__all__ = ["CubeBody", "LightSource", "PhysicsStage", "PropBody", "TableBody", "TreeBody"]
+__all__ = [
+    "AbsentProp",
+    "CubeBody",
+    "LightSource",
+    "PhysicsStage",
+    "PropBody",
+    "TableBody",
+    "TreeBody",
+    "without_prop",
+]
 
 Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
@@ -173,6 +182,22 @@ class TreeBody(PropBody):
 
 
 @dataclass(frozen=True)
+class AbsentProp(PropBody):
+    """The place of a prop that was removed: the numbers of the other props do not change."""
+
+    x: float = 0.0
+    y: float = 0.0
+
+    def body(self, name: str) -> Element:
+        """Return an empty body."""
+        return Element("body", {"name": name})
+
+    def outline(self) -> Floats | None:
+        """Return None: people do not avoid it."""
+        return None
+
+
+@dataclass(frozen=True)
 class LightSource:
     """A downward light at ``x``, ``y``, ``z`` [m] with a brightness from 0 to 1.
 
@@ -233,3 +258,16 @@ class PhysicsStage:
     def outlines(self) -> tuple[Floats, ...]:
         """Return the outlines of props that people avoid."""
         return tuple(ring for prop in self.props if (ring := prop.outline()) is not None)
+
+
+def without_prop(stage: PhysicsStage, number: int) -> PhysicsStage:
+    """Return the stage without a prop; the numbers of the others do not change.
+
+    >>> stage = PhysicsStage(props=(CubeBody(1.0, 0.0), TableBody(3.0, 0.0)))
+    >>> [type(prop).__name__ for prop in without_prop(stage, 0).props], len(without_prop(stage, 1).props)
+    (['AbsentProp', 'TableBody'], 1)
+    """
+    props = [AbsentProp() if k == number else prop for k, prop in enumerate(stage.props)]
+    while props and isinstance(props[-1], AbsentProp):
+        props.pop()
+    return replace(stage, props=tuple(props))

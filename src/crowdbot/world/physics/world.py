@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
+from crowdbot.core import Bodies, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
-from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.rendering.camera import CameraImages, SceneCamera
+from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
@@ -24,15 +22,15 @@ from crowdbot.world.world import Contact
 
 from .colliders import scene_bodies
 from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
-from .contacts import ContactBody, ContactReader
+from .contacts import ContactBody
 from .engine import engine
-from .mjcf_model import build_mjcf_model
+from .engine_models import RobotStart, motors_of
 from .nearby_people import movers, people_near
-from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
-from .robot_body import RobotBody
+from .rigid_world import SLOTS, RigidWorld
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
+from .world_bodies import WorldBodies
 from .world_checks import check_arguments
 
 __all__ = ["PhysicsWorld"]
@@ -44,11 +42,9 @@ NEAR = 0.8
 """A person within this clearance [m] of a robot or a movable prop gets a body in the engine."""
 FAST = 3.0
 """Largest assumed closing speed [m/s] within one step."""
-SETTLING = 1.0
-"""Time [s] for which robots settle on the floor before the start."""
 
 
-class PhysicsWorld(PlanarWorld):
+class PhysicsWorld(RigidWorld):
     """Planar crowd with rigid bodies for robots, nearby people, walls and props (MuJoCo); E = 1.
 
     The crowd supports all options of :class:`PlanarWorld` and is bit-identical to it until the first contact. Commands
@@ -114,64 +110,25 @@ class PhysicsWorld(PlanarWorld):
     ) -> None:
         stage = stage or PhysicsStage()
         check_arguments(scene, robots, dt, physics_dt, slots)
+        self._slots_fixed = slots is not None
         self._steps = round(dt / physics_dt)
         self._outlined = add_rings(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
+        self._prop_names = [f"prop{number}" for number in range(len(stage.props))]
         self.people = PeopleMotion(self.scene, persons, people, seed, riders)
         self._plane: tuple[Scene, Scene] | None = None
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
-        self._renderer: Renderer | None = None
-        self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
+        self._renderers: dict[bool, Renderer] = {}
+        self._compose(robots, min(len(persons), SLOTS) if slots is None else slots, motors)
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All contact events so far, ordered by start time."""
         return self._contact_tracker.contact_events
-
-    def command(self, robot: int, joints: Mapping[str, float]) -> None:
-        """Set the commands of joint motors of a robot; they stay in force until changed.
-
-        Raises:
-            InputError: the agent is not a robot, a joint has no motor or is a wheel, or a value is not finite.
-        """
-        self.robot_body(robot).command(joints)
-
-    def robot_body(self, robot: int) -> RobotBody:
-        """Return the body of a robot.
-
-        Raises:
-            InputError: the agent is not a robot.
-        """
-        if robot not in self.robot_bodies:
-            raise InputError(f"agent {robot} is not a robot; robots are {sorted(self.robot_bodies) or 'none'}")
-        return self.robot_bodies[robot]
-
-    def render(
-        self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
-    ) -> CameraImages:
-        """Return the current images of a camera, with the skins of people. No display is needed.
-
-        Raises:
-            InputError: no OpenGL backend works, or the robot or link of the camera is unknown.
-        """
-        return self.renderer.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
-
-    @property
-    def renderer(self) -> Renderer:
-        """Renderer of the current state, also for cameras of :mod:`crowdbot.sensors`; see :meth:`Renderer.render`."""
-        if self._renderer is None:
-            robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
-            self._renderer = Renderer.of_physics(self.built, robots, self.stage, self.people, self.scene)
-        self._renderer.show_engine(self.scene, self.data.qpos)
-        return self._renderer
-
-    def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer; see :class:`World`."""
-        return self.renderer
 
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
@@ -190,25 +147,15 @@ class PhysicsWorld(PlanarWorld):
 
         See :class:`World`.
         """
+        if robot in self.ghosts:
+            return np.array([math.inf])
         depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
-
-    def copy(self) -> PhysicsWorld:
-        """Return an independent world in the same state, on a free clock."""
-        shared = [self._mj, self.built, self.stage, self.router, self.people.people, self.people.gait, self.model]
-        shared += [body.robot for body in self.robot_bodies.values()]
-        renderer, self._renderer = self._renderer, None
-        try:
-            other = copy.deepcopy(self, {id(one): one for one in shared})
-        finally:
-            self._renderer = renderer
-        other.environment_time = other.environment_time.select([0])
-        return other
 
     def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
-            self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
+            self._plane = (self.scene, hide_ghosts(self.scene, self.ghosts).replace(walls=self._outlines()))
         return self._plane[1]
 
     def embody(
@@ -225,31 +172,21 @@ class PhysicsWorld(PlanarWorld):
         """Start the activities of people; their bodies, robots and stage are those of the constructor."""
         self._begin_activity(activity)
 
-    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
-        for agent, robot in robots.items():
-            self.robot_body(agent).robot = robot
-
     def pose_people(self) -> None:
         """Do nothing: a step moves the bodies of people."""
 
     def bodies(self, skins: int | None = None) -> Bodies:
         """Return the current shapes for range sensors; ``skins`` is a level of detail, see :func:`scene_bodies`."""
-        frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.robot_bodies.items()}
-        robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
+        frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.rigid.main.robots.items()}
+        robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
         moved = {number: self.prop(number) for number in self._movable}
-        return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
+        scene = hide_ghosts(self.scene, self.ghosts)
+        return scene_bodies(scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
     def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
-        return self.scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
-
-    def prop(self, number: int) -> Floats:
-        """Return the frame ``[4, 4]`` of a prop in the world."""
-        body = self.data.body(f"prop{number}")
-        found = np.eye(4)
-        found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
-        return found
+        scene = hide_ghosts(self.scene, self.ghosts)
+        return scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
     def _outlines(self) -> Walls:
         if not self._movable:
@@ -263,39 +200,22 @@ class PhysicsWorld(PlanarWorld):
         return command  # RobotBody applies the delay, in engine steps
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
-        self._mj = engine()
-        self.built = build_mjcf_model(self.scene, self.stage, robots, slots, motors)
-        self.engine_model = self.built.load(self.physics_dt)
-        self.data = self._mj.MjData(self.engine_model)
-        both = self.engine_model, self.data
-        prefixes = self.built.prefixes
-        self.robot_bodies = {
-            a: RobotBody(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())
+        place, heading = self.scene.position[0].tolist(), self.scene.heading[0].tolist()
+        starts = {
+            a: RobotStart(a, robot, place[a][0], place[a][1], heading[a], motors_of(a, motors))
+            for a, robot in sorted(robots.items())
         }
-        self._people_bodies = PeopleBodies(*both, slots, self.physics_dt)
-        self._contact_reader = ContactReader(
-            *both, prefixes, self._people_bodies.agent_of, self._people_bodies.swing_of
-        )
+        walls = self.scene.walls
+        self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
         self._contact_tracker = BodyContactTracker(
             self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
         )
-        self._movable = [k for k, prop in enumerate(self.stage.props) if prop.movable]
-        self._settle()
-
-    def _settle(self) -> None:
-        """Let robots come to rest on the floor, at their initial poses."""
-        for agent in self.robot_bodies:
-            self._put(agent, self.scene)
-        self._mj.mj_step(self.engine_model, self.data, round(SETTLING / self.physics_dt))
-        for agent in self.robot_bodies:
-            self._put(agent, self.scene)
-        self.data.time = 0.0
-        self._mj.mj_forward(self.engine_model, self.data)
+        self._at = {a: (start.x, start.y, start.heading) for a, start in starts.items()}
 
     def _put(self, agent: int, scene: Scene) -> None:
         x, y = scene.position[0, agent]
         self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
-        self._at = {**getattr(self, "_at", {}), agent: (float(x), float(y), float(scene.heading[0, agent]))}
+        self._at[agent] = (float(x), float(y), float(scene.heading[0, agent]))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         earlier, crowd = super()._step_crowd(before.replace(walls=self._outlined))
@@ -320,8 +240,11 @@ class PhysicsWorld(PlanarWorld):
         gait, ends = self._prepared(before, after)
         end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
-        for k in range(self._steps):
-            self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+        with self.rigid.engine_steps():
+            for k in range(self._steps):
+                self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+        for ghost in self.rigid.ghosts.values():
+            ghost.step_alone(self._steps)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
         if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
@@ -345,7 +268,7 @@ class PhysicsWorld(PlanarWorld):
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
         near, mass, ahead = people_near(
-            scene, persons, movers(self.robot_bodies, self.stage, self._movable, self.data), NEAR + FAST * self.dt
+            scene, persons, movers(self.rigid.main.robots, self.stage, self._movable, self.data), NEAR + FAST * self.dt
         )
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
@@ -353,13 +276,14 @@ class PhysicsWorld(PlanarWorld):
         )
 
     def _substep(self, share: float, time: float) -> None:
-        for robot_bodies in self.robot_bodies.values():
+        mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
+        for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
-        self._mj.mj_step1(self.engine_model, self.data)
-        self._contact_reader.look()
-        self._mj.mj_step2(self.engine_model, self.data)
-        contacts = self._contact_reader.read()
+        mj.mj_step1(model, data)
+        reader.look()
+        mj.mj_step2(model, data)
+        contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)
         for contact in contacts:
@@ -370,9 +294,6 @@ class PhysicsWorld(PlanarWorld):
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
         """Return the scene with simulated robots and pushed people, and whether anyone was pushed."""
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
-        self._mj.mj_kinematics(self.engine_model, self.data)
-        self._mj.mj_comPos(self.engine_model, self.data)
-        self._mj.mj_comVel(self.engine_model, self.data)
         for agent, robot_bodies in self.robot_bodies.items():
             pose, twist = robot_bodies.pose, robot_bodies.twist
             self.twists[agent] = twist
