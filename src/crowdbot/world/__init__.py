@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
+    from .planar_environments import planar_world
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -121,6 +122,7 @@ _LAZY = {
     "join_worlds": "environments",
     "move_agent": "live_changes",
     "permitted_speed": "physics.body_region_limits",
+    "planar_world": "planar_environments",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
     "read_urdf": "urdf",
@@ -198,6 +200,7 @@ __all__ = [
     "join_worlds",
     "move_agent",
     "permitted_speed",
+    "planar_world",
     "put_environments",
     "quaternion",
     "read_urdf",
