@@ -143,7 +143,7 @@ def stream_states(seeds: Ints, paths: Sequence[Sequence[str | int]]) -> Words:
         paths: K paths.
 
     >>> states = stream_states(np.array([7, 8]), [("spawner", 3), ("crowd",)])
-    >>> draw_uniform(states[:, 0], 2)[1, 1] == stream(8, "spawner", 3).random(2)[1]
+    >>> bool(draw_uniform(states[:, 0], 2)[1, 1] == stream(8, "spawner", 3).random(2)[1])
     True
     """
     texts = [stream_text(*path).encode() for path in paths]
