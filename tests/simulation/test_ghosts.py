@@ -13,7 +13,7 @@ from crowdbot.navigation import Navigator, Observation
 from crowdbot.sensors import Scan
 from crowdbot.simulation import Simulation, apply_overrides, simulate
 from crowdbot.simulation.termination import goal_zones
-from crowdbot.simulation.world_builder import begin_world, build_world
+from crowdbot.simulation.world_template import WorldTemplate
 from crowdbot.trials import Planner, Trial, builtin_trials, expand_sweeps, load_trial, parse_trial, trial_xml
 from crowdbot.world import PhysicsWorld, PlanarWorld
 from samples import sample
@@ -67,9 +67,9 @@ def positions(simulation: Simulation, seconds: float, robots: int) -> np.ndarray
 def without_robots(trial: Trial) -> Simulation:
     """Return the simulation of a trial without its robots, with everybody at the same place and with the same id."""
     empty = dataclasses.replace(trial, robots=())
-    people = begin_world(trial, 0)[1]
+    people = WorldTemplate(trial).begin([0])[1]
     simulation = Simulation(empty, 0)
-    simulation.world, simulation.people = build_world(empty, people, 0)[0], people
+    simulation.world, simulation.people = WorldTemplate(empty).build_alone(people, 0)[0], people
     simulation._ways_out = goal_zones(people)
     simulation._set_around()
     simulation.world._traffic.following += len(trial.robots)

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .neighbors import CHUNK, SMALL, Neighbors
+    from .random_streams import RandomStreams, draw_uniform, next_uniform, stream_states
     from .workers import each, run_saved_jobs
 
 __getattr__, __dir__ = lazy_exports(
@@ -59,6 +60,7 @@ __getattr__, __dir__ = lazy_exports(
         "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
+        "random_streams": ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"],
         "workers": ["each", "run_saved_jobs"],
         "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
     },
@@ -92,6 +94,7 @@ __all__ = [
     "Path2D",
     "PerAgent",
     "Pose",
+    "RandomStreams",
     "RobotError",
     "Scene",
     "Skins",
@@ -112,6 +115,7 @@ __all__ = [
     "dense",
     "did_you_mean",
     "draw_svg",
+    "draw_uniform",
     "each",
     "explain_write_errors",
     "find_class",
@@ -123,6 +127,7 @@ __all__ = [
     "kernel",
     "lock_output",
     "nearest_name",
+    "next_uniform",
     "notify_compiling",
     "parameter",
     "parameters",
@@ -143,6 +148,7 @@ __all__ = [
     "source_digest",
     "sources_of",
     "stream",
+    "stream_states",
     "unread_fields",
     "whole_ticks",
     "without_running_code",

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import importlib
 import os
 import shutil
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeVar, cast, overload
 
 __all__ = ["cache_folder", "is_cold", "kernel", "prange"]
@@ -98,10 +100,28 @@ def _load_numba() -> tuple[Any, Any]:
     import numba
     from numba.core import config
 
+    _import_array_functions()
+
     from .threading_layer import prefer_safe_layers
 
     prefer_safe_layers()
     return numba, config
+
+
+def _import_array_functions() -> None:
+    """Import the array functions of numba without the linear algebra of SciPy, which takes longer than numba itself.
+
+    numba imports it only to know that it exists. It is required by this package, and a kernel that multiplies matrices
+    loads it when it is compiled.
+    """
+    name = "scipy.linalg.cython_blas"
+    if name in sys.modules:
+        return
+    sys.modules[name] = ModuleType(name)
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        del sys.modules[name]
 
 
 @functools.cache

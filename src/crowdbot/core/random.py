@@ -6,7 +6,7 @@ import hashlib
 
 import numpy as np
 
-__all__ = ["stream"]
+__all__ = ["stream", "stream_text"]
 
 
 def stream(seed: int, *path: str | int) -> np.random.Generator:
@@ -22,6 +22,15 @@ def stream(seed: int, *path: str | int) -> np.random.Generator:
     >>> a == stream(7, "spawner", 3).random(), a == stream(7, "spawner", 4).random()
     (True, False)
     """
-    text = "\x1f".join([repr(int(seed)), *(f"{type(p).__name__}:{p}" for p in path)])
+    text = repr(int(seed)) + stream_text(*path)
     digest = hashlib.blake2b(text.encode(), digest_size=16).digest()
     return np.random.Generator(np.random.PCG64(int.from_bytes(digest, "little")))
+
+
+def stream_text(*path: str | int) -> str:
+    """Return the text that follows the seed in the hashed text of a stream.
+
+    >>> stream_text("spawner", 3)
+    '\\x1fstr:spawner\\x1fint:3'
+    """
+    return "".join(f"\x1f{type(p).__name__}:{p}" for p in path)

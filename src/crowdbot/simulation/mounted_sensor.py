@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Pose, Scene, SpatialPose, stream
+from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, Scene, SpatialPose
 from crowdbot.sensors import (
     Reading,
     SensorSchedule,
@@ -103,7 +103,7 @@ class MountedSensor:
     mount: Mount
     placed: tuple[float, float, float, float, float, float]
     schedule: SensorSchedule
-    rngs: list[np.random.Generator]
+    rngs: RandomStreams
     space: bool
     together: bool
     state: Any
@@ -201,7 +201,7 @@ class MountedSensor:
         scene, pose = around.flat, self.pose(agent, around)
         if not every:
             scene, pose = scene.environments(due), _select_pose(pose, due)
-        count, rngs = len(self.rngs), [self.rngs[e] for e in due]
+        count, rngs = len(self.rngs), self.rngs.rows(due.tolist())
         state = self.state if every or self.state is None else take_state_rows(self.state, due)
         view = SensorView(scene.without(agent), pose)
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
@@ -247,7 +247,7 @@ class MountedSensor:
     def select(self, environments: Ints) -> MountedSensor:
         """Return an independent sensor with some environments."""
         other = copy.copy(self)
-        other.rngs = [copy.deepcopy(self.rngs[e]) for e in environments]
+        other.rngs = self.rngs.select(environments.tolist())
         if self.together:
             other.state = take_state_rows(self.state, environments)
         else:
@@ -267,11 +267,10 @@ class MountedSensor:
         """Replace some environments by those of another simulation of the same trial."""
         if self.together:
             self.state = put_state_rows(self.state, environments, other.state, len(self.rngs))
-        for k, e in enumerate(environments.tolist()):
-            self.rngs[e] = other.rngs[k]
-            self.latest[e], self.latest_row[e] = other.latest[k], other.latest_row[k]
-            if not self.together:
-                self.state[e] = other.state[k]
+        self.rngs.put(environments.tolist(), other.rngs)
+        self.latest[environments], self.latest_row[environments] = other.latest, other.latest_row
+        for k, e in enumerate(environments.tolist() if not self.together else ()):
+            self.state[e] = other.state[k]
         if self.moved is not None or other.moved is not None:
             self.move(environments, other.placed if other.moved is None else other.moved)
         kept = []
@@ -312,7 +311,7 @@ def mounted_sensors(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
             robot.sensor_pose(mount),
             robot.schedule(mount, world.clock),
-            [stream(seed, "sensor", robot.name, mount.name) for seed in seeds],
+            RandomStreams(seeds, "sensor", robot.name, mount.name),
             space,
             own and not space and not sensor.renders and not world.walls_fixed,
             None,

@@ -28,7 +28,7 @@ from crowdbot.metrics import HOLD
 from crowdbot.navigation import Observation
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import join_worlds, put_environments, select_environments, step_environments
+from crowdbot.world import put_environments, select_environments, step_environments
 
 from .failure import RunFailure
 from .phases.decision import let_decide
@@ -37,7 +37,8 @@ from .phases.sensing import RobotReadings, read_sensors
 from .robot_control import RobotControl
 from .step_record import RobotContact, StepRecord
 from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, note_events
-from .world_builder import begin_world, check_clock, environment_index
+from .world_builder import check_clock, environment_index
+from .world_template import WorldTemplate
 from .world_view import WorldView
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ NONE, COLLISION, SUCCESS = 0, 1, 2
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
+Seeds = int | Sequence[int]
 
 
 class Simulation:
@@ -63,7 +65,7 @@ class Simulation:
     is bit-identical to a simulation of its seed alone. Single environments can be restarted at any time.
 
     Args:
-        trial: the trial, without sweeps.
+        trial: the trial, without sweeps, or its template.
         seeds: one seed, or one for each environment.
         clock: a clock at tick 0 with the time step of the trial; None: a free clock.
         posed: compute body poses for rendering even if no sensor needs them.
@@ -93,20 +95,18 @@ class Simulation:
     """
 
     def __init__(
-        self, trial: Trial, seeds: int | Sequence[int] = 0, clock: Clock | None = None, *, posed: bool = False
+        self, trial: Trial | WorldTemplate, seeds: Seeds = 0, clock: Clock | None = None, *, posed: bool = False
     ) -> None:
-        self.trial, self._posed = trial, posed
+        self._template = trial if isinstance(trial, WorldTemplate) else WorldTemplate(trial, posed)
+        self.trial = trial = self._template.trial
         self.seeds = [int(seeds)] if isinstance(seeds, int | np.integer) else [int(seed) for seed in seeds]
         if not self.seeds:
             raise InputError("a simulation needs at least one seed, such as seeds=range(8)")
-        begun = [begin_world(trial, seed, posed) for seed in self.seeds]
-        self.people = begun[0][1]
-        self.world = join_worlds([world for world, _ in begun])
+        self.world, self.people = self._template.begin(self.seeds)
         self._set_around()
-        count = len(self.seeds)
+        count, first = len(self.seeds), trial.people
         self.robots = [
-            RobotControl.of(trial, robot, trial.people + k, self.world, self.seeds)
-            for k, robot in enumerate(trial.robots)
+            RobotControl.of(trial, one, first + k, self.world, self.seeds) for k, one in enumerate(trial.robots)
         ]
         self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
@@ -117,8 +117,7 @@ class Simulation:
         self._told = np.zeros(count, dtype=np.int64)
         self._ways_out = goal_zones(self.people)
         if clock is not None:
-            check_clock(clock, self.world.clock)
-            self.world.clock = clock
+            self.world.clock = check_clock(clock, self.world.clock)
 
     def begin(self) -> None:
         """Run part 6 of tick 0 in the environments in which it has not run."""
@@ -273,7 +272,8 @@ class Simulation:
             InputError: an environment does not exist or is given twice, or there is not one seed for each.
         """
         index = environment_index(environments, self.count, len(seeds))
-        new = Simulation(self.trial, seeds, posed=self._posed)
+        self._template = self._template.of_trial(self.trial)
+        new = Simulation(self._template, seeds)
         new.begin()
         kept = np.zeros(self.count, dtype=np.bool_)
         kept[index] = True

@@ -1,68 +1,31 @@
-"""Construction of the initial world of a trial."""
+"""Parts of the initial world of a trial."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, Scene, TrialError, Walls
+from crowdbot.core import Clock, InputError, Scene, Walls
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import DriveLimits
 from crowdbot.trials import (
     Agent,
     Crowds,
     InitialPeople,
-    PeopleAppearance,
+    PeopleBatch,
     RecordedPeople,
-    RobotSpec,
     Trial,
-    crowd_names,
-    element_word,
-    expand_sweeps,
     own,
-    people_appearance,
-    place,
 )
-from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
+from crowdbot.world import JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
-from .mounted_sensor import spatial
-
-__all__ = ["begin_world", "build_world", "check_clock", "environment_index", "limits_of", "own_walls", "start_scene"]
-
-
-def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWorld, InitialPeople]:
-    """Return the world of a trial at its start, with bodies of people where they are needed, and the people.
-
-    Args:
-        trial, seed: the trial and its seed.
-        posed: add bodies even if no sensor needs them.
-
-    Raises:
-        TrialError: people cannot be placed with this seed.
-    """
-    recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
-    people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
-    if problems:
-        what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
-        raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
-    world, figures = build_world(trial, people, seed)
-    if posed and figures is None:
-        figures = people_appearance(trial, people, world.scene.shape[1], seed)
-    if figures is not None:
-        first, stage = trial.people, trial.stage
-        world.embody(
-            {first + k: robot.body for k, robot in enumerate(trial.robots)},
-            stage.physical(),
-            figures.people,
-            riders=figures.riders,
-            activity=figures.activity,
-            walls=own_walls(trial),
-            seed=seed,
-        )
-    return world, people
+__all__ = [
+    "check_clock", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of", "set_off",
+    "start_scene", "start_scenes",
+]  # fmt: skip
 
 
 def environment_index(environments: Sequence[int] | NDArray[Any], count: int, new: int | None = None) -> Any:
@@ -86,13 +49,14 @@ def environment_index(environments: Sequence[int] | NDArray[Any], count: int, ne
     return index.astype(np.int64)
 
 
-def check_clock(clock: Clock, own: Clock) -> None:
-    """Raise :class:`InputError` unless a clock is at tick 0 and has the time step of the trial."""
+def check_clock(clock: Clock, own: Clock) -> Clock:
+    """Return a clock. Raise :class:`InputError` unless it is at tick 0 and has the time step of the trial."""
     if clock.tick or clock.step_ns != own.step_ns:
         raise InputError(
             f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial starts at tick 0 with"
             f" steps of {own.dt} s"
         )
+    return clock
 
 
 def own_walls(trial: Trial) -> Walls | None:
@@ -100,97 +64,36 @@ def own_walls(trial: Trial) -> Walls | None:
     return trial.stage.as_walls(props=False) if trial.stage.props else None
 
 
-def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarWorld, PeopleAppearance | None]:
-    """Return the initial world of a trial: people, robots, then free slots for people who enter.
-
-    Bodies of people are included if the world has bodies or a sensor needs them.
-
-    Ids are assigned to people first, then to robots, then to people who enter; initial ids equal indices. Free slots
-    have negative ids.
-    """
-    if trial.sweeps:
-        count = len(expand_sweeps(trial))
-        raise TrialError(f"trial {trial.name!r} has {count} variants in its sweeps; run one of them")
-    sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
-    first = len(people)
-    scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
-    there = first + len(trial.robots)
-    router = None if trial.routing is None else trial.routing.router(scene.walls)
-    figures = people_appearance(trial, people, scene.shape[1], seed) if _embodied(trial) else None
-    journeys = _journeys(trial, people, scene.shape[1])
-    whole: dict[str, Any] = {
-        "dt": trial.step,
-        "seed": seed,
-        "robot_margin": trial.robot_margin,
-        "router": router,
-        "contact": None if trial.contact is None else trial.contact.bodies(),
-        "limits": None if trial.limits is None else trial.limits.limits(),
-        "journeys": journeys,
-        "sources": sources,
-        "exits": [way.out() for way in trial.exits],
-        "portals": [portal.gate() for portal in trial.portals],
-        "script": _script(people),
-        "heading_jitter": trial.heading_jitter,
-        "substeps": trial.substeps,
-        "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
-    }
-    model = _model(trial, people, scene.shape[1], seed)
-    robots = {first + k: robot for k, robot in enumerate(trial.robots)}
-    if trial.world == "physics":
-        world = _with_bodies(trial, scene, model, robots, figures, whole)
-    else:
-        latency = {agent: robot.latency for agent, robot in robots.items()}
-        drives = {agent: robot.drive for agent, robot in robots.items()}
-        ghosts = [agent for agent, robot in robots.items() if robot.ghost]
-        world = PlanarWorld(scene, model, drives, latency=latency, ghosts=ghosts, **whole)
-    walkers = first - len(people.walks)
-    if walkers and (router or journeys):
-        world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
-    return world, figures
-
-
-def _embodied(trial: Trial) -> bool:
-    """Return whether anything needs the bodies of people."""
-    if trial.world == "physics":
-        return True
-    kind = trial.bodies or PlanarWorld.people_shape
-    return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
-
-
-def _with_bodies(
-    trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, RobotSpec], figures: Any, whole: dict[str, Any]
-) -> PlanarWorld:
-    from crowdbot.world import PhysicsWorld
-
-    stage = trial.stage
-    return PhysicsWorld(
-        scene.replace(walls=stage.as_walls(props=False), wall_height=stage.wall_height),
-        model,
-        {agent: robot.body for agent, robot in robots.items()},
-        stage=stage.physical(),
-        people=figures.people,
-        riders=figures.riders,
-        physics_dt=trial.physics_step,
-        ghosts=[agent for agent, robot in robots.items() if robot.ghost],
-        **whole,
-    )
-
-
 def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
     """Return the initial scene, E = 1: people walking towards their goals, robots at rest, free slots."""
-    robots = trial.robots
+    return start_scenes(trial, PeopleBatch.of([people]), np.array([spare]), trial.stage.as_walls())
+
+
+def start_scenes(trial: Trial, people: PeopleBatch, spare: NDArray[np.int64], walls: Walls) -> Scene:
+    """Return the initial scene of E environments.
+
+    Args:
+        trial: the trial.
+        people: the people at the beginning.
+        spare: ``[E]`` number of free slots for people who enter. Where there are more, the others pad the arrays and
+            are external.
+        walls: walls of the stage.
+    """
+    robots, most = trial.robots, int(spare.max())
     away = people.goal - people.position
-    distance = np.hypot(away[:, 0], away[:, 1])
-    moving = away * (people.speed / np.maximum(distance, 1e-9))[:, None]
-    ahead = np.arctan2(moving[:, 1], moving[:, 0])
+    distance = np.hypot(away[..., 0], away[..., 1])
+    moving = away * (people.speed / np.maximum(distance, 1e-9))[..., None]
+    ahead = np.arctan2(moving[..., 1], moving[..., 0])
     places = np.array([robot.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     goals = np.array([robot.goal.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     tops = np.array([limits_of(robot.drive).max_speed for robot in robots])
-    agent = np.arange(len(people) + len(robots) + spare)
-    is_robot = (agent >= len(people)) & (agent < len(people) + len(robots))
+    count, there = people.position.shape[1], people.position.shape[1] + len(robots)
+    agent = np.arange(there + most)
+    external = (agent >= count) & ((agent < there) | (agent >= there + spare[:, None]))
 
     def row(crowd: Any, own: Any, free: float) -> NDArray[np.float64]:
-        return np.concatenate([crowd, own, np.full((spare, *np.shape(crowd)[1:]), free)])
+        wide = (np.broadcast_to(own, (len(crowd), *np.shape(own))), np.full((len(crowd), most, *crowd.shape[2:]), free))
+        return np.concatenate([crowd, *wide], axis=1)
 
     return Scene.of(
         row(people.position, places, 0.0),
@@ -202,11 +105,11 @@ def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
         goal=row(people.goal, goals, 0.0),
         preferred_speed=row(people.speed, tops, 0.0),
         max_speed=row(1.3 * people.speed, tops, 0.0),
-        active=agent < len(people) + len(robots),
-        visible=row(np.ones(len(people)), [robot.visible and not robot.ghost for robot in robots], 1.0).astype(bool),
-        external=is_robot,
+        active=agent < there,
+        visible=row(np.ones(people.speed.shape), [robot.visible and not robot.ghost for robot in robots], 1.0) > 0.0,
+        external=external,
         group=row(people.group, np.full(len(robots), -1), -1.0).astype(np.int64),
-        walls=trial.stage.as_walls(),
+        walls=walls,
     )
 
 
@@ -222,14 +125,7 @@ def limits_of(drive: Any, holonomic: bool = False) -> DriveLimits:
     return DriveLimits(**values | {"holonomic": holonomic})
 
 
-def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:
-    """Return the number of free slots: the maximum number of people who enter, up to the capacity."""
-    end = trial.ticks * trial.step
-    come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
-    return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
-
-
-def _model(trial: Trial, people: InitialPeople, agents: int, seed: int) -> CrowdModel:
+def model_of(trial: Trial, people: InitialPeople, agents: int, seed: int) -> CrowdModel:
     """Return the crowd model; with several crowds, a mixture with a model for each person."""
     if not isinstance(trial.crowd, Crowds):
         return own(trial.crowd, seed, 0, agents, _values(people, range(len(people))))
@@ -251,7 +147,7 @@ def _values(people: InitialPeople, members: Iterable[int]) -> dict[int, dict[str
     return found
 
 
-def _script(people: InitialPeople) -> ReplayedPeople | None:
+def script_of(people: InitialPeople) -> ReplayedPeople | None:
     """Return the recorded tracks that people follow."""
     if not people.walks:
         return None
@@ -264,7 +160,7 @@ def _script(people: InitialPeople) -> ReplayedPeople | None:
     return ReplayedPeople(tracks, release)
 
 
-def _journeys(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:
+def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:
     which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None
@@ -283,18 +179,25 @@ def _chosen(people: InitialPeople, agents: int, word: str, names: tuple[str, ...
     return whole
 
 
-def _setting_off(
+def set_off(
     scene: Scene, first: int, router: Router | None, journeys: JourneyAssignment | None, given: NDArray[np.float64]
 ) -> Scene:
-    """Return the scene in which the ``first`` people start on their paths around walls to their first waypoints."""
-    position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
+    """Return the scene in which the ``first`` people start on their paths around walls to their first waypoints.
+
+    Args:
+        scene: the initial scene.
+        first: number of people.
+        router, journeys: paths and waypoints.
+        given: ``[E, N]`` headings [rad], NaN for the walking direction.
+    """
+    position, aim = scene.position[:, :first], scene.goal[:, :first].copy()
     if router is not None:
-        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.uses_routing(scene)[0, :first]
+        led = np.ones(aim.shape[:2], np.bool_) if journeys is None else journeys.uses_routing(scene)[:, :first]
         aim[led] = router.towards(position[led], aim[led])
     away = aim - position
-    distance = np.hypot(away[:, 0], away[:, 1])
+    distance = np.hypot(away[..., 0], away[..., 1])
     velocity, heading = scene.velocity.copy(), scene.heading.copy()
-    velocity[0, :first] = away * (scene.preferred_speed[0, :first] / np.maximum(distance, 1e-9))[:, None]
-    ahead = np.arctan2(away[:, 1], away[:, 0])
-    heading[0, :first] = np.where(np.isnan(given[:first]), ahead, given[:first])
+    velocity[:, :first] = away * (scene.preferred_speed[:, :first] / np.maximum(distance, 1e-9))[..., None]
+    ahead = np.arctan2(away[..., 1], away[..., 0])
+    heading[:, :first] = np.where(np.isnan(given[:, :first]), ahead, given[:, :first])
     return scene.replace(velocity=velocity, heading=heading)

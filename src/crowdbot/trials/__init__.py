@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .people import Group, SourceSpec, Spawner
     from .placement.appearance import PeopleAppearance, people_appearance
     from .placement.expansion import expand_spawners
+    from .placement.placement_plan import PeopleBatch, PlacementPlan
     from .placement.population import place
     from .placement.spawn_placement import GAP, InitialPeople
     from .predictor import RobotPredictor
@@ -76,6 +77,7 @@ __getattr__, __dir__ = lazy_exports(
         "people": ["Group", "SourceSpec", "Spawner"],
         "placement.appearance": ["PeopleAppearance", "people_appearance"],
         "placement.expansion": ["expand_spawners"],
+        "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
         "predictor": ["RobotPredictor"],
@@ -131,6 +133,8 @@ __all__ = [
     "Obstacle",
     "OldNameWarning",
     "PeopleAppearance",
+    "PeopleBatch",
+    "PlacementPlan",
     "Plan",
     "Planner",
     "Point",

@@ -85,16 +85,23 @@ class Distribution:
 
     def draw(self, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
         """Return ``[count]`` values; each value uses exactly one number from ``rng``."""
-        share = rng.random(count)
+        return self.values_at(rng.random(count))
+
+    def values_at(self, share: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the values at shares of the distribution in [0, 1), of any shape.
+
+        >>> Distribution.parse("uniform(2, 4)").values_at(np.array([0.0, 0.5])).tolist()
+        [2.0, 3.0]
+        """
         low, high = self.extent
         if self.kind == "number":
-            return np.full(count, low)
+            return np.full(share.shape, low)
         if self.kind == "uniform":
             return np.asarray(low + (high - low) * share)
         normal = NormalDist(*self.values[:2])
         bottom, top = normal.cdf(low), normal.cdf(high)
-        drawn = [normal.inv_cdf(_inside(bottom + (top - bottom) * float(u))) for u in share]
-        return np.clip(np.array(drawn, dtype=np.float64), low, high)
+        drawn = [normal.inv_cdf(_inside(bottom + (top - bottom) * u)) for u in share.ravel().tolist()]
+        return np.clip(np.array(drawn, dtype=np.float64).reshape(share.shape), low, high)
 
 
 def _inside(share: float) -> float:

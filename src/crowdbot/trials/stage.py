@@ -135,6 +135,11 @@ class Stage:
         props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
         return PhysicsStage(self.wall_height, self.friction, props, lights)
 
+    @property
+    def shapes(self) -> tuple[tuple[Any, ...], Any]:
+        """Solid lines and polygons, and the walkable area (None without one), as shapely geometries."""
+        return tuple(self._solids.geometries), self._area if self.bounded else None
+
     def clearance(self, points: Any) -> NDArray[np.float64]:
         """Return ``[N]`` the distance [m] of points ``[N, 2]`` to the nearest solid; 0 in it or outside the area."""
         import shapely

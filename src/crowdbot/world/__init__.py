@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
+    from .planar_environments import planar_world
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -125,6 +126,7 @@ _LAZY = {
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
     "permitted_speed": "physics.body_region_limits",
+    "planar_world": "planar_environments",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
     "read_urdf": "urdf",
@@ -205,6 +207,7 @@ __all__ = [
     "move_agent",
     "move_joint",
     "permitted_speed",
+    "planar_world",
     "put_environments",
     "quaternion",
     "read_urdf",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
+from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, SpatialPose, Twist, Walls
 from crowdbot.metrics import step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
@@ -142,7 +142,7 @@ class PlanarWorld(PlanarLiveChanges):
         self.twists = {robot: initial_twist(self.scene, robot) for robot in sorted(self.drives)}
         seeds = environment_seeds(self.seed, self.scene.shape[0])
         self.environment_time = EnvironmentTime.of(FreeClock(self.dt), self.scene.time, len(seeds))
-        self._rngs = [stream(seed, "crowd") for seed in seeds]
+        self._rngs = RandomStreams(seeds, "crowd")
         self._models: list[CrowdModel] | None = None
         self.joined = True
         self._traffic = PeopleFlow.of(self.scene, self.model, seeds, self.ids, self.router, self.journeys, self.sources)
@@ -213,7 +213,7 @@ class PlanarWorld(PlanarLiveChanges):
         self.scene = scene.replace(time=self.scene.time, memory=memory)
         if seed is not None:
             self.seed = seed
-            self._rngs = [stream(int(one), "crowd") for one in self._traffic.seeds]
+            self._rngs = RandomStreams(self._traffic.seeds.tolist(), "crowd")
 
     @property
     def waiting_count(self) -> NDArray[np.int64]:

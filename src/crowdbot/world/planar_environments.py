@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import MissingExtra, Twist
+from crowdbot.core import MissingExtra, Scene, Twist
+from crowdbot.models import CrowdModel
 
 from .crowd.environment_rows import (
     concatenate_arrays,
@@ -30,6 +31,7 @@ from .robots.servo import Pending
 
 __all__ = [
     "join_worlds",
+    "planar_world",
     "put_environments",
     "select_environments",
     "step_one_by_one",
@@ -58,7 +60,7 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     whole.scene = stack_scenes([world.scene for world in worlds])
     whole._previous = stack_scenes([world._previous for world in worlds]).replace(walls=whole.scene.walls)
     whole.environment_time = first.environment_time.join([world.environment_time for world in worlds[1:]])
-    whole._rngs = [rng for world in worlds for rng in world._rngs]
+    whole._rngs = first._rngs.join([world._rngs for world in worlds[1:]])
     set_models(whole, [model for world in worlds for model in _models(world)])
     _set_flow(whole, _join_flows([world._traffic for world in worlds], whole.scene.shape[1]))
     whole.twists = {robot: concatenate_arrays([world.twists[robot] for world in worlds]) for robot in first.twists}
@@ -73,6 +75,27 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     return whole
 
 
+def planar_world(scene: Scene, models: Sequence[CrowdModel], slots: Ints, **how: Any) -> PlanarWorld:
+    """Return a world of E environments that can have different crowd models and numbers of agents.
+
+    Args:
+        scene: initial scene of E environments.
+        models: crowd model of each environment.
+        slots: ``[E]`` number of agents of each environment; further ones are absent and external.
+        how: other arguments of :class:`PlanarWorld`.
+
+    >>> from crowdbot.models import ORCA
+    >>> scene = Scene.of([[[0.0, 0.0]], [[1.0, 0.0]]])
+    >>> planar_world(scene, [ORCA(), ORCA(time_horizon=1.0)], np.array([1, 1]), drives={}, dt=0.1).slots.tolist()
+    [1, 1]
+    """
+    world = PlanarWorld(scene, models[0], **how)
+    world.slots = slots
+    if len(models) > 1:
+        set_models(world, list(models))
+    return world
+
+
 def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) -> PlanarWorld:
     """Return an independent world with some environments; an environment may be selected more than once."""
     index = np.asarray(environments, dtype=np.int64)
@@ -80,7 +103,7 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     some.scene = world.scene.environments(index)
     some._previous = world._previous.environments(index)
     some.environment_time = world.environment_time.select(index)
-    some._rngs = [copy.deepcopy(world._rngs[e]) for e in index]
+    some._rngs = world._rngs.select(index.tolist())
     set_models(some, [_models(world)[e] for e in index])
     flow = world._traffic
     arrivals = None if flow.arrivals is None else flow.arrivals.select(index.tolist())
@@ -116,8 +139,8 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
     if flow.arrivals is not None and new.arrivals is not None:
         flow.arrivals.put(index.tolist(), new.arrivals)
     _set_flow(world, flow)
+    world._rngs.put(index.tolist(), other._rngs)
     for k, e in enumerate(index.tolist()):
-        world._rngs[e] = other._rngs[k]
         models[e] = _models(other)[k]
         if world._bodies is not None and other._bodies is not None:
             world._bodies[e] = other._bodies[k]
@@ -135,7 +158,7 @@ def undo_point(world: PlanarWorld) -> Callable[[], None]:
     kept = {name: getattr(world, name) for name in ("scene", "_previous", "contacts")}
     twists, delayed, tick = dict(world.twists), dict(world._delayed), world.clock.tick
     ids, following = world._traffic.ids.copy(), world._traffic.following.copy()
-    rngs = None if works_in_batches(world.model) else copy.deepcopy(world._rngs)
+    rngs = None if works_in_batches(world.model) else world._rngs.select(range(len(world._rngs)))
 
     def undo() -> None:
         world._rngs = rngs or world._rngs

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import stream
 from crowdbot.trials.agent import Agent
@@ -16,7 +17,7 @@ from crowdbot.trials.stage import Stage, area
 
 from .spawn_placement import InitialPeople, OccupiedDiscs, SpawnPlacement
 
-__all__ = ["place"]
+__all__ = ["place", "place_fixed", "recorded_people"]
 
 MOST_PROBLEMS = 100
 EXACT = 1e-9
@@ -40,18 +41,12 @@ def place(
     >>> len(people) < 50, problems[0][1][:20]
     (True, 'only 12 of 50 people')
     """
-    widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
-    widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
-    taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
-    for robot in robots:
-        taken.add(robot.x, robot.y, robot.radius)
-    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, taken)]
-    replayed = [_recorded_people(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
-    for _, walks in recorded:
-        for walk in walks:
-            if walk.time[0] <= 0.0:
-                taken.add(*_begin(walk), 0.3)
-    groups = [_agents(agents)]
+    taken, problems, first = place_fixed(stage, spawners, robots, agents, recorded)
+    replayed = [
+        recorded_people(walks, one.radius.draw(stream(seed, "recorded", k, "radius"), len(walks)))
+        for k, (one, walks) in enumerate(recorded)
+    ]
+    groups = [first]
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
@@ -64,6 +59,30 @@ def place(
     owners = (*agents, *spawners[: len(groups) - 1], *(one for one, _ in recorded))
     sizes = [len(agents), *(1 for _ in groups[1:]), *(1 for _ in replayed)]
     return InitialPeople.concatenate([*groups, *replayed], sizes, owners, walks), problems
+
+
+def place_fixed(
+    stage: Stage,
+    spawners: Sequence[Spawner],
+    robots: Sequence[RobotSpec],
+    agents: Sequence[Agent],
+    recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]],
+) -> tuple[OccupiedDiscs, list[tuple[Any, str]], InitialPeople]:
+    """Return the discs of robots, agents and recorded people, the problems of agents, and the agents.
+
+    They are the same for all seeds.
+    """
+    widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
+    widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
+    taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
+    for robot in robots:
+        taken.add(robot.x, robot.y, robot.radius)
+    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, taken)]
+    for _, walks in recorded:
+        for walk in walks:
+            if walk.time[0] <= 0.0:
+                taken.add(*_begin(walk), 0.3)
+    return taken, problems, _agents(agents)
 
 
 def _place_agents(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
@@ -94,13 +113,14 @@ def _agents(agents: Sequence[Agent]) -> InitialPeople:
     )
 
 
-def _recorded_people(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
+def recorded_people(walks: Sequence[Walk], radius: NDArray[np.float64]) -> InitialPeople:
+    """Return the people of a recording with their radii ``[N]`` [m]."""
     count = len(walks)
     last = np.array([walk.position[-1] for walk in walks], dtype=np.float64).reshape(-1, 2)
     return InitialPeople(
         np.array([_begin(walk) for walk in walks], dtype=np.float64).reshape(-1, 2),
         last,
-        one.radius.draw(stream(seed, "recorded", index, "radius"), count),
+        radius,
         np.full(count, 1.34),
         np.full(count, np.nan),
         np.full(count, -1, dtype=np.int64),

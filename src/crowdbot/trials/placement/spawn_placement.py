@@ -17,7 +17,7 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.stage import Stage, area
 
-__all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "points_in"]
+__all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "draw_heading", "points_in"]
 
 Floats = NDArray[np.float64]
 
@@ -111,6 +111,11 @@ def points_in(zone: Points, rng: np.random.Generator) -> Iterator[Floats]:
             yield inside
 
 
+def draw_heading(rng: np.random.Generator, count: int) -> Floats:
+    """Return random headings ``[count]`` of standing people [rad]."""
+    return rng.uniform(-math.pi, math.pi, count)
+
+
 class SpawnPlacement(NamedTuple):
     """Places the people of spawner ``number`` of a trial, clear of the discs in ``taken``."""
 
@@ -151,7 +156,7 @@ class SpawnPlacement(NamedTuple):
         if self.spawner.heading is not None:
             return np.full(count, self.spawner.heading)
         if self.spawner.stands:
-            return self.stream("heading").uniform(-math.pi, math.pi, count)
+            return draw_heading(self.stream("heading"), count)
         return np.full(count, np.nan)
 
     def _sizes(self) -> list[int]:
@@ -277,6 +282,11 @@ class OccupiedDiscs:
         i, j = self._at(x, y)
         near = (self.discs.get((i + di, j + dj), ()) for di in (-1, 0, 1) for dj in (-1, 0, 1))
         return all((x - a) ** 2 + (y - b) ** 2 >= (radius + r + gap) ** 2 for cell in near for a, b, r in cell)
+
+    @property
+    def rows(self) -> list[tuple[float, float, float]]:
+        """x, y and radius [m] of all discs."""
+        return [disc for cell in self.discs.values() for disc in cell]
 
     def _at(self, x: float, y: float) -> tuple[int, int]:
         width = self.cell + GAP

@@ -1,0 +1,310 @@
+"""Random streams of many environments: their states as arrays, for kernels, and their generators, made at first use."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Sequence
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .kernels import kernel
+from .random import stream, stream_text
+
+__all__ = ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bytes = NDArray[np.uint8]
+Words = NDArray[np.uint64]
+
+BLOCK = 128
+"""Bytes of a block of BLAKE2b."""
+PLACES = 24
+"""Bytes reserved for the seed at the beginning of a text."""
+IV = np.array(
+    [
+        0x6A09E667F3BCC908, 0xBB67AE8584CAA73B, 0x3C6EF372FE94F82B, 0xA54FF53A5F1D36F1,
+        0x510E527FADE682D1, 0x9B05688C2B3E6C1F, 0x1F83D9ABFB41BD6B, 0x5BE0CD19137E2179,
+    ],
+    dtype=np.uint64,
+)  # fmt: skip
+"""Initial words of BLAKE2b (RFC 7693, section 2.6)."""
+SIGMA = np.array(
+    [
+        [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
+        [14, 10, 4, 8, 9, 15, 13, 6, 1, 12, 0, 2, 11, 7, 5, 3],
+        [11, 8, 12, 0, 5, 2, 15, 13, 10, 14, 3, 6, 7, 1, 9, 4],
+        [7, 9, 3, 1, 13, 12, 11, 14, 2, 6, 5, 10, 4, 0, 15, 8],
+        [9, 0, 5, 7, 2, 4, 10, 15, 14, 1, 11, 12, 6, 8, 3, 13],
+        [2, 12, 6, 10, 0, 11, 8, 3, 4, 13, 7, 5, 15, 14, 1, 9],
+        [12, 5, 1, 15, 14, 13, 4, 10, 0, 7, 6, 3, 9, 2, 8, 11],
+        [13, 11, 7, 14, 12, 1, 3, 9, 5, 0, 15, 4, 8, 6, 2, 10],
+        [6, 15, 14, 9, 11, 3, 0, 8, 12, 2, 13, 7, 1, 4, 10, 5],
+        [10, 2, 8, 4, 7, 6, 1, 5, 15, 11, 9, 14, 3, 12, 13, 0],
+    ]
+)
+"""Message schedule of BLAKE2b (RFC 7693, section 2.7)."""
+WAYS = np.array(
+    [
+        [0, 4, 8, 12], [1, 5, 9, 13], [2, 6, 10, 14], [3, 7, 11, 15],
+        [0, 5, 10, 15], [1, 6, 11, 12], [2, 7, 8, 13], [3, 4, 9, 14],
+    ]
+)  # fmt: skip
+"""Words that each mixing of a round of BLAKE2b uses."""
+DIGEST = np.uint64(16)
+LOW32, LOW64 = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFFFFFFFFFF)
+S1, S11, S16, S24, S32, S58, S63, S64 = (np.uint64(k) for k in (1, 11, 16, 24, 32, 58, 63, 64))
+ZERO = np.uint64(0)
+INIT_A, MULT_A = np.uint64(0x43B0D7E5), np.uint64(0x931E8875)
+INIT_B, MULT_B = np.uint64(0x8B51F9DD), np.uint64(0x58F38DED)
+MIX_L, MIX_R = np.uint64(0xCA01F9DD), np.uint64(0x4973F715)
+"""Constants of ``numpy.random.SeedSequence``."""
+MULTIPLIER = (np.uint64(2549297995355413924), np.uint64(4865540595714422341))
+"""High and low word of the multiplier of PCG64."""
+UNIT = 1.0 / 9007199254740992.0
+
+
+class RandomStreams(Sequence[np.random.Generator]):
+    """The generators of E environments, each made when it is first used.
+
+    Args:
+        seeds: seed of each environment.
+        path: names or numbers that identify the consumer; see :func:`stream`.
+
+    >>> streams = RandomStreams([4, 5], "sensor", "scan")
+    >>> streams[1].random() == stream(5, "sensor", "scan").random()
+    True
+    """
+
+    def __init__(self, seeds: Iterable[int], *path: str | int) -> None:
+        self._cells: list[_Cell] = [_Cell(int(seed), path) for seed in seeds]
+
+    def __len__(self) -> int:
+        """Return E."""
+        return len(self._cells)
+
+    @overload
+    def __getitem__(self, index: int) -> np.random.Generator: ...
+    @overload
+    def __getitem__(self, index: slice) -> RandomStreams: ...
+    def __getitem__(self, index: Any) -> Any:
+        """Return the generator of an environment, or the streams of some."""
+        return self._of(self._cells[index]) if isinstance(index, slice) else self._cells[index].generator
+
+    def rows(self, environments: Iterable[int]) -> RandomStreams:
+        """Return the streams of some environments, which continue in this object too."""
+        return self._of([self._cells[e] for e in environments])
+
+    def select(self, environments: Iterable[int]) -> RandomStreams:
+        """Return independent streams of some environments, which may be repeated, in their current state."""
+        return self._of([self._cells[e].copy() for e in environments])
+
+    def join(self, others: Iterable[RandomStreams]) -> RandomStreams:
+        """Return the streams of the environments of this object and of others."""
+        return self._of([cell for one in (self, *others) for cell in one._cells])
+
+    def put(self, environments: Iterable[int], other: RandomStreams) -> None:
+        """Replace the streams of some environments by those of another object."""
+        for e, cell in zip(environments, other._cells, strict=True):
+            self._cells[e] = cell
+
+    @staticmethod
+    def _of(cells: list[_Cell]) -> RandomStreams:
+        some = RandomStreams(())
+        some._cells = cells
+        return some
+
+
+class _Cell:
+    """A generator that is made at first use."""
+
+    __slots__ = ("_made", "_path", "_seed")
+
+    def __init__(self, seed: int, path: tuple[str | int, ...], made: np.random.Generator | None = None) -> None:
+        self._seed, self._path, self._made = seed, path, made
+
+    @property
+    def generator(self) -> np.random.Generator:
+        if self._made is None:
+            self._made = stream(self._seed, *self._path)
+        return self._made
+
+    def copy(self) -> _Cell:
+        return _Cell(self._seed, self._path, copy.deepcopy(self._made))
+
+
+def stream_states(seeds: Ints, paths: Sequence[Sequence[str | int]]) -> Words:
+    """Return ``[E, K, 4]`` the states of the generators ``stream(seed, *path)`` of E seeds and K paths, for kernels.
+
+    Args:
+        seeds: ``[E]``.
+        paths: K paths.
+
+    >>> states = stream_states(np.array([7, 8]), [("spawner", 3), ("crowd",)])
+    >>> bool(draw_uniform(states[:, 0], 2)[1, 1] == stream(8, "spawner", 3).random(2)[1])
+    True
+    """
+    texts = [stream_text(*path).encode() for path in paths]
+    width = BLOCK * -(-(PLACES + max(map(len, texts), default=0)) // BLOCK)
+    letters = np.zeros((len(texts), width), dtype=np.uint8)
+    for row, text in zip(letters, texts, strict=True):
+        row[: len(text)] = np.frombuffer(text, dtype=np.uint8)
+    states = np.empty((len(seeds), len(texts), 4), dtype=np.uint64)
+    _seed_all(np.ascontiguousarray(seeds, dtype=np.int64), letters, np.array([*map(len, texts)], np.int64), states)
+    return states
+
+
+def draw_uniform(states: Words, count: int) -> Floats:
+    """Return ``[N, count]`` the next numbers in [0, 1) of generators with states ``[N, 4]``, which are advanced."""
+    out = np.empty((len(states), count))
+    rows = np.ascontiguousarray(states)
+    _draw(rows, out)
+    states[:] = rows
+    return out
+
+
+@kernel
+def next_uniform(state: Words) -> float:
+    """Return the next number in [0, 1) of the generator with a state ``[4]``, as ``Generator.random``."""
+    _advance(state)
+    word, turn = state[0] ^ state[1], state[0] >> S58
+    word = (word >> turn) | (word << ((S64 - turn) & S63))
+    return float(word >> S11) * UNIT
+
+
+@kernel
+def _draw(states: Words, out: Floats) -> None:
+    for n in range(len(out)):
+        for k in range(out.shape[1]):
+            out[n, k] = next_uniform(states[n])
+
+
+@kernel
+def _advance(state: Words) -> None:
+    """Advance a PCG64 by one step: ``state * multiplier + increment`` in 128 bits, as two words each."""
+    high, low = MULTIPLIER
+    a0, a1, b0, b1 = state[1] & LOW32, state[1] >> S32, low & LOW32, low >> S32
+    middle = a1 * b0 + ((a0 * b0) >> S32)
+    other = a0 * b1 + (middle & LOW32)
+    top = a1 * b1 + (middle >> S32) + (other >> S32)
+    top += state[0] * low + state[1] * high + state[2]
+    bottom = state[1] * low
+    total = bottom + state[3]
+    if total < bottom:
+        top += S1
+    state[0], state[1] = top, total
+
+
+@kernel
+def _seed_all(seeds: Ints, letters: Bytes, lengths: Ints, states: Words) -> None:
+    text, digits = np.empty(letters.shape[1], dtype=np.uint8), np.empty(PLACES, dtype=np.uint8)
+    work, digest, pool = np.empty(32, dtype=np.uint64), np.empty(8, dtype=np.uint64), np.empty(4, dtype=np.uint64)
+    for e in range(len(seeds)):
+        size = _write_number(seeds[e], digits)
+        for k in range(len(lengths)):
+            text[:] = 0
+            for i in range(size):
+                text[i] = digits[i]
+            for i in range(lengths[k]):
+                text[size + i] = letters[k, i]
+            _hash(text, size + lengths[k], work, digest)
+            _seed(digest, pool, states[e, k])
+
+
+@kernel
+def _write_number(number: int, digits: Bytes) -> int:
+    """Write the decimal digits of a number as text, and return their number."""
+    rest, size = np.uint64(number), 0
+    if number < 0:
+        rest, digits[0], size = ZERO - np.uint64(number), 45, 1
+    first, ten = size, np.uint64(10)
+    while True:
+        digits[size] = np.uint8(48 + int(rest % ten))
+        rest //= ten
+        size += 1
+        if rest == ZERO:
+            break
+    for i in range((size - first) // 2):
+        digits[first + i], digits[size - 1 - i] = digits[size - 1 - i], digits[first + i]
+    return size
+
+
+@kernel
+def _hash(text: Bytes, size: int, v: Words, h: Words) -> None:
+    """Write the words of the BLAKE2b hash of 16 bytes of a text padded with zeros; ``v`` is 32 words of work space."""
+    for i in range(8):
+        h[i] = IV[i]
+    h[0] ^= np.uint64(0x01010000) ^ DIGEST
+    blocks = max(1, -(-size // BLOCK))
+    for block in range(blocks):
+        last = block == blocks - 1
+        for i in range(8):
+            v[i], v[8 + i] = h[i], IV[i]
+        v[12] ^= np.uint64(size if last else (block + 1) * BLOCK)
+        if last:
+            v[14] ^= LOW64
+        for i in range(16):
+            word = ZERO
+            for k in range(8):
+                word |= np.uint64(text[block * BLOCK + 8 * i + k]) << np.uint64(8 * k)
+            v[16 + i] = word
+        for turn in range(12):
+            for g in range(8):
+                _mix_four(v, g, v[16 + SIGMA[turn % 10, 2 * g]], v[16 + SIGMA[turn % 10, 2 * g + 1]])
+        for i in range(8):
+            h[i] ^= v[i] ^ v[8 + i]
+
+
+@kernel
+def _mix_four(v: Words, g: int, x: Any, y: Any) -> None:
+    a, b, c, d = WAYS[g, 0], WAYS[g, 1], WAYS[g, 2], WAYS[g, 3]
+    v[a] = v[a] + v[b] + x
+    word = v[d] ^ v[a]
+    v[d] = (word >> S32) | (word << S32)
+    v[c] = v[c] + v[d]
+    word = v[b] ^ v[c]
+    v[b] = (word >> S24) | (word << np.uint64(40))
+    v[a] = v[a] + v[b] + y
+    word = v[d] ^ v[a]
+    v[d] = (word >> S16) | (word << np.uint64(48))
+    v[c] = v[c] + v[d]
+    word = v[b] ^ v[c]
+    v[b] = (word >> S63) | (word << S1)
+
+
+@kernel
+def _seed(digest: Words, pool: Words, state: Words) -> None:
+    """Write the state of ``PCG64(SeedSequence(number))`` of the first 128 bits of a hash."""
+    constant = INIT_A
+    for i in range(4):
+        word = (digest[i // 2] >> (S32 * np.uint64(i % 2))) & LOW32
+        pool[i], constant = _mix(word, constant, MULT_A)
+    for source in range(4):
+        for target in range(4):
+            if source != target:
+                word, constant = _mix(pool[source], constant, MULT_A)
+                mixed = (MIX_L * pool[target] - MIX_R * word) & LOW32
+                pool[target] = mixed ^ (mixed >> S16)
+    constant, start = INIT_B, np.empty(4, dtype=np.uint64)
+    for i in range(4):
+        low, constant = _mix(pool[2 * i % 4], constant, MULT_B)
+        high, constant = _mix(pool[(2 * i + 1) % 4], constant, MULT_B)
+        start[i] = low | (high << S32)
+    state[0], state[1] = ZERO, ZERO
+    state[2], state[3] = (start[2] << S1) | (start[3] >> S63), (start[3] << S1) | S1
+    _advance(state)
+    total = state[1] + start[1]
+    state[0] += start[0] + (S1 if total < start[1] else ZERO)
+    state[1] = total
+    _advance(state)
+
+
+@kernel
+def _mix(word: Any, constant: Any, factor: Any) -> Any:
+    """Return a mixed word of 32 bits and the next constant of ``numpy.random.SeedSequence``."""
+    word = word ^ constant
+    constant = (constant * factor) & LOW32
+    word = (word * constant) & LOW32
+    return word ^ (word >> S16), constant

@@ -1,0 +1,224 @@
+"""PlacementPlan: the people of a trial at the beginning of many environments, placed by one kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import draw_uniform, stream, stream_states
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.distribution import Distribution
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.recorded_people import RecordedPeople, Walk
+from crowdbot.trials.robot import RobotSpec
+from crowdbot.trials.stage import Stage, area
+
+from .placement_kernel import PlacementGeometry, Polygons, place_people
+from .population import place, place_fixed, recorded_people
+from .spawn_placement import GAP, TRIES, InitialPeople, OccupiedDiscs, draw_heading
+
+__all__ = ["PeopleBatch", "PlacementPlan"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MOST_PEOPLE = 1000
+"""Number of people above which they are placed one environment after the other, with a grid of occupied discs."""
+SMALLEST = 1e-5
+"""Smallest radius [m] for the kernel, which leaves decisions closer than 1e-9 m to :func:`place`."""
+
+
+class PeopleBatch(NamedTuple):
+    """The people at the beginning of E environments.
+
+    Fields:
+        position, goal: ``[E, N, 2]`` [m].
+        radius, speed, heading: ``[E, N]``, as in :class:`InitialPeople`.
+        group: ``[E, N]`` number of the group, -1 without a group.
+        first: the people of the first environment.
+    """
+
+    position: Floats
+    goal: Floats
+    radius: Floats
+    speed: Floats
+    heading: Floats
+    group: Ints
+    first: InitialPeople
+
+    @classmethod
+    def of(cls, people: Sequence[InitialPeople]) -> PeopleBatch:
+        """Return the people of several environments, as many in each."""
+        columns: dict[str, Any] = {name: np.stack([getattr(one, name) for one in people]) for name in cls._fields[:-1]}
+        return cls(**columns, first=people[0])
+
+    def environment(self, number: int) -> InitialPeople:
+        """Return the people of one environment."""
+        first = self.first
+        columns: dict[str, Any] = {name: getattr(self, name)[number] for name in self._fields[:-1]}
+        return InitialPeople(**columns, owner=first.owner, owners=first.owners, walks=first.walks)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacementPlan:
+    """Places the people of a trial for many seeds at once, exactly as :func:`place` for each seed.
+
+    A kernel draws the numbers of the same random streams. Whatever it cannot decide beyond doubt is left to
+    :func:`place`: points within 1e-9 m of a limit, groups, people who do not fit, and more than 1000 people.
+
+    Fields:
+        stage, spawners, robots, agents, recorded: the arguments of :func:`place`.
+
+    >>> zone = [(0, 0), (9, 0), (9, 9), (0, 9)]
+    >>> plan = PlacementPlan.of(Stage(), [Spawner(count=9, zone=zone, goal=zone)], [])
+    >>> people = plan.place([3, 4])
+    >>> people.position.shape, bool(np.all(people.goal[1] == place(Stage(), plan.spawners, [], 4)[0].goal))
+    ((2, 9, 2), True)
+    """
+
+    stage: Stage
+    spawners: tuple[Spawner, ...]
+    robots: tuple[RobotSpec, ...]
+    agents: tuple[Agent, ...]
+    recorded: tuple[tuple[RecordedPeople, tuple[Walk, ...]], ...]
+    _fixed: tuple[OccupiedDiscs, list[tuple[Any, str]], InitialPeople] = field(repr=False)
+    _geometry: PlacementGeometry | None = field(repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        stage: Stage,
+        spawners: Sequence[Spawner],
+        robots: Sequence[RobotSpec],
+        agents: Sequence[Agent] = (),
+        recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
+    ) -> PlacementPlan:
+        """Return the plan with the geometry of the stage and the zones as arrays."""
+        walks = tuple((one, tuple(rows)) for one, rows in recorded)
+        whole = (stage, tuple(spawners), tuple(robots), tuple(agents), walks)
+        fixed = place_fixed(*whole)
+        simple = not fixed[1] and _is_simple(whole[1])
+        return cls(*whole, fixed, _geometry_of(stage, whole[1], fixed[0]) if simple else None)
+
+    def place(self, seeds: Sequence[int]) -> PeopleBatch | tuple[int, list[tuple[Any, str]]]:
+        """Return the people of all seeds, or the index of the first seed with problems and these, as :func:`place`."""
+        batch, decided = self._place_at_once(seeds)
+        missing = np.flatnonzero(~decided).tolist()
+        exact: dict[int, InitialPeople] = {}
+        for e in missing:
+            exact[e], problems = place(
+                self.stage, self.spawners, self.robots, seeds[e], self.agents, list(self.recorded)
+            )
+            if problems:
+                return e, problems
+        if batch is None:
+            return PeopleBatch.of([exact[e] for e in missing])
+        for e, people in exact.items():
+            for name in PeopleBatch._fields[:-1]:
+                getattr(batch, name)[e] = getattr(people, name)
+        return batch
+
+    def _place_at_once(self, seeds: Sequence[int]) -> tuple[PeopleBatch | None, NDArray[np.bool_]]:
+        """Return the people placed by the kernel, and ``[E]`` where it could decide."""
+        if self._geometry is None or not all(-(2**63) <= seed < 2**63 for seed in seeds):
+            return None, np.zeros(len(seeds), dtype=np.bool_)
+        keys = np.array(seeds, dtype=np.int64)
+        counts = [one.count for one in self.spawners]
+        people = sum(counts)
+        radius, speed, heading = (np.empty((len(keys), people)) for _ in range(3))
+        begin = 0
+        for k, one in enumerate(self.spawners):
+            own = slice(begin, begin + one.count)
+            radius[:, own] = _draw(one.radius, keys, ("spawner", k, "radius"), one.count)
+            speed[:, own] = _draw(one.speed, keys, ("spawner", k, "speed"), one.count)
+            heading[:, own] = _headings(one, seeds, k)
+            begin += one.count
+        position, goal = (np.empty((len(keys), people, 2)) for _ in range(2))
+        decided = np.full(len(keys), not people)
+        if people:
+            states = stream_states(
+                keys, [("spawner", k, word) for word in ("place", "goal") for k in range(len(counts))]
+            )
+            counted = np.array(counts, dtype=np.int64)
+            drawn = (radius, position, goal, decided)
+            place_people(states, counted, self._geometry, TRIES, *drawn)
+        return self._whole(keys, (position, goal, radius, speed, heading)), decided
+
+    def _whole(self, seeds: Ints, drawn: Sequence[Floats]) -> PeopleBatch:
+        """Return the people of spawners, with agents before and recorded people after them."""
+        agents = self._fixed[2]
+        last = [
+            recorded_people(walks, _draw(one.radius, seeds[:1], ("recorded", k, "radius"), len(walks))[0])
+            for k, (one, walks) in enumerate(self.recorded)
+        ]
+        columns: dict[str, Any] = {}
+        for name, value in zip(PeopleBatch._fields, drawn, strict=False):
+            parts = [getattr(agents, name), *(getattr(one, name) for one in last)]
+            wide = [np.broadcast_to(part, (len(seeds), *part.shape)) for part in parts]
+            columns[name] = np.concatenate([wide[0], value, *wide[1:]], axis=1)
+        begin = len(self.agents) + drawn[0].shape[1]
+        for k, (one, walks) in enumerate(self.recorded):
+            rows = columns["radius"][:, begin : begin + len(walks)]
+            rows[:] = _draw(one.radius, seeds, ("recorded", k, "radius"), len(walks))
+            begin += len(walks)
+        count = columns["radius"].shape[1] - len(agents)
+        group = np.concatenate([agents.group, np.full(count, -1, dtype=np.int64)])
+        columns["group"] = np.tile(group, (len(seeds), 1))
+        return PeopleBatch(**columns, first=self._first(columns))
+
+    def _first(self, columns: dict[str, Any]) -> InitialPeople:
+        """Return the people of the first environment, with their owners."""
+        sizes = [1] * len(self.agents) + [one.count for one in self.spawners] + [len(w) for _, w in self.recorded]
+        owner = np.repeat(np.arange(len(sizes)), sizes)
+        owners: tuple[Any, ...] = (*self.agents, *self.spawners, *(one for one, _ in self.recorded))
+        walks = tuple(walk for _, rows in self.recorded for walk in rows)
+        rows = {name: column[0] for name, column in columns.items()}
+        return InitialPeople(**rows, owner=owner, owners=owners, walks=walks)
+
+
+def _is_simple(spawners: Sequence[Spawner]) -> bool:
+    """Return whether the kernel can place the people of these spawners."""
+    small = any(one.radius.extent[0] < SMALLEST for one in spawners)
+    return not small and not any(one.groups for one in spawners) and sum(one.count for one in spawners) <= MOST_PEOPLE
+
+
+def _geometry_of(stage: Stage, spawners: Sequence[Spawner], taken: OccupiedDiscs) -> PlacementGeometry:
+    """Return the stage, the zones and the discs as arrays."""
+    import shapely
+
+    solids, ground = stage.shapes
+    rings = [one.coords for shape in solids for one in _lines(shape)]
+    pairs = [np.concatenate([ring[:-1], ring[1:]], axis=1) for ring in map(np.asarray, rings)]
+    edges = np.concatenate([np.zeros((0, 4)), *pairs])
+    blocks = Polygons.of([shape for shape in solids if shape.geom_type == "Polygon"])
+    grounds = Polygons.of([] if ground is None else list(shapely.get_parts(ground)))
+    zones = [area(one.zone) for one in spawners]
+    goals = [area(one.goal) if one.goal else shapely.Polygon() for one in spawners]
+    boxes = np.array([shape.bounds if not shape.is_empty else (0.0,) * 4 for shape in (*zones, *goals)])
+    low = boxes.reshape(-1, 4)[:, :2].copy()
+    size = boxes.reshape(-1, 4)[:, 2:] - low
+    discs = np.array(taken.rows, dtype=np.float64).reshape(-1, 3)
+    areas = Polygons.of([*zones, *goals])
+    return PlacementGeometry(edges, blocks, grounds, ground is not None, areas, low, size, discs, taken.cell + GAP)
+
+
+def _lines(shape: Any) -> list[Any]:
+    return [shape.exterior, *shape.interiors] if shape.geom_type == "Polygon" else [shape]
+
+
+def _draw(what: Distribution, seeds: Ints, path: tuple[str | int, ...], count: int) -> Floats:
+    """Return ``[E, count]`` values of a distribution, each seed from its own stream."""
+    if what.kind == "number":
+        return np.full((len(seeds), count), what.extent[0])
+    return what.values_at(draw_uniform(stream_states(seeds, [path])[:, 0], count))
+
+
+def _headings(spawner: Spawner, seeds: Sequence[int], number: int) -> Any:
+    """Return the headings of people of a spawner: one number, or ``[E, count]``."""
+    if spawner.heading is None and spawner.stands:
+        return np.stack([draw_heading(stream(seed, "spawner", number, "heading"), spawner.count) for seed in seeds])
+    return np.nan if spawner.heading is None else spawner.heading
