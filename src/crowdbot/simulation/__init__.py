@@ -1,5 +1,6 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
+from .avatar_order import AvatarOrder
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .failure import RunFailure, RunFailureWarning
 from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
@@ -17,6 +18,7 @@ from .world_builder import start_scene
 __all__ = [
     "WALL",
     "AddPersonOrder",
+    "AvatarOrder",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",

@@ -26,7 +26,7 @@ from crowdbot.trials import (
     people_appearance,
     place,
 )
-from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
+from crowdbot.world import Avatars, JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
 
 from .mounted_sensor import spatial
 
@@ -44,7 +44,7 @@ def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWor
         TrialError: people cannot be placed with this seed.
     """
     recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
-    people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
+    people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded, trial.avatars)
     if problems:
         what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
         raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
@@ -62,6 +62,8 @@ def begin_world(trial: Trial, seed: int, posed: bool = False) -> tuple[PlanarWor
             walls=own_walls(trial),
             seed=seed,
         )
+    if world.avatars is not None:
+        world.avatars.pose(world)
     return world, people
 
 
@@ -130,6 +132,7 @@ def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarW
         "exits": [way.out() for way in trial.exits],
         "portals": [portal.gate() for portal in trial.portals],
         "script": _script(people),
+        "avatars": _avatars(trial, len(people) - len(people.walks)),
         "heading_jitter": trial.heading_jitter,
         "substeps": trial.substeps,
         "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
@@ -143,7 +146,7 @@ def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarW
         drives = {agent: robot.drive for agent, robot in robots.items()}
         ghosts = [agent for agent, robot in robots.items() if robot.ghost]
         world = PlanarWorld(scene, model, drives, latency=latency, ghosts=ghosts, **whole)
-    walkers = first - len(people.walks)
+    walkers = first - len(people.walks) - len(trial.avatars)
     if walkers and (router or journeys):
         world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
     return world, figures
@@ -261,6 +264,16 @@ def _script(people: InitialPeople) -> ReplayedPeople | None:
     ]
     tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
     return ReplayedPeople(tracks, release)
+
+
+def _avatars(trial: Trial, end: int) -> Avatars | None:
+    """Return the avatars of a trial, whose indices end before ``end``."""
+    if not trial.avatars:
+        return None
+    sources = [avatar.pose_source() for avatar in trial.avatars]
+    agents = end - len(sources) + np.arange(len(sources))
+    names = [avatar.name for avatar in trial.avatars]
+    return Avatars(agents, names, [sources], [avatar.delay for avatar in trial.avatars])
 
 
 def _journeys(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:

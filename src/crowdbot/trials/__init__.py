@@ -11,6 +11,7 @@ from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
     from .agent import Agent, AgentParameter
+    from .avatar import Avatar
     from .builtin import load_trial
     from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
     from .camera import OVERVIEW, Camera, overview
@@ -54,6 +55,7 @@ __getattr__, __dir__ = lazy_exports(
     __name__,
     {
         "agent": ["Agent", "AgentParameter"],
+        "avatar": ["Avatar"],
         "builtin": ["load_trial"],
         "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
         "camera": ["OVERVIEW", "Camera", "overview"],
@@ -105,6 +107,7 @@ __all__ = [
     "UNWRITABLE",
     "Agent",
     "AgentParameter",
+    "Avatar",
     "Camera",
     "ContactSpec",
     "Crowd",

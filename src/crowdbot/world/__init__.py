@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
     from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
 
 _LAZY = {
     "AckermannDrive": "robots.ackermann",
+    "Avatars": "crowd.avatars",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
     "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
@@ -117,6 +119,7 @@ _LAZY = {
     "describe": "urdf",
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
+    "give_pose": "crowd.avatars",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
     "move_agent": "live_changes",
@@ -139,6 +142,7 @@ _LAZY = {
 __all__ = [
     "BODY_REGION_LIMITS",
     "AckermannDrive",
+    "Avatars",
     "BodyContactEvent",
     "BodyRegionLimits",
     "CameraImages",
@@ -194,6 +198,7 @@ __all__ = [
     "describe",
     "environment_seeds",
     "frame",
+    "give_pose",
     "integrate_twist",
     "join_worlds",
     "move_agent",

@@ -37,6 +37,7 @@ from .world import Contact, World
 if TYPE_CHECKING:
     from crowdbot.humans import People
 
+    from .crowd.avatars import Avatars
     from .physics.kinematic_bodies import KinematicBodies
     from .physics.stage import PhysicsStage
     from .rendering.renderer import Renderer
@@ -85,6 +86,7 @@ class PlanarWorld(World):
         ids: identities ``[A]`` or ``[E, A]``, which determine random numbers of each person (default: 0 to A - 1).
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
+        avatars: people whose pose comes from outside; to the crowd model they are external.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -129,6 +131,7 @@ class PlanarWorld(World):
     ids: Any = None
     latency: Mapping[int, float] = field(default_factory=dict)
     ghosts: Sequence[int] = ()
+    avatars: Avatars | None = None
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -146,6 +149,8 @@ class PlanarWorld(World):
         external = self.scene.external
         if self.script is not None:
             self.scene = self.script.start(self.scene)
+        if self.avatars is not None:
+            self.scene = self.avatars.place(self.scene, 0.0)
         self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
@@ -157,16 +162,20 @@ class PlanarWorld(World):
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
-        self._previous = self.scene
+        self._previous, external = self.scene, self.scene.external
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
         elapsed = self.environment_time.age
         earlier, crowd = self._step_crowd(hide_ghosts(before, self.ghosts))
+        if self.avatars is not None:
+            before, crowd = self.avatars.move(self, before, crowd, elapsed)
         after = self._step_robots(before, crowd, asked)
         after = self._resolve_overlaps(earlier, after)
-        after = after.replace(external=self.scene.external, time=self.environment_time.now)
+        after = after.replace(external=external, time=self.environment_time.now)
         if self.script is not None:
             after = self.script.place(after, elapsed)
+        if self.avatars is not None:
+            after = self.avatars.place(self.avatars.hold(after), elapsed)
         after.check()
         self.contacts = self._find_contacts(before, after)
         if self.leave_radius is not None:
@@ -174,7 +183,7 @@ class PlanarWorld(World):
         for zone in self.exits:
             after = leave_in_zone(after, zone)
         after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts)
+        self.scene = show_ghosts(self._traffic.advance(after, elapsed), self.ghosts).replace(external=external)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -225,8 +234,7 @@ class PlanarWorld(World):
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
         """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
-        x, y, z, roll, pitch, yaw = mount.placed
-        base = self.pose(robot)
+        (x, y, z, roll, pitch, yaw), base = mount.placed, self.pose(robot)
         return base.to_spatial(0.0).offset(x, y, z, roll, pitch, yaw) if spatial else base.offset(x, y, yaw)
 
     def wall_clearance(self, robot: int) -> Floats:
@@ -304,10 +312,10 @@ class PlanarWorld(World):
         return one if slots == scene.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
-        """Return the scene with replayed people as external agents."""
-        return (
-            scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
-        )
+        """Return the scene with replayed people and avatars as external agents."""
+        scene = scene if self.avatars is None else self.avatars.hold(scene)
+        known = None if self.script is None else self.script.follower_mask(scene)
+        return scene if known is None else scene.replace(external=scene.external | known)
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
@@ -366,8 +374,8 @@ class PlanarWorld(World):
         missing = [robot for robot in self.twists if robot not in commands]
         if missing:
             raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stop")
-        asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
-        return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
+        count = self.scene.shape[0]
+        return {robot: self._after_latency(robot, Twists.of(commands[robot], count)) for robot in self.twists}
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
         """Return the command in force during the next step."""

@@ -273,6 +273,7 @@ class PhysicsWorld(PlanarWorld):
             a: RobotBody(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())
         }
         self._people_bodies = PeopleBodies(*both, slots, self.physics_dt)
+        self._people_bodies.led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
         self._contact_reader = ContactReader(
             *both, prefixes, self._people_bodies.agent_of, self._people_bodies.swing_of
         )
