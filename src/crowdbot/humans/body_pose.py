@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,9 +72,9 @@ class BodyPose:
             if value is not None:
                 object.__setattr__(self, name, self._part(name, value, last - first))
 
-    def _part(self, name: str, value: Sequence[float], count: int) -> tuple[float, ...]:
+    def _part(self, name: str, value: Any, count: int) -> tuple[float, ...]:
         what = _SEVEN if count == 7 else "3 numbers of the pelvis and a quaternion for each of 28 bones"
-        if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray) or len(value) != count:
+        if not isinstance(value, list | tuple | np.ndarray) or len(value) != count:
             raise InputError(f"BodyPose: {name} must be {count} numbers: {what}")
         if not all(_is_number(one) for one in value):
             raise InputError(f"BodyPose: {name} has a value that is not a finite number; it must be {what}")
@@ -86,7 +86,7 @@ class BodyPose:
                 f" {HIGHEST:g} m high"
             )
         for k in range(3, count, 4):
-            if not 1e-3 <= math.sqrt(sum(one * one for one in numbers[k : k + 4])) <= 1e3:
+            if not 1e-3 <= math.hypot(*numbers[k : k + 4]) <= 1e3:
                 raise InputError(f"BodyPose: {name} has a quaternion {list(numbers[k : k + 4])} that is no rotation")
         return numbers
 
@@ -111,10 +111,10 @@ class BodyPose:
         return cls(x, y, heading, **parts)
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: Any) -> bool:
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.floating | np.integer):
         return False
-    return bool(abs(value) <= 1e300)
+    return bool(-1e300 <= value <= 1e300)
 
 
 def shift_row(row: Floats, dx: float, dy: float) -> Floats:

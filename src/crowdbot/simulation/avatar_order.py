@@ -78,7 +78,7 @@ class AvatarOrder(Order):
             )
         if known[self.avatar] != "external":
             raise InputError(
-                f'avatar {self.avatar!r} has source="{known[self.avatar]}"; only one with source="external" takes orders'
+                f'avatar {self.avatar!r} has source="{known[self.avatar]}"; only one with source="external" takes them'
             )
         now = float(simulation.world.times[self.environment])
         if (self.time or 0.0) > now + AHEAD:

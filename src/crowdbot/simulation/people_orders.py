@@ -142,9 +142,9 @@ def _check_person(simulation: OrderTarget, person: int, environment: int) -> int
 
 
 def _check_avatar(simulation: OrderTarget, slot: int, person: int) -> None:
-    avatars = simulation.trial.avatars
-    first = simulation.trial.people - sum(len(one.walks(simulation.trial.duration)) for one in simulation.trial.recorded)
-    k = slot - first + len(avatars)
+    trial, avatars = simulation.trial, simulation.trial.avatars
+    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    k = slot - (trial.people - recorded - len(avatars))
     if 0 <= k < len(avatars):
         raise InputError(f"{person} is the id of avatar {avatars[k].name!r}, whose pose comes from its source")
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from .agent import Agent, AgentParameter
-    from .avatar import Avatar
+    from .agent import Agent, AgentParameter, Avatar
     from .builtin import load_trial
     from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
     from .camera import OVERVIEW, Camera, overview
@@ -54,8 +53,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
-        "agent": ["Agent", "AgentParameter"],
-        "avatar": ["Avatar"],
+        "agent": ["Agent", "AgentParameter", "Avatar"],
         "builtin": ["load_trial"],
         "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
         "camera": ["OVERVIEW", "Camera", "overview"],

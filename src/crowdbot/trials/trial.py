@@ -10,8 +10,7 @@ from pathlib import Path
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 
-from .agent import Agent
-from .avatar import Avatar
+from .agent import Agent, Avatar
 from .camera import Camera
 from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg

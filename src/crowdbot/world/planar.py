@@ -147,10 +147,8 @@ class PlanarWorld(World):
         self._traffic = PeopleFlow.of(self.scene, self.model, seeds, self.ids, self.router, self.journeys, self.sources)
         self.ids = self._traffic.ids
         external = self.scene.external
-        if self.script is not None:
-            self.scene = self.script.start(self.scene)
-        if self.avatars is not None:
-            self.scene = self.avatars.place(self.scene, 0.0)
+        self.scene = self.scene if self.script is None else self.script.start(self.scene)
+        self.scene = self.scene if self.avatars is None else self.avatars.place(self.scene, 0.0)
         self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
@@ -172,10 +170,8 @@ class PlanarWorld(World):
         after = self._step_robots(before, crowd, asked)
         after = self._resolve_overlaps(earlier, after)
         after = after.replace(external=external, time=self.environment_time.now)
-        if self.script is not None:
-            after = self.script.place(after, elapsed)
-        if self.avatars is not None:
-            after = self.avatars.place(self.avatars.hold(after), elapsed)
+        after = after if self.script is None else self.script.place(after, elapsed)
+        after = after if self.avatars is None else self.avatars.place(self.avatars.hold(after), elapsed)
         after.check()
         self.contacts = self._find_contacts(before, after)
         if self.leave_radius is not None:
@@ -278,8 +274,8 @@ class PlanarWorld(World):
         """Add bodies for sensors and cameras; see :class:`World`."""
         from .physics.kinematic_bodies import KinematicBodies
 
-        if len(self.slots) > 1:
-            raise InputError(f"bodies are added to one environment at a time; this world has {len(self.slots)}")
+        if (count := len(self.slots)) > 1:
+            raise InputError(f"bodies are added to one environment at a time; this world has {count}")
         self._bodies = [KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)]
         self.people = self._bodies[0].people
         self._begin_activity(activity)
@@ -305,11 +301,10 @@ class PlanarWorld(World):
 
     def environment_scene(self, environment: int) -> Scene:
         """Return the scene of one environment with its own number of agents."""
-        scene, slots = self.scene, int(self.slots[environment])
         if len(self.slots) == 1:
-            return scene
-        one = scene.environment(environment)
-        return one if slots == scene.shape[1] else trim_scene(one, slots)
+            return self.scene
+        one, slots = self.scene.environment(environment), int(self.slots[environment])
+        return one if slots == one.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene with replayed people and avatars as external agents."""
@@ -360,10 +355,8 @@ class PlanarWorld(World):
 
     def _initial_twist(self, robot: int) -> Twists:
         heading, velocity = self.scene.heading[:, robot], self.scene.velocity[:, robot]
-        cos, sin = np.cos(heading), np.sin(heading)
-        forward = cos * velocity[:, 0] + sin * velocity[:, 1]
-        left = cos * velocity[:, 1] - sin * velocity[:, 0]
-        return Twists(forward, np.zeros_like(forward), left)
+        (cos, sin), (vx, vy) = (np.cos(heading), np.sin(heading)), velocity.T
+        return Twists(cos * vx + sin * vy, np.zeros_like(cos), cos * vy - sin * vx)
 
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
         for robot in commands:
@@ -371,9 +364,8 @@ class PlanarWorld(World):
                 raise InputError(
                     f"agent {robot} has a command but is not a robot; robots are {sorted(self.drives) or 'none'}"
                 )
-        missing = [robot for robot in self.twists if robot not in commands]
-        if missing:
-            raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stop")
+        for robot in sorted(self.twists.keys() - commands.keys()):
+            raise InputError(f"robot {robot} has no command; give one in every step, Twist() to stop")
         count = self.scene.shape[0]
         return {robot: self._after_latency(robot, Twists.of(commands[robot], count)) for robot in self.twists}
 

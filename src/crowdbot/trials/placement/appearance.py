@@ -8,8 +8,7 @@ import numpy as np
 
 from crowdbot import humans
 from crowdbot.core import stream
-from crowdbot.trials.agent import Agent
-from crowdbot.trials.avatar import Avatar
+from crowdbot.trials.agent import Agent, Avatar
 from crowdbot.trials.human_kinds import KINDS
 from crowdbot.trials.people import Spawner
 

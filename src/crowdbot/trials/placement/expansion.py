@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import TrialError
-from crowdbot.trials.agent import Agent, AgentParameter
-from crowdbot.trials.avatar import Avatar
+from crowdbot.trials.agent import Agent, AgentParameter, Avatar
 from crowdbot.trials.crowd import Crowds, crowd_names
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner

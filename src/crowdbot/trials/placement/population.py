@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import stream
-from crowdbot.trials.agent import Agent
-from crowdbot.trials.avatar import Avatar
+from crowdbot.trials.agent import Agent, Avatar
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.robot import RobotSpec

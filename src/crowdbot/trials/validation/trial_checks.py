@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
 from crowdbot.navigation import PathPlanner
-from crowdbot.trials.avatar import Avatar
+from crowdbot.trials.agent import Avatar
 from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
@@ -98,10 +98,10 @@ def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
             walks.append((fill_defaults(one, "data"), one.walks(trial.duration)))
     there = [agent for agent in agents if agent is not None]
     avatars: list[Avatar] = []
-    for one in trial.avatars:
+    for avatar in trial.avatars:
         with contextlib.suppress(UnreadableValue, InputError):
-            one.start_pose()
-            avatars.append(one)
+            avatar.start_pose()
+            avatars.append(avatar)
     return place(checked.stage, spawners, robots, checked.seed, there, walks, avatars)[1]
 
 

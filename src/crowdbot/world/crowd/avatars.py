@@ -15,7 +15,6 @@ from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
 
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion
-    from crowdbot.world.planar import PlanarWorld
 
 __all__ = ["Avatars", "give_pose", "people_motions"]
 
@@ -91,7 +90,7 @@ class Avatars:
                 heading[e, agent] = math.pi - (math.pi - row[2]) % (2.0 * math.pi)
         return scene.replace(position=position, velocity=velocity, heading=heading)
 
-    def move(self, world: PlanarWorld, before: Scene, crowd: Scene, time: float | Floats) -> tuple[Scene, Scene]:
+    def move(self, world: Any, before: Scene, crowd: Scene, time: float | Floats) -> tuple[Scene, Scene]:
         """Return the scenes before and after a step of the crowd with the avatars at their new places.
 
         An avatar that teleports in the step is already at its new place before it. The bodies of people get the new
@@ -116,7 +115,7 @@ class Avatars:
                 motions[e].move(agent, *step[e, k].tolist())
         return before.replace(position=position)
 
-    def pose(self, world: PlanarWorld) -> None:
+    def pose(self, world: Any) -> None:
         """Show the current poses of heads, hands and skeletons on the bodies of people."""
         for motion, poses in zip(people_motions(world), self._poses(), strict=False):
             motion.set_poses(poses)

@@ -130,7 +130,8 @@ class PeopleBodies:
         agents = self.agent[here]
         self._way[here] = way[agents]
         self._begin, self._duration = place, duration
-        held = here[(self._touched[here] > 0) & ~np.isin(agents, self.led)]  # a person in contact cannot change velocity immediately
+        touched = (self._touched[here] > 0) & ~np.isin(agents, self.led)
+        held = here[touched]  # a person in contact cannot change velocity immediately
         self._off[held] = self._velocity(held) - self._way[held]
         self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._limbs = (before[agents], after[agents])
