@@ -175,10 +175,8 @@ def _stand(gait: Floats, feet: Floats, lengths: Floats, frame: Floats, R: Floats
         pole[2] = 0.2
         unit(pole)
         knee = _bend(P[b], feet[f], pole, gait[0], lengths[0], lengths[1], axis, hinge)
-        for r in range(3):
-            hinge[r] = -hinge[r]  # knees bend backward, elbows forward
         align_frame(frame[f], axis, hinge, R[b])
-        about(hinge, -knee, axis, shank)
+        about(hinge, knee, axis, shank)
         align_frame(frame[2 + f], shank, hinge, R[b + 1])
 
 

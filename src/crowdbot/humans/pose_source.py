@@ -133,7 +133,7 @@ class PoseTrack(PoseSource):
             late = max(0.0, time - float(self.time[k]))
             vx, vy = self._velocity(k - 1) if k > 0 else (0.0, 0.0)
             row = shift_row(self.rows[k], *(min(late, self.extrapolation) * one for one in (vx, vy)))
-            return PoseMotion(row, vx, vy) if late < self.extrapolation else PoseMotion(row, 0.0, 0.0)
+            return PoseMotion(row, vx, vy) if late < self.extrapolation - EARLY else PoseMotion(row, 0.0, 0.0)
         velocity = self._velocity(k)
         if velocity == (0.0, 0.0) and np.any(self.rows[k, :2] != self.rows[k + 1, :2]):
             return PoseMotion(self.rows[k], 0.0, 0.0)
