@@ -143,13 +143,14 @@ class PoseTrack(PoseSource):
     def with_sample(self, time: float, pose: BodyPose, since: float = -math.inf) -> PoseTrack:
         """Return the track with one more sample, without samples that no time from ``since`` [s] on needs.
 
-        A sample with a known time stamp replaces the earlier one. One before all that are needed is left out.
+        A sample replaces an earlier one with the same time stamp, within 1 us. One before all that are needed is left
+        out.
         """
         first = max(0, int(np.searchsorted(self.time, since, side="right")) - 2)
         if first > 0 and time < self.time[first]:
             return self
-        k = int(np.searchsorted(self.time, time))
-        same = int(k < len(self.time) and self.time[k] == time)
+        k = int(np.searchsorted(self.time, time - EARLY))
+        same = int(k < len(self.time) and self.time[k] <= time + EARLY)
         times = np.concatenate([self.time[first:k], [time], self.time[k + same :]])
         rows = np.concatenate([self.rows[first:k], pose.row()[None], self.rows[k + same :]])
         return dataclasses.replace(self, time=times, rows=rows)

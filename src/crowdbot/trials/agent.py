@@ -183,8 +183,8 @@ class Avatar:
         from crowdbot.humans import BodyPose, PoseTrack
 
         if self.source == "external":
-            assert self.x is not None
-            assert self.y is not None
+            if self.x is None or self.y is None:  # a problem that is reported already
+                raise UnreadableValue("x, y")
             start = BodyPose(self.x, self.y, self.heading)
             return PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
         if self.source == "function":
