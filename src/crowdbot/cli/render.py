@@ -1,11 +1,11 @@
-"""``crowdbot render TRIAL --camera NAME``: render an image or a video of a trial."""
+"""``crowdbot render TRIAL --camera NAME``: render an image or a video of a trial or an episode."""
 
 from __future__ import annotations
 
 import argparse
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .output import add_json, number, print_json, print_table, progress
 from .settings import add_settings, add_world, select_variant, settings
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trial", metavar="TRIAL", help="trial file or built-in name, such as crossing-flows")
+    parser.add_argument(
+        "trial", metavar="TRIAL", help="trial file, built-in name such as crossing-flows, or an episode (.mcap)"
+    )
     parser.add_argument(
         "--camera",
         metavar="NAME",
@@ -51,10 +53,28 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Render the image or the video."""
-    from crowdbot.rendering import ImageWriter, camera_names, render_images
     from crowdbot.trials import load_trial
 
+    if options.trial.lower().endswith(".mcap"):
+        return _render_episode(options)
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    return _render(options, trial, trial.seed if options.seed is None else options.seed)
+
+
+def _render_episode(options: argparse.Namespace) -> int:
+    """Render a recorded episode: its trial runs again with its seed and its orders."""
+    from crowdbot.core import InputError
+    from crowdbot.recording import open_rerun
+
+    if settings(options) or options.variant is not None or options.seed is not None:
+        raise InputError("an episode is rendered as it was recorded; leave out settings, --variant and --seed")
+    with open_rerun(options.trial, trust=options.trust) as rerun:
+        return _render(options, rerun.trial, rerun.seed, sources=rerun.sources, prepare=rerun.prepare)
+
+
+def _render(options: argparse.Namespace, trial: Trial, seed: int, **steering: Any) -> int:
+    from crowdbot.rendering import ImageWriter, camera_names, render_images
+
     if options.list:
         return _list_cameras(trial, options.json)
     take = _take(options, trial.duration)
@@ -68,15 +88,16 @@ def main(options: argparse.Namespace) -> int:
             trial,
             camera,
             take,
-            seed=options.seed,
+            seed=seed,
             depth=options.depth,
             segmentation=options.segmentation,
             progress=lambda share: report(f"render {trial.name}", share),
+            **steering,
         )
         files, count = album.write(found)
     summary = {
         "trial": trial.name,
-        "seed": trial.seed if options.seed is None else options.seed,
+        "seed": seed,
         "world": trial.world,
         "camera": camera,
         "images": count,

@@ -1,11 +1,15 @@
 """Human bodies: walking animation, capsules for contacts and range sensors, skins for cameras."""
 
 from .activities import ACTIVITIES
+from .body_pose import BodyPose
+from .body_reach import reach_poses
 from .feet import Gaits
 from .gait import Gait, posing_and_skinning
 from .limbs import LIMBS, REGIONS, Limb, mass_shares
 from .people import Capsules, People
 from .person import Person, names, person, persons
+from .pose_file import read_pose_file
+from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
 from .seat import CHAIR, WHEELCHAIR, Seat
 from .wardrobe import Outfit, outfit
@@ -16,6 +20,7 @@ __all__ = [
     "LIMBS",
     "REGIONS",
     "WHEELCHAIR",
+    "BodyPose",
     "Capsules",
     "Gait",
     "Gaits",
@@ -23,6 +28,9 @@ __all__ = [
     "Outfit",
     "People",
     "Person",
+    "PoseMotion",
+    "PoseSource",
+    "PoseTrack",
     "Posture",
     "Seat",
     "mass_shares",
@@ -31,4 +39,6 @@ __all__ = [
     "person",
     "persons",
     "posing_and_skinning",
+    "reach_poses",
+    "read_pose_file",
 ]

@@ -6,6 +6,7 @@ from .episode_export import export
 from .episode_reader import RecordedEpisode, iterate_steps, read_episode
 from .episode_repair import repair
 from .episode_replay import Replay, replay
+from .episode_rerun import EpisodeRerun, open_rerun
 from .episode_writer import Recorder
 from .image_export import folder_of
 from .metadata import as_json, versions
@@ -16,6 +17,7 @@ from .step_records import RecordedStep
 __all__ = [
     "READING_TABLES",
     "AttachedFile",
+    "EpisodeRerun",
     "RecordedEpisode",
     "RecordedStep",
     "Recorder",
@@ -28,6 +30,7 @@ __all__ = [
     "folder_of",
     "iterate_steps",
     "named_files",
+    "open_rerun",
     "open_run",
     "read_episode",
     "record",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, import_optional, stream
 from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spatial_pose
-from crowdbot.simulation import RobotControl, Simulation, SimulationRun
+from crowdbot.simulation import OrderSource, RobotControl, Simulation, SimulationRun
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
 __all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
@@ -71,6 +71,8 @@ def render_images(
     depth: bool = False,
     segmentation: bool = False,
     progress: Callable[[float], None] | None = None,
+    sources: Sequence[OrderSource] = (),
+    prepare: Callable[[Simulation], None] | None = None,
 ) -> Iterator[RenderedImage]:
     """Run a trial and yield images of a camera.
 
@@ -81,6 +83,8 @@ def render_images(
         seed: random seed (default: the seed of the trial).
         depth, segmentation: whether to render these images, too.
         progress: called with the completed fraction, 0 to 1.
+        sources: programs that steer the simulation, or the recorded orders of an episode.
+        prepare: called with the simulation before its first step.
 
     Raises:
         InputError: the camera is unknown, no OpenGL backend works, or the run ends before the first image or with an
@@ -101,7 +105,9 @@ def render_images(
     simulation = Simulation(trial, chosen, posed=True)
     ticks = _ticks(simulation, take)
     first, last = ticks[0], ticks[-1]
-    running = SimulationRun(simulation)
+    if prepare is not None:
+        prepare(simulation)
+    running = SimulationRun(simulation, sources=sources)
     lens = _Lens(simulation, name, chosen, depth, segmentation)
     for tick in ticks:
         while simulation.tick < tick and running.outcome is None:

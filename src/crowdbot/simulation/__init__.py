@@ -1,5 +1,6 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
+from .avatar_order import AvatarOrder
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
@@ -20,6 +21,7 @@ from .world_builder import start_scene
 __all__ = [
     "WALL",
     "AddPersonOrder",
+    "AvatarOrder",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",

@@ -191,6 +191,7 @@ def _checked(kind: type[Order], name: str, values: Mapping[str, Any]) -> Order:
 
 def _check_type(name: str, key: str, wanted: str, value: Any) -> None:
     kinds: dict[str, tuple[type, ...]] = {"float": (int, float), "int": (int,), "str": (str,), "bool": (bool,)}
+    kinds["tuple[float, ...]"] = (list, tuple)
     allowed = tuple(one for part in wanted.split(" | ") for one in kinds.get(part, ()))
     if value is None and "None" in wanted:
         return

@@ -98,7 +98,7 @@ class MoveOrder(Order):
         super().check(simulation)
         check_place(self.x, self.y)
         check_place(self.heading or 0.0, 0.0)
-        slot_of(simulation.world, self.person, self.environment)
+        _check_avatar(simulation, slot_of(simulation.world, self.person, self.environment), self.person)
 
     def apply(self, simulation: OrderTarget) -> None:
         """Move the person or robot."""
@@ -137,7 +137,16 @@ def _check_person(simulation: OrderTarget, person: int, environment: int) -> int
     slot = slot_of(simulation.world, person, environment)
     if slot in simulation.world.twists:
         raise InputError(f"{person} is the id of a robot; give the id of a person")
+    _check_avatar(simulation, slot, person)
     return slot
+
+
+def _check_avatar(simulation: OrderTarget, slot: int, person: int) -> None:
+    trial, avatars = simulation.trial, simulation.trial.avatars
+    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    k = slot - (trial.people - recorded - len(avatars))
+    if 0 <= k < len(avatars):
+        raise InputError(f"{person} is the id of avatar {avatars[k].name!r}, whose pose comes from its source")
 
 
 def _is_present(simulation: OrderTarget, person: int, environment: int) -> bool:

@@ -20,11 +20,11 @@ from crowdbot.trials import (
     Trial,
     own,
 )
-from crowdbot.world import JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
+from crowdbot.world import Avatars, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
 __all__ = [
-    "check_clock", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of", "set_off",
-    "start_scene", "start_scenes",
+    "avatars_of", "check_clock", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of",
+    "set_off", "start_scene", "start_scenes",
 ]  # fmt: skip
 
 
@@ -158,6 +158,16 @@ def script_of(people: InitialPeople) -> ReplayedPeople | None:
     ]
     tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
     return ReplayedPeople(tracks, release)
+
+
+def avatars_of(trial: Trial, end: int) -> Avatars | None:
+    """Return the avatars of a trial in one environment; their indices end before ``end``."""
+    if not trial.avatars:
+        return None
+    sources = [avatar.pose_source() for avatar in trial.avatars]
+    agents = end - len(sources) + np.arange(len(sources))
+    names = [avatar.name for avatar in trial.avatars]
+    return Avatars(agents, names, [sources], [avatar.delay for avatar in trial.avatars])
 
 
 def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:

@@ -30,7 +30,7 @@ from crowdbot.trials import (
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, join_worlds, planar_world
 
 from .mounted_sensor import spatial
-from .world_builder import journeys_of, model_of, own_walls, script_of, set_off, start_scenes
+from .world_builder import avatars_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
 
 __all__ = ["WorldTemplate"]
 
@@ -117,9 +117,9 @@ class WorldTemplate:
 
     @functools.cached_property
     def _is_alone(self) -> bool:
-        """Whether worlds are made one by one: with bodies, or if people enter a mixture of crowds."""
+        """Whether worlds are made one by one: with bodies or avatars, or if people enter a mixture of crowds."""
         mixed = isinstance(self.trial.crowd, Crowds) and bool(self.trial.sources)
-        return self.posed or self._embodied or mixed
+        return self.posed or self._embodied or mixed or bool(self.trial.avatars)
 
     @functools.cached_property
     def _embodied(self) -> bool:
@@ -183,15 +183,17 @@ class WorldTemplate:
     def _place(self, seeds: Sequence[int]) -> PeopleBatch:
         """Return the people of some seeds; a single seed is placed faster than the kernel is loaded."""
         trial = self.trial
-        if self._begun + len(seeds) > 1:
+        if self._begun + len(seeds) > 1 and not trial.avatars:
             found = self._plan.place(seeds)
             if isinstance(found, PeopleBatch):
                 return found
             problems = found[1]
         else:
-            people, problems = place(trial.stage, trial.spawners, trial.robots, seeds[0], trial.agents, self._recorded)
+            who = (trial.agents, self._recorded, trial.avatars)
+            rows = [place(trial.stage, trial.spawners, trial.robots, seed, *who) for seed in seeds]
+            problems = next((wrong for _, wrong in rows if wrong), [])
             if not problems:
-                return PeopleBatch.of([people])
+                return PeopleBatch.of([people for people, _ in rows])
         what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
         raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
 
@@ -211,6 +213,7 @@ class WorldTemplate:
             **self._shared,
             "journeys": journeys_of(self.trial, people, agents),
             "script": script_of(people),
+            "avatars": avatars_of(self.trial, len(people) - len(people.walks)),
             "ids": np.concatenate([np.arange(there), -1 - np.arange(agents - there)]),
         }
 
@@ -225,7 +228,7 @@ class WorldTemplate:
 
     def _set_off(self, world: PlanarWorld, people: PeopleBatch) -> None:
         first, journeys = people.first, world.journeys
-        walkers = len(first) - len(first.walks)
+        walkers = len(first) - len(first.walks) - len(self.trial.avatars)
         if walkers and (self._router or journeys):
             world.scene = set_off(world.scene, walkers, self._router, journeys, people.heading)
 
@@ -263,4 +266,6 @@ class WorldTemplate:
                 walls=own_walls(trial),
                 seed=seed,
             )
+        if world.avatars is not None:
+            world.avatars.pose(world)
         return world

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from .agent import Agent, AgentParameter
+    from .agent import Agent, AgentParameter, Avatar
     from .builtin import load_trial
     from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
     from .camera import OVERVIEW, Camera, overview
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
-        "agent": ["Agent", "AgentParameter"],
+        "agent": ["Agent", "AgentParameter", "Avatar"],
         "builtin": ["load_trial"],
         "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
         "camera": ["OVERVIEW", "Camera", "overview"],
@@ -113,6 +113,7 @@ __all__ = [
     "UNWRITABLE",
     "Agent",
     "AgentParameter",
+    "Avatar",
     "Camera",
     "ContactSpec",
     "Crowd",

@@ -10,7 +10,7 @@ from pathlib import Path
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 
-from .agent import Agent
+from .agent import Agent, Avatar
 from .camera import Camera
 from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg
@@ -128,6 +128,7 @@ class Trial:
     spawners: tuple[Spawner, ...] = children("spawner", about="people", max=1000)
     sources: tuple[SourceSpec, ...] = children("source", about="people who enter during the trial", max=1000)
     recorded: tuple[RecordedPeople, ...] = children("recorded", about="people who follow a recording", max=100)
+    avatars: tuple[Avatar, ...] = children("avatar", about="people whose pose comes from outside", max=100)
     exits: tuple[Exit, ...] = children("exit", about="zones where people leave", max=1000)
     portals: tuple[Portal, ...] = children("portal", about="zones that move people elsewhere", max=1000)
     robots: tuple[RobotSpec, ...] = children("robot", about="robots", max=100)
@@ -153,9 +154,12 @@ class Trial:
 
     @property
     def people(self) -> int:
-        """Number of agents, people of spawners and recorded people; their indices come before those of robots."""
+        """Number of agents, people of spawners, avatars and recorded people.
+
+        Their indices come in this order, before those of robots.
+        """
         recorded = sum(len(one.walks(self.duration)) for one in self.recorded)
-        return len(self.agents) + sum(spawner.count for spawner in self.spawners) + recorded
+        return len(self.agents) + sum(spawner.count for spawner in self.spawners) + len(self.avatars) + recorded
 
     @property
     def ticks(self) -> int:

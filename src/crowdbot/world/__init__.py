@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
     from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
 
 _LAZY = {
     "AckermannDrive": "robots.ackermann",
+    "Avatars": "crowd.avatars",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
     "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
@@ -121,6 +123,7 @@ _LAZY = {
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
     "free_joints": "robots.joint_motion",
+    "give_pose": "crowd.avatars",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
     "move_agent": "live_changes",
@@ -145,6 +148,7 @@ _LAZY = {
 __all__ = [
     "BODY_REGION_LIMITS",
     "AckermannDrive",
+    "Avatars",
     "BodyContactEvent",
     "BodyRegionLimits",
     "CameraImages",
@@ -202,6 +206,7 @@ __all__ = [
     "environment_seeds",
     "frame",
     "free_joints",
+    "give_pose",
     "integrate_twist",
     "join_worlds",
     "move_agent",

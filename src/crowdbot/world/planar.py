@@ -41,6 +41,7 @@ from .world import Contact
 if TYPE_CHECKING:
     from crowdbot.humans import People
 
+    from .crowd.avatars import Avatars
     from .physics.kinematic_bodies import KinematicBodies
     from .physics.stage import PhysicsStage
     from .rendering.renderer import Renderer
@@ -89,6 +90,7 @@ class PlanarWorld(PlanarLiveChanges):
         ids: identities ``[A]`` or ``[E, A]``, which determine random numbers of each person (default: 0 to A - 1).
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
+        avatars: people whose pose comes from outside; to the crowd model they are external.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -133,6 +135,7 @@ class PlanarWorld(PlanarLiveChanges):
     ids: Any = None
     latency: Mapping[int, float] = field(default_factory=dict)
     ghosts: Sequence[int] = ()
+    avatars: Avatars | None = None
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -148,8 +151,8 @@ class PlanarWorld(PlanarLiveChanges):
         self._traffic = PeopleFlow.of(self.scene, self.model, seeds, self.ids, self.router, self.journeys, self.sources)
         self.ids = self._traffic.ids
         external = self.scene.external
-        if self.script is not None:
-            self.scene = self.script.start(self.scene)
+        self.scene = self.scene if self.script is None else self.script.start(self.scene)
+        self.scene = self.scene if self.avatars is None else self.avatars.place(self.scene, 0.0)
         self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
@@ -161,20 +164,23 @@ class PlanarWorld(PlanarLiveChanges):
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
-        self._previous = self.scene
+        self._previous, external = self.scene, self.scene.external
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
         elapsed = self.environment_time.age
         earlier, crowd = self._step_crowd(hide_ghosts(before, self.ghosts))
+        if self.avatars is not None:
+            before, crowd = self.avatars.move(self, before, crowd, elapsed)
         after = self._step_robots(before, crowd, asked)
         after = self._resolve_overlaps(earlier, after)
-        after = after.replace(external=self.scene.external, time=self.environment_time.now)
-        if self.script is not None:
-            after = self.script.place(after, elapsed)
+        after = after.replace(external=external, time=self.environment_time.now)
+        after = after if self.script is None else self.script.place(after, elapsed)
+        after = after if self.avatars is None else self.avatars.place(self.avatars.hold(after), elapsed)
         after.check()
         self.contacts = self._find_contacts(before, after)
         exits = (self.leave_radius, self.exits, self.portals)
-        self.scene = show_ghosts(exchange_people(before, after, *exits, self._traffic, elapsed), self.ghosts, before)
+        after = exchange_people(before, after, *exits, self._traffic, elapsed)
+        self.scene = show_ghosts(after, self.ghosts, before).replace(external=external)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -226,8 +232,7 @@ class PlanarWorld(PlanarLiveChanges):
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
         """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
-        x, y, z, roll, pitch, yaw = mount.placed
-        base = self.pose(robot)
+        (x, y, z, roll, pitch, yaw), base = mount.placed, self.pose(robot)
         return base.to_spatial(0.0).offset(x, y, z, roll, pitch, yaw) if spatial else base.offset(x, y, yaw)
 
     def wall_clearance(self, robot: int) -> Floats:
@@ -271,8 +276,8 @@ class PlanarWorld(PlanarLiveChanges):
         """Add bodies for sensors and cameras; see :class:`World`."""
         from .physics.kinematic_bodies import KinematicBodies
 
-        if len(self.slots) > 1:
-            raise InputError(f"bodies are added to one environment at a time; this world has {len(self.slots)}")
+        if (count := len(self.slots)) > 1:
+            raise InputError(f"bodies are added to one environment at a time; this world has {count}")
         self._bodies = [KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)]
         self.people = self._bodies[0].people
         self._begin_activity(activity)
@@ -298,16 +303,16 @@ class PlanarWorld(PlanarLiveChanges):
 
     def environment_scene(self, environment: int) -> Scene:
         """Return the scene of one environment with its own number of agents."""
-        scene, slots = self.scene, int(self.slots[environment])
         if len(self.slots) == 1:
-            return scene
-        one = scene.environment(environment)
-        return one if slots == scene.shape[1] else trim_scene(one, slots)
+            return self.scene
+        one, slots = self.scene.environment(environment), int(self.slots[environment])
+        return one if slots == one.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
-        """Return the scene with replayed people as external agents."""
-        script = self.script
-        return scene if script is None else scene.replace(external=scene.external | script.follower_mask(scene))
+        """Return the scene with replayed people and avatars as external agents."""
+        scene = scene if self.avatars is None else self.avatars.hold(scene)
+        known = None if self.script is None else self.script.follower_mask(scene)
+        return scene if known is None else scene.replace(external=scene.external | known)
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""

@@ -70,6 +70,8 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     for world in worlds:
         whole.contacts += tuple(one._replace(environment=begin + one.environment) for one in world.contacts)
         begin += len(world.slots)
+    if first.avatars is not None:
+        whole.avatars = first.avatars.join([world.avatars for world in worlds[1:] if world.avatars is not None])
     if first._bodies is not None:
         whole._bodies = [bodies for world in worlds for bodies in world._bodies or ()]
     return whole
@@ -112,6 +114,7 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     some.twists = {robot: take_arrays(twists, index) for robot, twists in world.twists.items()}
     some._delayed = {robot: _take_delay(delay, index, world) for robot, delay in world._delayed.items()}
     some.slots = world.slots[index]
+    some.avatars = None if world.avatars is None else world.avatars.select(index)
     rows: dict[int, list[int]] = {}
     for k, e in enumerate(index.tolist()):
         rows.setdefault(e, []).append(k)
@@ -147,6 +150,8 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
     if any(model is not models[0] for model in models):
         set_models(world, models)
     world.slots[index] = other.slots
+    if world.avatars is not None and other.avatars is not None:
+        world.avatars.put(index, other.avatars)
     world.twists = {robot: put_arrays(twists, index, other.twists[robot]) for robot, twists in world.twists.items()}
     world._delayed = {robot: _reset_delay(delay, index, world) for robot, delay in world._delayed.items()}
     fresh = set(index.tolist())

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot import humans
 from crowdbot.core import stream
-from crowdbot.trials.agent import Agent
+from crowdbot.trials.agent import Agent, Avatar
 from crowdbot.trials.human_kinds import KINDS
 from crowdbot.trials.people import Spawner
 
@@ -68,6 +68,8 @@ def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]
         if isinstance(owner, Agent | Spawner):
             outfit = getattr(owner, "outfit", None)
             found += _draw(owner.body, owner.activity, count, (seed, *keys), outfit)
+        elif isinstance(owner, Avatar):
+            found += _draw(owner.body, "", count, (seed, "avatar", owner.name), owner.outfit)
         else:
             found += [PersonAppearance("", -1, "")] * count
     return found
@@ -96,7 +98,13 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)
-    return PeopleAppearance(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
+    whole = humans.People.of(names, outfits)
+    tall = [owner.height if isinstance(owner, Avatar) else None for owner in people.owners]
+    if any(tall):
+        heights = [tall[k] for k in people.owner.tolist()] + [None] * (len(names) - len(people))
+        given = [own if one is None else one for one, own in zip(heights, whole.height.tolist(), strict=True)]
+        whole = humans.People.of(names, outfits, given)
+    return PeopleAppearance(whole, busy_with, tuple(len(people) + k for k in carriers))
 
 
 def _draw(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:

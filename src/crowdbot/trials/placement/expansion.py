@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import TrialError
-from crowdbot.trials.agent import Agent, AgentParameter
+from crowdbot.trials.agent import Agent, AgentParameter, Avatar
 from crowdbot.trials.crowd import Crowds, crowd_names
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
@@ -47,12 +47,14 @@ def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     if trial.sweeps:
         raise TrialError(f"trial {trial.name!r} has sweeps; take one of its variants")
     chosen = trial.seed if seed is None else int(seed)
-    people, problems = place(trial.stage, trial.spawners, trial.robots, chosen, trial.agents)
+    people, problems = place(trial.stage, trial.spawners, trial.robots, chosen, trial.agents, avatars=trial.avatars)
     if problems:
         raise TrialError(*(f"trial {trial.name!r}: {sentence}" for _, sentence in problems))
     agents = []
     for a, figure in enumerate(draw_appearances(people, chosen)):
         owner = people.owners[int(people.owner[a])]
+        if isinstance(owner, Avatar):
+            continue
         agent = _with_appearance(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
         agents.append(_with_parameters(trial, agent, a, chosen))
     return dataclasses.replace(trial, agents=tuple(agents), spawners=(), seed=chosen)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
-from crowdbot.trials.agent import Agent
+from crowdbot.trials.agent import Agent, Avatar
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.robot import RobotSpec
@@ -30,23 +30,24 @@ def place(
     seed: int,
     agents: Sequence[Agent] = (),
     recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
+    avatars: Sequence[Avatar] = (),
 ) -> tuple[InitialPeople, list[tuple[Any, str]]]:
     """Return the people at the beginning of a trial, and the elements that cannot be placed, each with a sentence.
 
     Spawner k draws from ``stream(seed, "spawner", k, ...)`` only, with separate streams for positions, goals, speeds
-    and radii. People keep clear of agents, robots, recorded people and the people of earlier spawners.
+    and radii. People keep clear of agents, robots, recorded people, avatars and the people of earlier spawners.
 
     >>> zone = [(0, 0), (2, 0), (2, 2), (0, 2)]
     >>> people, problems = place(Stage(), [Spawner(count=50, zone=zone, goal=zone, radius=0.3)], [], seed=0)
     >>> len(people) < 50, problems[0][1][:20]
     (True, 'only 12 of 50 people')
     """
-    taken, problems, first = place_fixed(stage, spawners, robots, agents, recorded)
+    taken, problems, first = place_fixed(stage, spawners, robots, agents, recorded, avatars)
     replayed = [
         recorded_people(walks, one.radius.draw(stream(seed, "recorded", k, "radius"), len(walks)))
         for k, (one, walks) in enumerate(recorded)
     ]
-    groups = [first]
+    groups, led = [first], _avatars(avatars)
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
@@ -56,9 +57,9 @@ def place(
         if len(group) < spawner.count:
             problems.append((spawner, _too_many(spawner, len(group))))
     walks = tuple(walk for _, walks in recorded for walk in walks)
-    owners = (*agents, *spawners[: len(groups) - 1], *(one for one, _ in recorded))
-    sizes = [len(agents), *(1 for _ in groups[1:]), *(1 for _ in replayed)]
-    return InitialPeople.concatenate([*groups, *replayed], sizes, owners, walks), problems
+    owners = (*agents, *spawners[: len(groups) - 1], *avatars, *(one for one, _ in recorded))
+    sizes = [len(agents), *(1 for _ in groups[1:]), len(avatars), *(1 for _ in replayed)]
+    return InitialPeople.concatenate([*groups, led, *replayed], sizes, owners, walks), problems
 
 
 def place_fixed(
@@ -67,13 +68,15 @@ def place_fixed(
     robots: Sequence[RobotSpec],
     agents: Sequence[Agent],
     recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]],
+    avatars: Sequence[Avatar] = (),
 ) -> tuple[OccupiedDiscs, list[tuple[Any, str]], InitialPeople]:
-    """Return the discs of robots, agents and recorded people, the problems of agents, and the agents.
+    """Return the discs of robots, agents, recorded people and avatars, the problems of agents, and the agents.
 
     They are the same for all seeds.
     """
     widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
     widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
+    widest += [avatar.radius for avatar in avatars]
     taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
     for robot in robots:
         taken.add(robot.x, robot.y, robot.radius)
@@ -82,6 +85,8 @@ def place_fixed(
         for walk in walks:
             if walk.time[0] <= 0.0:
                 taken.add(*_begin(walk), 0.3)
+    for avatar, pose in zip(avatars, [avatar.start_pose() for avatar in avatars], strict=True):
+        taken.add(pose.x, pose.y, avatar.radius)
     return taken, problems, _agents(agents)
 
 
@@ -110,6 +115,20 @@ def _agents(agents: Sequence[Agent]) -> InitialPeople:
         np.array([agent.facing for agent in agents], dtype=np.float64),
         np.array([agent.group for agent in agents], dtype=np.int64),
         np.arange(len(agents)),
+    )
+
+
+def _avatars(avatars: Sequence[Avatar]) -> InitialPeople:
+    poses = [avatar.start_pose() for avatar in avatars]
+    place = np.array([(pose.x, pose.y) for pose in poses], dtype=np.float64).reshape(-1, 2)
+    return InitialPeople(
+        place,
+        place.copy(),
+        np.array([avatar.radius for avatar in avatars], dtype=np.float64),
+        np.full(len(avatars), 1.34),
+        np.array([pose.heading for pose in poses], dtype=np.float64),
+        np.full(len(avatars), -1, dtype=np.int64),
+        np.arange(len(avatars)),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
-from crowdbot.trials.agent import Agent
+from crowdbot.trials.agent import Agent, Avatar
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
@@ -36,7 +36,7 @@ PLACES = 50
 
 @dataclass(frozen=True)
 class InitialPeople:
-    """Start, goal and body of N people: agents, people of spawners, recorded people.
+    """Start, goal and body of N people: agents, people of spawners, avatars, recorded people.
 
     Fields:
         position, goal: ``[N, 2]`` [m]; with a journey, the goal is the position.
@@ -45,7 +45,7 @@ class InitialPeople:
         heading: ``[N]`` [rad], NaN for the walking direction.
         group: ``[N]`` number of the group, -1 without a group.
         owner: ``[N]`` index in ``owners``.
-        owners: agents, spawners, recorded people.
+        owners: agents, spawners, avatars, recorded people.
         walks: walks of the recorded people, which are the last rows.
     """
 
@@ -56,7 +56,7 @@ class InitialPeople:
     heading: Floats
     group: NDArray[np.int64]
     owner: NDArray[np.int64]
-    owners: tuple[Agent | Spawner | RecordedPeople, ...] = ()
+    owners: tuple[Agent | Spawner | Avatar | RecordedPeople, ...] = ()
     walks: tuple[Walk, ...] = ()
 
     def __len__(self) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
 from crowdbot.navigation import PathPlanner
+from crowdbot.trials.agent import Avatar
 from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
@@ -71,6 +72,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
     found += [*skip_unreadable(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
     found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
+    found += [*skip_unreadable(*(_avatar(one) for one in trial.avatars))]
     if not too_large:
         found += _places(checked)
     return [(original_element(thing), sentence) for thing, sentence in found]
@@ -95,7 +97,12 @@ def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
         with contextlib.suppress(UnreadableValue, InputError):
             walks.append((fill_defaults(one, "data"), one.walks(trial.duration)))
     there = [agent for agent in agents if agent is not None]
-    return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
+    avatars: list[Avatar] = []
+    for avatar in trial.avatars:
+        with contextlib.suppress(UnreadableValue, InputError):
+            avatar.start_pose()
+            avatars.append(avatar)
+    return place(checked.stage, spawners, robots, checked.seed, there, walks, avatars)[1]
 
 
 def _filled_or(thing: Any, other: Any, *required: str, **replacements: Any) -> Any:
@@ -116,6 +123,14 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
         return
     if not walks:
         yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
+
+
+def _avatar(one: Avatar) -> Problems:
+    """Yield why the source of an avatar gives no pose."""
+    try:
+        one.start_pose()
+    except InputError as error:
+        yield one, f"{one.source}={quote_value(getattr(one, one.source))} {error}"
 
 
 def _periods(checked: ValidationContext) -> Problems:
@@ -180,6 +195,7 @@ def _too_frequent(robot: RobotSpec, step: float) -> list[Mount]:
 
 def _names(checked: ValidationContext) -> Iterator[Problems]:
     yield duplicate_names(checked.trial.robots, "robot")
+    yield duplicate_names(checked.trial.avatars, "avatar")
     for _, mounts in readable(checked.trial.robots, "sensors"):
         yield duplicate_names(mounts, "sensor of this robot")
     yield duplicate_names(checked.trial.cameras, "camera")
@@ -229,7 +245,7 @@ def _too_many(checked: ValidationContext) -> Problems:
 
 def _too_large(checked: ValidationContext) -> Problems:
     trial = checked.trial
-    first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
+    first = len(trial.agents) + len(trial.avatars) + sum(spawner.count for spawner in trial.spawners)
     coming = arrival_count(trial)
     agents = first + coming + len(trial.robots) + _through(trial, first + coming)
     scenes = trial.duration / trial.recording.period

@@ -220,7 +220,7 @@ def _numbers(element: Element, key: str) -> Floats:
 
 def _skins(scene: Scene, motion: PeopleMotion, level: int) -> Skins:
     """Return the skins of all people present, without hidden parts."""
-    points = motion.gait.skin(motion.state, level)
+    points = motion.skin(level)
     points[~scene.active[0, motion.agents]] = np.nan
     worn, faces = motion.people.clothing_mask(level), motion.people.faces(level)
     count = points.shape[1]

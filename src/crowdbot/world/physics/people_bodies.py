@@ -109,6 +109,7 @@ class PeopleBodies:
     Attributes:
         agent: ``[S]`` agent of each body, -1 for a free one.
         pushed: ``[S]`` whether a contact displaced the body during this step of the world.
+        led: agents whose motion comes from outside: contacts do not displace them.
     """
 
     def __init__(self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None) -> None:
@@ -116,6 +117,8 @@ class PeopleBodies:
         self._model: Any = None
         self.agent = np.full(slots, -1, dtype=np.int64)
         self.pushed = np.zeros(slots, dtype=np.bool_)
+        self.led: Ints = np.zeros(0, dtype=np.int64)
+        self._begin, self._duration = np.zeros((0, 2)), 0.0
         self._off = np.zeros((slots, 2))
         self._mass = np.full(slots, 70.0)
         self.bind(model, data)
@@ -207,7 +210,9 @@ class PeopleBodies:
         here = self._here
         agents = self.agent[here]
         self._way[here] = way[agents]
-        held = here[self._touched[here] > 0]  # a person in contact cannot change velocity immediately
+        self._begin, self._duration = place, duration
+        touched = (self._touched[here] > 0) & ~np.isin(agents, self.led)
+        held = here[touched]  # a person in contact cannot change velocity immediately
         self._off[held] = self._velocity(held) - self._way[held]
         self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._limbs = (before[agents], after[agents])
@@ -223,6 +228,7 @@ class PeopleBodies:
             return
         self._move(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
         self.shapes.write_poses(self._model, self.geoms.ravel())
+        self._lead(share)
         force = np.zeros((len(here), 2))
         if np.any(self.pushed):
             force = self._braced(here)
@@ -253,6 +259,14 @@ class PeopleBodies:
             self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
         self._since[self.pushed] += 1
 
+    def _lead(self, share: float) -> None:
+        """Keep the bodies that are led from outside on their path, at the end of the engine step before ``share``."""
+        for slot in np.flatnonzero(np.isin(self.agent, self.led)) if len(self.led) else ():
+            self._off[slot], self.pushed[slot] = 0.0, False
+            place = self._begin[self.agent[slot]] + (share * self._duration - self.step) * self._way[slot]
+            self._data.qpos[self._place[slot] + np.arange(2)] = place
+            self._data.qvel[self._speed[slot] + np.arange(2)] = self._way[slot]
+
     def _lift(self, slot: int, limb: str, upwards: float, depth: float) -> None:
         """Raise the arm or leg of a limb off the object below it."""
         rows = _chain(limb)
@@ -278,7 +292,7 @@ class PeopleBodies:
 
     def end(self) -> tuple[Ints, Floats, Floats]:
         """Return the people pushed off their path, with positions ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
-        slots = np.flatnonzero(self.pushed & (self.agent >= 0))
+        slots = np.flatnonzero(self.pushed & (self.agent >= 0) & ~np.isin(self.agent, self.led))
         velocity = self._velocity(slots)
         off = velocity - self._way[slots]
         off[np.sum(off * off, axis=1) < STEADY**2] = 0.0

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.humans import CHAIR, LIMBS, WHEELCHAIR, Gait, Gaits, People
+from crowdbot.humans import CHAIR, LIMBS, WHEELCHAIR, Gait, Gaits, People, Posture, reach_poses
 
 __all__ = ["LimbCapsules", "PeopleMotion"]
 
@@ -77,6 +77,7 @@ class PeopleMotion:
             )
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))
+        self.poses: Mapping[int, Floats] = {}
         self.gait = self._new_gait(seed, range(len(agents)))
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity, self._busy("walk"))
@@ -152,6 +153,25 @@ class PeopleMotion:
         self.state = state
         self.ends = self._measured(state)[0] if ends is None else ends
 
+    def set_poses(self, poses: Mapping[int, Floats]) -> None:
+        """Set the poses ``[139]`` of agents for the next state, see :meth:`crowdbot.humans.BodyPose.row`."""
+        self.poses = {int(self.row[agent]): row for agent, row in poses.items()}
+
+    def move(self, agent: int, dx: float, dy: float) -> None:
+        """Move the limbs of an agent that is elsewhere at once [m]."""
+        if (dx or dy) and self.row[agent] >= 0:
+            self.ends = self.ends.copy()
+            self.ends[self.row[agent]] += (dx, dy, 0.0, dx, dy, 0.0)
+
+    def posture(self, state: Gaits | None = None) -> Posture:
+        """Return the posture of all people, by default the current one."""
+        walking = self.gait.posture(self.state if state is None else state)
+        return reach_poses(walking, self.people, self.poses) if self.poses else walking
+
+    def skin(self, level: int) -> Floats:
+        """Return the current vertices ``[N, V, 3]`` [m] of all people at a level of detail."""
+        return self.people.skin(self.posture(), level)
+
     def ends_of(self, state: Gaits) -> Floats:
         """Return both ends of all limbs ``[N, L, 6]`` [m] in the world."""
         return self._measured(state)[0]
@@ -202,5 +222,5 @@ class PeopleMotion:
         return place, velocity, np.where(here, scene.heading[0, self.agents], 0.0)
 
     def _measured(self, state: Gaits) -> tuple[Floats, Floats]:
-        found = self.gait.limbs(state)
+        found = self.people.limbs(self.posture(state))
         return np.concatenate([found.start, found.end], axis=-1), found.radius

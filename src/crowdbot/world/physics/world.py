@@ -207,6 +207,7 @@ class PhysicsWorld(RigidWorld):
         }
         walls = self.scene.walls
         self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
+        self.rigid.people.led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
         self._contact_tracker = BodyContactTracker(
             self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
         )

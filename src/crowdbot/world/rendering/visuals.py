@@ -96,7 +96,7 @@ class Visuals:
         names = shapes().regions
         region = shapes().levels[self.detail].face_region
         around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
-        skin = motion.gait.skin(motion.state, self.detail)
+        skin = motion.skin(self.detail)
         for k, outfit in enumerate(motion.people.outfits):
             worn = self._part[k]
             spec.add_mesh(
@@ -152,7 +152,7 @@ class Visuals:
         here = active[motion.agents]
         if not np.any(here):
             return
-        skin = motion.gait.skin(motion.state, self.detail)
+        skin = motion.skin(self.detail)
         for k in np.flatnonzero(here):
             ahead = (skin[k] - view.place) @ view.forward
             if ahead.max() < 0.0 or ahead.min() > view.far:

@@ -1,0 +1,91 @@
+"""AvatarOrder: a sample of the pose of an avatar, from a headset, motion capture, ROS or a page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.humans import BodyPose
+from crowdbot.world import give_pose
+
+from .orders import Order, OrderTarget
+
+__all__ = ["AvatarOrder"]
+
+AHEAD = 10.0
+"""Longest time [s] by which a sample can be ahead of the current time."""
+LATEST = 1e7
+"""Largest time stamp [s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvatarOrder(Order):
+    """Give the pose of an avatar with ``source="external"`` at a time.
+
+    The avatar is then where its samples say at the current time. A sample for the time of the next step, given before
+    that step, has no lag: crowd, sensors and record of that step see it. A sample that is too late changes nothing.
+
+    Fields:
+        avatar: name of the avatar.
+        time: time stamp in simulated time [s], at most 10 s ahead; None: the current time.
+        x, y: position [m].
+        heading: direction of the trunk [rad].
+        head, left_hand, right_hand: x, y, z [m] and a quaternion w, x, y, z in the world frame; None: as in the gait.
+        skeleton: the whole skeleton. See :class:`crowdbot.humans.BodyPose` for all of these.
+
+    Raises:
+        InputError: a value is not finite or out of range.
+
+    >>> AvatarOrder(avatar="guide", x=1.0, y=2.0, time=0.1, right_hand=(1.2, 1.7, 1.6, 1, 0, 0, 0)).pose.heading
+    0.0
+    """
+
+    avatar: str
+    time: float | None = None
+    x: float
+    y: float
+    heading: float = 0.0
+    head: tuple[float, ...] | None = None
+    left_hand: tuple[float, ...] | None = None
+    right_hand: tuple[float, ...] | None = None
+    skeleton: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        try:
+            pose = self.pose
+        except InputError as error:
+            raise InputError(f"AvatarOrder: {str(error).removeprefix('BodyPose: ')}") from None
+        for name in ("x", "y", "heading", "head", "left_hand", "right_hand", "skeleton"):
+            object.__setattr__(self, name, getattr(pose, name))
+        if self.time is not None:
+            if isinstance(self.time, bool) or not isinstance(self.time, int | float) or not abs(self.time) <= LATEST:
+                raise InputError(f"AvatarOrder: time = {self.time!r} must be a finite number of seconds")
+            object.__setattr__(self, "time", float(self.time))
+
+    @property
+    def pose(self) -> BodyPose:
+        """The pose of the sample."""
+        return BodyPose(self.x, self.y, self.heading, self.head, self.left_hand, self.right_hand, self.skeleton)
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if there is no such external avatar, or the time is too far ahead."""
+        super().check(simulation)
+        known = {one.name: one.source for one in simulation.trial.avatars}
+        if self.avatar not in known:
+            raise InputError(
+                f"there is no avatar {self.avatar!r}{did_you_mean(self.avatar, known)}; the trial has"
+                f" {', '.join(known) or 'none'}"
+            )
+        if known[self.avatar] != "external":
+            raise InputError(
+                f'avatar {self.avatar!r} has source="{known[self.avatar]}"; only one with source="external" takes them'
+            )
+        now = float(simulation.world.times[self.environment])
+        if (self.time or 0.0) > now + AHEAD:
+            raise InputError(f"AvatarOrder: time = {self.time} s is more than {AHEAD:g} s after the current {now:g} s")
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Add the sample."""
+        world, e = simulation.world, self.environment
+        time = float(world.times[e]) if self.time is None else self.time
+        give_pose(world, self.avatar, time, self.pose, e)

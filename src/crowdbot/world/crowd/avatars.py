@@ -1,0 +1,199 @@
+"""Avatars: people whose pose comes from outside, from a function, a recording or a stream."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene
+from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
+
+if TYPE_CHECKING:
+    from crowdbot.world.physics.people_motion import PeopleMotion
+
+__all__ = ["Avatars", "give_pose", "people_motions"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+JUMP = 8.0
+"""A change of position in a step that needs a higher speed [m/s] is a teleport: nothing on the way is touched."""
+AHEAD = 10.0
+"""Longest time [s] between a sample and the current time that is used for interpolation."""
+
+
+class Avatars:
+    """The avatars of a world in E environments. To crowd models they are external agents, like robots.
+
+    Args:
+        agents: index of each avatar ``[K]``.
+        names: name of each avatar.
+        sources: source of each avatar in each environment ``[E][K]``.
+        delay: time [s] by which each avatar follows its source later ``[K]``.
+
+    Attributes:
+        rows: latest pose of each avatar ``[E, K, 139]``, see :meth:`crowdbot.humans.BodyPose.row`.
+
+    >>> track = PoseTrack.of([0.0, 1.0], [BodyPose(0, 0), BodyPose(1, 2)])
+    >>> avatars = Avatars([1], ["guide"], [[track]], [0.0])
+    >>> scene = avatars.place(Scene.of([[9.0, 9.0], [9.0, 9.0]]), 0.5)
+    >>> scene.position[0, 1].tolist(), scene.velocity[0, 1].tolist()
+    ([0.5, 1.0], [1.0, 2.0])
+    """
+
+    def __init__(
+        self,
+        agents: Sequence[int] | Ints,
+        names: Sequence[str],
+        sources: Sequence[Sequence[PoseSource]],
+        delay: Sequence[float],
+    ) -> None:
+        self.agents = np.asarray(agents, dtype=np.int64)
+        self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
+        self.sources = [tuple(row) for row in sources]
+        self.rows = np.zeros((len(self.sources), len(self.agents), len(BodyPose(0.0, 0.0).row())))
+
+    def __deepcopy__(self, memo: Any) -> Avatars:
+        """Return an independent copy; sources do not change, so they are shared."""
+        return self.select(range(len(self.sources)))
+
+    def hold(self, scene: Scene) -> Scene:
+        """Return the scene with the avatars as external agents."""
+        external = scene.external.copy()
+        external[:, self.agents] = True
+        return scene.replace(external=external)
+
+    def place(self, scene: Scene, time: float | Floats) -> Scene:
+        """Return the scene with the avatars where they are at a time [s], one or ``[E]``.
+
+        Raises:
+            InputError: a source returns no pose.
+        """
+        now = np.broadcast_to(np.asarray(time, dtype=np.float64), (scene.shape[0],)).tolist()
+        position, velocity, heading = scene.position.copy(), scene.velocity.copy(), scene.heading.copy()
+        known: dict[tuple[int, float], PoseMotion] = {}
+        for e, sources in enumerate(self.sources):
+            for k, (agent, source, delay) in enumerate(zip(self.agents.tolist(), sources, self.delay, strict=True)):
+                key = (id(source), now[e] - delay)
+                motion = known.get(key)
+                if motion is None:
+                    known[key] = motion = source.motion(key[1])
+                row = motion.row
+                self.rows[e, k] = row
+                position[e, agent] = row[:2]
+                velocity[e, agent] = motion.vx, motion.vy
+                heading[e, agent] = math.pi - (math.pi - row[2]) % (2.0 * math.pi)
+        return scene.replace(position=position, velocity=velocity, heading=heading)
+
+    def move(self, world: Any, before: Scene, crowd: Scene, time: float | Floats) -> tuple[Scene, Scene]:
+        """Return the scenes before and after a step of the crowd with the avatars at their new places.
+
+        An avatar that teleports in the step is already at its new place before it. The bodies of people get the new
+        poses for the end of the step.
+        """
+        after, motions = self.place(crowd, time), people_motions(world)
+        before = self._skip_jumps(before, after, world.dt, motions)
+        for motion, poses in zip(motions, self._poses(), strict=False):
+            motion.set_poses(poses)
+        return before, after
+
+    def _skip_jumps(self, before: Scene, after: Scene, dt: float, motions: Sequence[PeopleMotion]) -> Scene:
+        step = after.position[:, self.agents] - before.position[:, self.agents]
+        jumps = np.sqrt(np.sum(step * step, axis=-1)) > JUMP * dt
+        if not jumps.any():
+            return before
+        position = before.position.copy()
+        for e, k in np.argwhere(jumps).tolist():
+            agent = int(self.agents[k])
+            position[e, agent] = after.position[e, agent]
+            if motions:
+                motions[e].move(agent, *step[e, k].tolist())
+        return before.replace(position=position)
+
+    def pose(self, world: Any) -> None:
+        """Show the current poses of heads, hands and skeletons on the bodies of people."""
+        for motion, poses in zip(people_motions(world), self._poses(), strict=False):
+            motion.set_poses(poses)
+            motion.take(motion.state)
+
+    def _poses(self) -> Iterator[dict[int, Floats]]:
+        """Yield the rows of the avatars with a pose of head, hands or skeleton, by agent, in each environment."""
+        for rows in self.rows:
+            given = np.flatnonzero(~np.all(np.isnan(rows[:, 3:]), axis=-1)).tolist()
+            yield {int(self.agents[k]): rows[k].copy() for k in given}
+
+    def take(self, environment: int, name: str, time: float, pose: BodyPose, now: float) -> None:
+        """Add a sample to the stream of an avatar.
+
+        Args:
+            environment: index of the environment.
+            name: name of the avatar.
+            time: time stamp of the sample [s].
+            pose: the pose.
+            now: current time [s].
+        """
+        sources, k = list(self.sources[environment]), self.names.index(name)
+        track = sources[k]
+        if not isinstance(track, PoseTrack):
+            raise InputError(f"avatar {name!r} does not take samples")
+        sources[k] = track.with_sample(time, pose, now - self.delay[k] - AHEAD)
+        self.sources[environment] = tuple(sources)
+
+    def select(self, environments: Sequence[int] | Ints) -> Avatars:
+        """Return independent avatars of some environments."""
+        some = copy.copy(self)
+        index = [int(e) for e in environments]
+        some.sources, some.rows = [self.sources[e] for e in index], self.rows[index]
+        return some
+
+    def join(self, others: Sequence[Avatars]) -> Avatars:
+        """Return the avatars of these and other environments."""
+        whole = copy.copy(self)
+        whole.sources = [row for one in (self, *others) for row in one.sources]
+        whole.rows = np.concatenate([one.rows for one in (self, *others)])
+        return whole
+
+    def put(self, environments: Sequence[int] | Ints, other: Avatars) -> None:
+        """Replace some environments by those of others."""
+        for k, e in enumerate(environments):
+            self.sources[int(e)], self.rows[int(e)] = other.sources[k], other.rows[k]
+
+
+def people_motions(world: Any) -> list[PeopleMotion]:
+    """Return the bodies of people in each environment, empty without bodies."""
+    if world._bodies:
+        return [one.people for one in world._bodies]
+    return [] if world.people is None else [world.people]
+
+
+def give_pose(world: Any, name: str, time: float, pose: BodyPose, environment: int = 0) -> None:
+    """Give a sample to an avatar, which is then where its samples say at the current time.
+
+    Args:
+        world: the world.
+        name: name of an avatar with a stream.
+        time: time stamp of the sample [s].
+        pose: the pose.
+        environment: index of the environment.
+
+    Raises:
+        InputError: the avatar does not take samples.
+    """
+    worlds = getattr(world, "worlds", None)
+    own, row = (world, environment) if worlds is None else (worlds[environment], 0)
+    avatars = own.avatars
+    if avatars is None or name not in avatars.names:
+        raise InputError(f"there is no avatar {name!r}")
+    now = world.times
+    avatars.take(row, name, time, pose, float(now[environment]))
+    before = own.scene
+    placed = avatars.place(before, now if own is world else now[environment])
+    own.scene = placed
+    for e, motion in enumerate(people_motions(own)):
+        for agent in avatars.agents.tolist():
+            motion.move(agent, *(placed.position[e, agent] - before.position[e, agent]).tolist())
