@@ -10,6 +10,10 @@ from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
 from .simulation_run import OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .resumable_hash import ResumableHash
+from .state_codec import decode_state, encode_state
+from .state_restore import restore_state
+from .state_tree import StateError, StateMark, state_of
 from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
 from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
@@ -28,6 +32,7 @@ __all__ = [
     "ParameterOrder",
     "RedirectOrder",
     "RemoveOrder",
+    "ResumableHash",
     "RobotContact",
     "RobotControl",
     "RunEnd",
@@ -39,19 +44,25 @@ __all__ = [
     "Simulation",
     "SimulationRun",
     "Sink",
+    "StateError",
+    "StateMark",
     "StepRecord",
     "StopRequest",
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
+    "decode_state",
+    "encode_state",
     "order_kinds",
     "read_order",
+    "restore_state",
     "robot_metrics",
     "run_to_end",
     "scan_row",
     "simulate",
     "simulate_seeds",
     "start_scene",
+    "state_of",
     "tracks_of",
     "warn_of_failure",
     "write_order",

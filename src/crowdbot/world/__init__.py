@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .environments import join_worlds, put_environments, select_environments, step_environments
     from .live_changes import (
         add_person,
+        add_slots,
         check_goal,
         check_place,
         check_room,
@@ -109,6 +110,7 @@ _LAZY = {
     "Wheel": "robots.wheel",
     "World": "world",
     "add_person": "live_changes",
+    "add_slots": "live_changes",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
     "check_place": "live_changes",
@@ -186,6 +188,7 @@ __all__ = [
     "Wheel",
     "World",
     "add_person",
+    "add_slots",
     "builtin_robots",
     "check_goal",
     "check_place",

@@ -19,6 +19,7 @@ from .world import World
 
 __all__ = [
     "add_person",
+    "add_slots",
     "check_goal",
     "check_place",
     "check_room",
@@ -138,6 +139,23 @@ def check_room(world: World, environment: int = 0) -> None:
         )
 
 
+def add_slots(world: Any, agents: int) -> None:
+    """Let the arrays of a planar world grow to this number of agents; the new ones are absent.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.world import PlanarWorld
+    >>> world = PlanarWorld(Scene.of([[0.0, 0.0], [3.0, 0.0]]), ORCA(), {}, dt=0.1)
+    >>> add_slots(world, 4)
+    >>> world.scene.active.tolist()
+    [[True, True, False, False]]
+    """
+    world.scene, world._previous = pad_scene(world.scene, agents), pad_scene(world._previous, agents)
+    world._traffic.ids = pad_ids(world._traffic.ids, agents)
+    world.ids = world._traffic.ids
+    set_models(world, [world.model] * len(world.slots) if world._models is None else world._models)
+
+
 def _own(world: Any, environment: int) -> Any:
     """Return the world that holds an environment."""
     return world.worlds[environment] if hasattr(world, "worlds") else world
@@ -152,11 +170,7 @@ def _free_slot(world: World, environment: int) -> int:
     check_room(world, environment)
     own = _own(world, environment)
     if slots == scene.shape[1]:
-        agents = slots + 1
-        world.scene, own._previous = pad_scene(scene, agents), pad_scene(own._previous, agents)
-        own._traffic.ids = pad_ids(own._traffic.ids, agents)
-        own.ids = own._traffic.ids
-        set_models(own, [own.model] * len(own.slots) if own._models is None else own._models)
+        add_slots(world, slots + 1)
     own.slots[environment] = slots + 1
     return slots
 
