@@ -8,15 +8,19 @@ from .episode_repair import repair
 from .episode_replay import Replay, replay
 from .episode_writer import Recorder
 from .image_export import folder_of
+from .keyframes import KeyframeWarning, keyframe_ticks
 from .metadata import as_json, versions
 from .reading_tables import READING_TABLES
 from .recorded_run import episode_path, open_run, record, run
+from .recorded_simulation import RecordedSimulation
 from .step_records import RecordedStep
 
 __all__ = [
     "READING_TABLES",
     "AttachedFile",
+    "KeyframeWarning",
     "RecordedEpisode",
+    "RecordedSimulation",
     "RecordedStep",
     "Recorder",
     "Replay",
@@ -27,6 +31,7 @@ __all__ = [
     "export",
     "folder_of",
     "iterate_steps",
+    "keyframe_ticks",
     "named_files",
     "open_run",
     "read_episode",

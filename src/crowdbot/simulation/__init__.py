@@ -9,7 +9,7 @@ from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
-from .simulation_run import OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .simulation_run import KEYFRAMES, OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
 from .resumable_hash import ResumableHash
 from .state_codec import decode_state, encode_state
 from .state_restore import restore_state
@@ -19,6 +19,7 @@ from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
 
 __all__ = [
+    "KEYFRAMES",
     "WALL",
     "AddPersonOrder",
     "Episode",

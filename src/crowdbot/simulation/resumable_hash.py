@@ -5,6 +5,7 @@ The hashes of :mod:`hashlib` cannot be stored. A run that continues from a keyfr
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -120,7 +121,7 @@ class ResumableHash:
         self._words, self._length, self._rest = START.copy(), 0, bytearray()
 
     @classmethod
-    def of(cls, state: dict[str, Any]) -> ResumableHash:
+    def of(cls, state: Mapping[str, Any]) -> ResumableHash:
         """Continue from a stored state.
 
         Raises:
