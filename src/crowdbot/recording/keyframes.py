@@ -110,7 +110,13 @@ class Keyframe:
             raise InputError(f"the keyframe of step {self.tick} holds step {simulation.tick}")
 
 
-def latest_keyframe(path: Path, known: Mapping[str, str], tick: int, wanted: Mapping[int, str]) -> Keyframe | None:
+def latest_keyframe(
+    path: Path,
+    known: Mapping[str, str],
+    tick: int,
+    wanted: Mapping[int, str],
+    places: Mapping[int, tuple[int, int]] | None = None,
+) -> Keyframe | None:
     """Return the latest keyframe up to a step; None without one, or if the episode was made with other versions.
 
     Args:
@@ -118,6 +124,7 @@ def latest_keyframe(path: Path, known: Mapping[str, str], tick: int, wanted: Map
         known: its metadata.
         tick: the step.
         wanted: the recorded digests by time [ns].
+        places: from :func:`keyframe_ticks`, if known.
 
     Raises:
         EpisodeError: the file cannot be read.
@@ -125,7 +132,7 @@ def latest_keyframe(path: Path, known: Mapping[str, str], tick: int, wanted: Map
     """
     if any(known.get(name) != now for name, now in versions().items()):
         return None
-    places = keyframe_ticks(path)
+    places = keyframe_ticks(path) if places is None else places
     ticks = [one for one in places if one <= tick]
     if not ticks:
         return None

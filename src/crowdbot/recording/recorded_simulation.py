@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import warnings
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -12,7 +13,7 @@ from crowdbot.simulation import EpisodeDigest, Simulation, StopRequest
 
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata
-from .keyframes import Keyframe, KeyframeWarning, latest_keyframe
+from .keyframes import Keyframe, KeyframeWarning, keyframe_ticks, latest_keyframe
 from .provenance import DigestComparison, Provenance, digests
 
 __all__ = ["LATE", "RecordedSimulation", "continue_from"]
@@ -51,10 +52,12 @@ class RecordedSimulation:
         self._wanted: dict[int, str] = {}
         self._course: Provenance | None = None
         self._new: dict[int, Simulation] = {}
+        self._places: dict[int, tuple[int, int]] = {}
 
     def __enter__(self) -> RecordedSimulation:
         """Read the trial and the orders."""
         self._known, self._wanted = read_metadata(self.path), digests(self.path)
+        self._places = keyframe_ticks(self.path)
         place = self._stack.enter_context(unpack_attachments(self.path, self._known, self._folder, self._trust))
         self._course = Provenance.of(self.path, place.folder, self._trust)
         return self
@@ -84,7 +87,7 @@ class RecordedSimulation:
                 f" {last * step / 1e9:g} s"
             )
         comparison, stop = DigestComparison(EpisodeDigest(), self._wanted), StopRequest()
-        start = continue_from(self.path, course, self._known, tick, comparison, self._fresh)
+        start = continue_from(self.path, course, self._known, tick, comparison, self._fresh, self._places)
         found = course.simulate_until(comparison, stop, until=tick, start=start)
         if comparison.differs is not None and start is not None:
             warnings.warn(f"{self.path} differs after its keyframe; {LATE}", KeyframeWarning, stacklevel=2)
@@ -109,7 +112,8 @@ def continue_from(
     known: dict[str, str],
     tick: int,
     comparison: DigestComparison,
-    fresh: object = None,
+    fresh: Callable[[int], Simulation] | None = None,
+    places: Mapping[int, tuple[int, int]] | None = None,
 ) -> Simulation | None:
     """Return the simulation at the latest keyframe up to a step, with the digest in ``comparison``; None without one.
 
@@ -120,6 +124,7 @@ def continue_from(
         tick: the step.
         comparison: continues from the digest of the keyframe.
         fresh: returns a new simulation with the changes up to a step (default: built from the provenance).
+        places: offset and length of each keyframe by its step, if known.
 
     Raises:
         EpisodeError: the file cannot be read.
@@ -127,9 +132,9 @@ def continue_from(
     Warns:
         KeyframeWarning: a keyframe is damaged.
     """
-    begin = fresh if callable(fresh) else course.begin_at
+    begin = fresh or course.begin_at
     try:
-        keyframe: Keyframe | None = latest_keyframe(path, known, tick, comparison.wanted)
+        keyframe: Keyframe | None = latest_keyframe(path, known, tick, comparison.wanted, places)
         if keyframe is None or keyframe.tick < course.parts[-1].tick:
             return None
         simulation: Simulation = begin(keyframe.tick)

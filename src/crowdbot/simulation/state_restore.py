@@ -13,7 +13,7 @@ from crowdbot.core import Scene
 from crowdbot.world import add_slots
 
 from .state_fields import ENVIRONMENT_TIME, holder_fields, is_holder, qualified, value_class
-from .state_tree import SCALARS, StateError, StateMark, engine_arrays, read_engine, value_fields
+from .state_tree import CHECKED, SCALARS, StateError, StateMark, engine_arrays, read_engine, value_fields
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -177,8 +177,8 @@ class _Reader:
         found = kind(**{field: value for field, value in values.items() if field not in late})
         for field in late:
             object.__setattr__(found, field, values[field])
-        if f"{path}/_count" in self.state and name in ("Twists", "SteeredTwists"):
-            object.__setattr__(found, "_count", int(self.get(f"{path}/_count")))
+        if name == CHECKED and (count := self.get(f"{path}/_count")) is not None:
+            object.__setattr__(found, "_count", int(count))
         return found
 
     def _time(self, path: str, old: Any) -> Any:
@@ -222,7 +222,7 @@ def _grow(world: Any, state: Mapping[str, Any]) -> None:
     """Add the slots of people whom orders have added."""
     if hasattr(world, "worlds"):
         return
-    stored = state.get("simulation/world/scene/active")
+    stored = state.get("simulation/world/_traffic/ids")
     agents = stored.shape[1] if isinstance(stored, np.ndarray) and stored.ndim == 2 else 0
     if world.scene.shape[1] < agents <= MOST_AGENTS:
         add_slots(world, agents)

@@ -21,10 +21,12 @@ from .state_fields import ENVIRONMENT_TIME, MODEL_ARRAYS, holder_fields, is_hold
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-__all__ = ["StateError", "StateMark", "engine_arrays", "read_engine", "state_of", "value_fields"]
+__all__ = ["CHECKED", "StateError", "StateMark", "engine_arrays", "read_engine", "state_of", "value_fields"]
 
 SCALARS = (bool, int, float, str)
 KINDS = "biuf"
+CHECKED = "Twists"
+"""A class whose objects note that they have been checked."""
 
 
 class StateError(InputError):
@@ -124,8 +126,8 @@ class _Writer:
             for field in value_fields(kind):
                 if not (kind.__name__ == "Scene" and field == "walls"):
                     self.put(f"{path}/{field}", getattr(value, field))
-            if hasattr(value, "_count"):
-                self.put(f"{path}/_count", value._count)
+            if name == CHECKED:
+                self.put(f"{path}/_count", getattr(value, "_count", None))
         elif kind in (list, tuple):
             self.found[path] = StateMark(kind.__name__, len(value))
             self._numbered(path, value)
