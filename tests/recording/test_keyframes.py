@@ -107,7 +107,8 @@ def test_a_branch_with_changes_and_a_branch_of_it_too(edited: Path, tmp_path: Pa
     assert min(keyframe_ticks(middle)) * TRIAL.step == pytest.approx(10.0)
     (tmp_path / "again").mkdir()
     exact(middle, 10.6, tmp_path / "again")
-    assert replay(tmp_path / "again" / "first.mcap", begin=11.0).equal
+    assert replay(tmp_path / "again" / "first.mcap").equal
+    assert (replay(middle, begin=11.0).equal, replay(middle, begin=11.0).begin) == (True, 10.0)
 
 
 def test_a_physics_trial_branches_from_a_keyframe(tmp_path: Path) -> None:
@@ -166,9 +167,10 @@ def test_an_instant_is_independent_and_must_be_recorded(plain: Path) -> None:
 
 def test_a_run_with_an_unknown_memory_has_no_keyframes_and_the_file_says_why(tmp_path: Path) -> None:
     (tmp_path / "keeper.py").write_text(KEEPER)
-    text = FLOW.replace('duration="20"', 'duration="13"').replace('<navigator type="straight"/>', '<navigator type="keeper.py:Keeper"/>')
-    assert "keeper.py" in text
-    trial = parse_trial(text, folder=tmp_path, trust=True)
+    text = FLOW.replace('duration="20"', 'duration="13"')
+    trial = parse_trial(
+        text.replace('<navigator type="orca"/>', '<navigator type="keeper.py:Keeper"/>'), folder=tmp_path, trust=True
+    )
     record(trial, 5, out=tmp_path / "episode.mcap")
     assert keyframe_ticks(tmp_path / "episode.mcap") == {}
     reason = read_episode(tmp_path / "episode.mcap").metadata["no_keyframes"]
@@ -176,7 +178,7 @@ def test_a_run_with_an_unknown_memory_has_no_keyframes_and_the_file_says_why(tmp
     branch(tmp_path / "episode.mcap", 6.0, folder=tmp_path, trust=True)
 
 
-KEEPER = '''
+KEEPER = """
 from dataclasses import dataclass
 from crowdbot.core import Twist
 from crowdbot.navigation import Action, Navigator
@@ -191,7 +193,7 @@ class Keeper(Navigator):
 
     def act(self, observation, memory):
         return Action(Twist(0.1, 0.0)), memory
-'''
+"""
 
 
 def shift(state: dict[str, Any]) -> bytes:

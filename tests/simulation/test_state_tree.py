@@ -26,7 +26,7 @@ from crowdbot.simulation import (
     restore_state,
     state_of,
 )
-from crowdbot.trials import Trial, load_trial, parse_trial, builtin_trials
+from crowdbot.trials import Trial, builtin_trials, load_trial, parse_trial
 from samples import sample
 from space_trials import LEAN, room
 from trial_texts import FLOW
@@ -80,7 +80,9 @@ def restored(trial: Trial, seeds: Any, simulation: Simulation) -> Simulation:
     return new
 
 
-@pytest.mark.parametrize(("name", "seeds"), [("flow", 3), ("flow", [1, 2, 3]), ("sensors", 5), ("planar", 2), ("physics", 2)])
+@pytest.mark.parametrize(
+    ("name", "seeds"), [("flow", 3), ("flow", [1, 2, 3]), ("sensors", 5), ("planar", 2), ("physics", 2)]
+)
 @given(tick=st.integers(0, 25))
 @settings(max_examples=4, deadline=None)
 def test_a_restored_simulation_continues_to_the_last_bit(name: str, seeds: Any, tick: int) -> None:
@@ -173,8 +175,10 @@ CHANGES: dict[str, tuple[Any, str]] = {
     "simulation/world/scene/active": (np.zeros((1, 3)), "of float64, but the trial has 2 of bool"),
     "simulation/world": (StateMark("list", 3), "lacks|is a list, but the trial has a PlanarWorld"),
     "simulation/robots/0/command": (StateMark("same", "simulation/nowhere"), "which is not before it"),
-    "simulation/world/_rngs/0": (StateMark("random", {"bit_generator": "PCG64"}), "not the state of a random generator"),
-    "simulation/event": (None, "PlanarWorld|damaged|lacks|NoneType|"),
+    "simulation/world/_rngs/0": (
+        StateMark("random", {"bit_generator": "PCG64"}),
+        "not the state of a",
+    ),
     "simulation/world/contacts": (StateMark("value", "Popen"), "'Popen', which is unknown"),
     "simulation/world/environment_time/ticks": (np.array([-1]), "outside 0 to 2"),
     "simulation/world/scene/time": ("now", "str"),
@@ -182,7 +186,7 @@ CHANGES: dict[str, tuple[Any, str]] = {
 }
 
 
-@pytest.mark.parametrize("path", [path for path in CHANGES if path != "simulation/event"])
+@pytest.mark.parametrize("path", CHANGES)
 def test_a_state_that_does_not_fit_is_refused_in_a_sentence(path: str) -> None:
     value, sentence = CHANGES[path]
     state = state_of(advanced(TRIALS["sensors"], 1, 3))
@@ -204,32 +208,34 @@ def test_the_state_of_another_trial_is_refused() -> None:
         restore_state(Simulation(TRIALS["planar"], 1), state_of(advanced(TRIALS["flow"], 1, 1)))
 
 
+def answer(data: bytes, simulation: Simulation | None = None) -> object:
+    """Return the state in bytes, or the sentence of its refusal; with a simulation, it is restored."""
+    try:
+        found = decode_state(data)
+        if simulation is not None:
+            restore_state(simulation, found)
+    except StateError as error:
+        return str(error)
+    return found
+
+
 @given(place=st.floats(0, 1, exclude_max=True), value=st.integers(0, 255), cut=st.booleans())
 @settings(max_examples=150, deadline=None)
 def test_damaged_bytes_are_a_state_or_refused_in_a_sentence(place: float, value: int, cut: bool) -> None:
     data = bytearray(PACKED)
     k = int(place * len(data))
     data[k] = value
-    try:
-        found = decode_state(bytes(data[:k]) if cut else bytes(data))
-    except StateError as error:
-        assert str(error)
-    else:
-        assert isinstance(found, dict)
+    assert answer(bytes(data[:k]) if cut else bytes(data))
 
 
 @given(place=st.floats(0, 1, exclude_max=True), value=st.integers(0, 255))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_a_damaged_table_is_a_state_or_refused_in_a_sentence(place: float, value: int) -> None:
     import zstandard
 
     whole = bytearray(zstandard.ZstdDecompressor().decompress(PACKED))
     whole[int(place * len(whole))] = value
-    try:
-        found = decode_state(zstandard.ZstdCompressor().compress(bytes(whole)))
-        restore_state(Simulation(TRIALS["planar"], 1), found)
-    except StateError as error:
-        assert str(error)
+    assert answer(zstandard.ZstdCompressor().compress(bytes(whole)), Simulation(TRIALS["planar"], 1))
 
 
 def test_a_state_that_claims_too_much_is_not_read() -> None:

@@ -152,7 +152,12 @@ def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episod
 
 
 def _run(
-    course: Provenance, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str,
+    course: Provenance,
+    at: float,
+    wanted: Mapping[int, str],
+    options: _Options,
+    kind: type[Any],
+    name: str,
     source: Path | None = None,
 ) -> tuple[Any, str, Simulation]:
     last = course.parts[-1]
@@ -248,7 +253,12 @@ def _record(
         return run_to_end(simulation, sinks, stop, rest, sources=steering)
     course, earlier = Provenance(parts), [part.trial for part in parts[:-1]]
     with Recorder(
-        episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier, force=options.force,
+        episode_path(out),
+        tally,
+        course.origin,
+        begin=parts[-1].tick,
+        earlier=earlier,
+        force=options.force,
         simulation=simulation,
     ) as recorder:
         recorder.take(frame)

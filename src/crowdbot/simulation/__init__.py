@@ -6,11 +6,11 @@ from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read
 from .overrides import apply_overrides
 from .parameter_order import ParameterOrder
 from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .resumable_hash import ResumableHash
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
 from .simulation_run import KEYFRAMES, OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
-from .resumable_hash import ResumableHash
 from .state_codec import decode_state, encode_state
 from .state_restore import restore_state
 from .state_tree import StateError, StateMark, state_of

@@ -133,7 +133,8 @@ class ResumableHash:
         if not fits or not isinstance(length, int) or not 0 <= length < 2**62 or length % BLOCK:
             raise InputError("the state of a hash needs words [8], a length in whole blocks and the rest")
         found = cls()
-        assert words is not None and rest is not None
+        assert words is not None
+        assert rest is not None
         found._words, found._length, found._rest = words.copy(), length, bytearray(rest.tobytes())
         return found
 

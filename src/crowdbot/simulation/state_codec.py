@@ -98,7 +98,9 @@ def _array(path: str, row: list[Any], whole: bytes, place: int) -> tuple[Any, in
     kind = np.dtype(str(name))
     axes = isinstance(shape, list) and len(shape) <= 8 and all(type(n) is int and 0 <= n <= LARGEST for n in shape)
     if kind.kind not in "biuf" or not axes:
-        raise StateError(f"{path} is an array of {str(name)[:20]!r} with the shape {str(shape)[:40]}, which is not stored")
+        raise StateError(
+            f"{path} is an array of {str(name)[:20]!r} with the shape {str(shape)[:40]}, which is not stored"
+        )
     count = math.prod(shape)
     size = count * kind.itemsize
     if size > len(whole) - place:

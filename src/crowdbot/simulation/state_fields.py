@@ -10,7 +10,16 @@ import dataclasses
 import importlib
 from typing import Any
 
-__all__ = ["ENVIRONMENT_TIME", "MODEL_ARRAYS", "constants_of", "holder_fields", "is_holder", "qualified", "value_class", "value_name"]
+__all__ = [
+    "ENVIRONMENT_TIME",
+    "MODEL_ARRAYS",
+    "constants_of",
+    "holder_fields",
+    "is_holder",
+    "qualified",
+    "value_class",
+    "value_name",
+]
 
 ENVIRONMENT_TIME = "crowdbot.world.environment_time.EnvironmentTime"
 """Stored as the ticks of the environments: a stored state continues on another clock."""
@@ -94,9 +103,7 @@ def is_holder(value: Any) -> bool:
 
 def constants_of(value: Any) -> frozenset[str]:
     """Return the names of the constant fields of such an object."""
-    return frozenset(
-        name for kind in type(value).__mro__ for name in HOLDERS.get(qualified(kind), "").split()
-    )
+    return frozenset(name for kind in type(value).__mro__ for name in HOLDERS.get(qualified(kind), "").split())
 
 
 def holder_fields(value: Any) -> list[str]:

@@ -173,7 +173,11 @@ class _Reader:
             if not isinstance(old, Scene):
                 raise StateError(f"{path} is a scene, which this trial does not have there")
             values["walls"] = old.walls
-        late = [field.name for field in dataclasses.fields(kind) if not field.init] if hasattr(kind, "__dataclass_fields__") else []
+        late = (
+            [field.name for field in dataclasses.fields(kind) if not field.init]
+            if hasattr(kind, "__dataclass_fields__")
+            else []
+        )
         found = kind(**{field: value for field, value in values.items() if field not in late})
         for field in late:
             object.__setattr__(found, field, values[field])

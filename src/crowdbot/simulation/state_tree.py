@@ -151,7 +151,7 @@ def value_fields(kind: type[Any]) -> tuple[str, ...]:
     """Return the names of the fields of a dataclass or named tuple."""
     if dataclasses.is_dataclass(kind):
         return tuple(field.name for field in dataclasses.fields(kind))
-    names: tuple[str, ...] = kind._fields  # type: ignore[attr-defined]
+    names: tuple[str, ...] = kind._fields
     return names
 
 
