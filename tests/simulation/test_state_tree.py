@@ -195,7 +195,7 @@ def test_a_state_that_does_not_fit_is_refused_in_a_sentence(path: str) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 def test_any_missing_path_is_refused(data: st.DataObject) -> None:
     state = state_of(advanced(TRIALS["planar"], 1, 1))
     path = data.draw(st.sampled_from(sorted(state)))
@@ -229,7 +229,7 @@ def test_damaged_bytes_are_a_state_or_refused_in_a_sentence(place: float, value:
 
 
 @given(place=st.floats(0, 1, exclude_max=True), value=st.integers(0, 255))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_damaged_table_is_a_state_or_refused_in_a_sentence(place: float, value: int) -> None:
     import zstandard
 

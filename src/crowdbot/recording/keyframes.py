@@ -69,7 +69,7 @@ class KeyframeTrack:
         try:
             state = state_of(simulation)
             return encode_state(state | {f"digest/{name}": value for name, value in self.digest.state.items()})
-        except StateError as error:
+        except (StateError, RecursionError, ValueError) as error:  # memories of users can be anything
             self.reason = str(error)
             return None
 

@@ -26,6 +26,9 @@ LEVEL = 3
 def encode_state(state: Mapping[str, Any]) -> bytes:
     """Return the bytes of a state of :func:`crowdbot.simulation.state_of`.
 
+    Raises:
+        StateError: the state is too large.
+
     >>> state = {"time": 0.5, "ids": np.arange(3)}
     >>> decode_state(encode_state(state))
     {'time': 0.5, 'ids': array([0, 1, 2])}
@@ -42,6 +45,8 @@ def encode_state(state: Mapping[str, Any]) -> bytes:
             table[path] = list(value) if isinstance(value, StateMark) else value
     head = json.dumps(table, separators=(",", ":")).encode()
     whole = MARK + struct.pack("<Q", len(head)) + head + b"".join(arrays)
+    if len(whole) > LARGEST:
+        raise StateError(f"a state of {len(whole)} bytes is too large to be stored; at most {LARGEST} are")
     return bytes(zstandard.ZstdCompressor(level=LEVEL).compress(whole))
 
 

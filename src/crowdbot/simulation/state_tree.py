@@ -89,7 +89,7 @@ class _Writer:
             self._object(path, value)
 
     def _object(self, path: str, value: Any) -> None:
-        if isinstance(value, np.ndarray):
+        if type(value) is np.ndarray:
             self._array(path, value)
         elif is_holder(value):
             self._holder(path, value)
