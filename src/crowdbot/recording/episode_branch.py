@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,10 +27,9 @@ from crowdbot.trials import Trial, apply_values, trial_xml
 from .attachments import unpack_attachments
 from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
-from .keyframes import KeyframeWarning
 from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests, replay_misses
 from .recorded_run import episode_path
-from .recorded_simulation import LATE, continue_from
+from .recorded_simulation import continue_from, simulate_to
 
 __all__ = ["branch"]
 
@@ -192,14 +190,10 @@ def _there(
     last, progress = course.parts[-1], options.progress
     tick = _tick(last, at, name, max(comparison.wanted, default=None))
     half = None if progress is None else lambda share: progress(0.5 * share)
-    start = None
+    begin = None
     if source is not None and options.keyframes:  # the record of the step itself needs the step before it
-        start = continue_from(source, course, read_metadata(source), tick - 1, comparison)
-    simulation = course.simulate_until(comparison, stop, half, until=tick, start=start)
-    if comparison.differs is not None and start is not None:
-        warnings.warn(f"{name} differs after its keyframe; {LATE}", KeyframeWarning, stacklevel=6)
-        comparison.digest, comparison.differs = EpisodeDigest({}), None
-        simulation = course.simulate_until(comparison, stop, half, until=tick)
+        begin = continue_from(source, course, read_metadata(source), tick - 1, comparison)
+    simulation = simulate_to(tick, course, comparison, begin, name, stop, half)
     if comparison.differs is not None:
         raise EpisodeError(
             f"{name} differs from its replay from {comparison.differs:g} s on, so it cannot be branched;"

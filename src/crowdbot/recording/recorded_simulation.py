@@ -16,7 +16,7 @@ from .episode_reader import read_metadata
 from .keyframes import Keyframe, KeyframeWarning, keyframe_ticks, latest_keyframe
 from .provenance import DigestComparison, Provenance, digests
 
-__all__ = ["LATE", "RecordedSimulation", "continue_from"]
+__all__ = ["LATE", "RecordedSimulation", "continue_from", "simulate_to"]
 
 LATE = "the episode is simulated from its beginning"
 
@@ -86,13 +86,9 @@ class RecordedSimulation:
                 f"{self.path} has no instant {seconds:g} s; it lasts from {first * step / 1e9:g} s to"
                 f" {last * step / 1e9:g} s"
             )
-        comparison, stop = DigestComparison(EpisodeDigest(), self._wanted), StopRequest()
+        comparison = DigestComparison(EpisodeDigest(), self._wanted)
         start = continue_from(self.path, course, self._known, tick, comparison, self._fresh, self._places)
-        found = course.simulate_until(comparison, stop, until=tick, start=start)
-        if comparison.differs is not None and start is not None:
-            warnings.warn(f"{self.path} differs after its keyframe; {LATE}", KeyframeWarning, stacklevel=2)
-            comparison = DigestComparison(EpisodeDigest(), self._wanted)
-            found = course.simulate_until(comparison, stop, until=tick)
+        found = simulate_to(tick, course, comparison, start, str(self.path), StopRequest())
         if comparison.differs is not None:
             raise EpisodeError(f"{self.path} differs from its replay from {comparison.differs:g} s on")
         return found
@@ -104,6 +100,43 @@ class RecordedSimulation:
         if changes not in self._new:
             self._new[changes] = self._course.begin_at(tick)
         return self._new[changes].select([0])
+
+
+def simulate_to(
+    tick: int,
+    course: Provenance,
+    comparison: DigestComparison,
+    start: Simulation | None,
+    name: str,
+    stop: StopRequest,
+    progress: Callable[[float], None] | None = None,
+) -> Simulation:
+    """Return the simulation at a step of the last segment.
+
+    Args:
+        tick: the step.
+        course: provenance of the episode.
+        comparison: compares the digests on the way.
+        start: the simulation at a keyframe, see :func:`continue_from`; None: from the beginning.
+        name: name of the episode, for messages.
+        stop, progress: see :meth:`Provenance.simulate_until`.
+
+    Raises:
+        EpisodeError: the run ends earlier.
+
+    Warns:
+        KeyframeWarning: the run differs after the keyframe; it is simulated from the beginning.
+    """
+    if start is not None:
+        try:
+            found = course.simulate_until(comparison, stop, progress, until=tick, start=start)
+            if comparison.differs is None:
+                return found
+        except EpisodeError:  # the state of a wrong keyframe may end the run
+            pass
+        warnings.warn(f"{name} differs after its keyframe; {LATE}", KeyframeWarning, stacklevel=4)
+        comparison.digest, comparison.differs = EpisodeDigest({}), None
+    return course.simulate_until(comparison, stop, progress, until=tick)
 
 
 def continue_from(
