@@ -9,16 +9,20 @@ from .episode_replay import Replay, replay
 from .episode_rerun import EpisodeRerun, open_rerun
 from .episode_writer import Recorder
 from .image_export import folder_of
+from .keyframes import KeyframeWarning, keyframe_ticks
 from .metadata import as_json, versions
 from .reading_tables import READING_TABLES
 from .recorded_run import episode_path, open_run, record, run
+from .recorded_simulation import RecordedSimulation
 from .step_records import RecordedStep
 
 __all__ = [
     "READING_TABLES",
     "AttachedFile",
     "EpisodeRerun",
+    "KeyframeWarning",
     "RecordedEpisode",
+    "RecordedSimulation",
     "RecordedStep",
     "Recorder",
     "Replay",
@@ -29,6 +33,7 @@ __all__ = [
     "export",
     "folder_of",
     "iterate_steps",
+    "keyframe_ticks",
     "named_files",
     "open_rerun",
     "open_run",

@@ -29,6 +29,7 @@ from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
 from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests, replay_misses
 from .recorded_run import episode_path
+from .recorded_simulation import continue_from, simulate_to
 
 __all__ = ["branch"]
 
@@ -49,6 +50,7 @@ class _Options:
     force: bool
     progress: Progress | None
     orders: bool
+    keyframes: bool = True
 
 
 @overload
@@ -62,7 +64,7 @@ def branch(
     source: Path | str | RecordedEpisode, at: float, *, seed: int | None = None,
     changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None,
     force: bool = False, folder: Path | None = None, trust: bool = False,
-    progress: Progress | None = None, orders: bool = True,
+    progress: Progress | None = None, orders: bool = True, keyframes: bool = True,
 ) -> RunSummary: ...  # fmt: skip
 def branch(
     source: Path | str | RecordedEpisode | Episode,
@@ -77,12 +79,14 @@ def branch(
     trust: bool = False,
     progress: Progress | None = None,
     orders: bool = True,
+    keyframes: bool = True,
 ) -> RunSummary | Episode:
     """Continue an episode from a recorded step, with the same or with changed values.
 
     The trial is simulated again without recording up to that step, and its digest is compared at each recorded step. A
     branch therefore starts in exactly the recorded state, including the internal states of people, sensors and random
-    streams. This takes as long as the original run. Without changes, all messages and the final digest equal those of
+    streams. It continues from the latest keyframe before that step (every 5 s); a file without keyframes, or of another
+    version, is simulated from its beginning. Without changes, all messages and the final digest equal those of
     the original.
 
     Args:
@@ -96,6 +100,7 @@ def branch(
         folder, trust: see :func:`replay`; for files only.
         progress: called with the completed fraction, 0 to 1.
         orders: whether the recorded orders from outside after that step apply again.
+        keyframes: whether to start from a keyframe; the result is the same. For files only.
 
     Returns:
         An :class:`Episode` for an episode in memory, otherwise a :class:`RunSummary`.
@@ -104,6 +109,9 @@ def branch(
         EpisodeError: the file cannot be read, has no such step, or does not replay with the same digest.
         InputError: a changed value only affects the start.
 
+    Warns:
+        KeyframeWarning: a keyframe is damaged, and the file is simulated from its beginning.
+
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.simulation import simulate
     >>> episode = simulate(Trial(name="empty", duration=2.0, crowd=ORCA()))
@@ -111,7 +119,7 @@ def branch(
     >>> float(later.times[0]), float(later.times[-1]), branch(episode, at=1.0).digest == episode.digest
     (1.5, 3.0, True)
     """
-    options = _Options(seed, changes or {}, trial, out, force, progress, orders)
+    options = _Options(seed, changes or {}, trial, out, force, progress, orders, keyframes)
     if isinstance(source, Episode):
         return _branch_of_episode(source, at, options)
     path = source.path if isinstance(source, RecordedEpisode) else Path(source)
@@ -124,7 +132,7 @@ def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, o
         raise InputError(f"{source} is the source of the branch; record the branch to another file")
     with unpack_attachments(source, read_metadata(source), folder, trust) as place:
         course = Provenance.of(source, place.folder, trust)
-        tally, outcome, simulation = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
+        tally, outcome, simulation = _run(course, at, digests(source), options, EpisodeStatistics, str(source), source)
     warn_of_failure(simulation)
     written = None if out is None else episode_path(out)
     summary: RunSummary = tally.summary(outcome, simulation.tick, written, simulation.failures[0])
@@ -142,7 +150,13 @@ def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episod
 
 
 def _run(
-    course: Provenance, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
+    course: Provenance,
+    at: float,
+    wanted: Mapping[int, str],
+    options: _Options,
+    kind: type[Any],
+    name: str,
+    source: Path | None = None,
 ) -> tuple[Any, str, Simulation]:
     last = course.parts[-1]
     old = last.trial if options.trial is None else options.trial
@@ -150,8 +164,8 @@ def _run(
     if options.out is not None:
         trial_xml(new)  # raises if the trial cannot be recorded
     with catch_interrupt() as stop:
-        comparison = DigestComparison(EpisodeDigest(), dict(wanted))
-        simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
+        comparison = DigestComparison(EpisodeDigest({}), dict(wanted))
+        simulation = _there(course, at, comparison, stop, options, name, source)
         apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
         rest = tuple(row for row in last.orders if row[0] >= simulation.tick) if options.orders else ()
@@ -168,15 +182,18 @@ def _there(
     at: float,
     comparison: DigestComparison,
     stop: StopRequest,
-    progress: Progress | None,
+    options: _Options,
     name: str,
-    latest: int | None,
+    source: Path | None,
 ) -> Simulation:
     """Return the simulation at the step to branch from."""
-    last = course.parts[-1]
-    tick = _tick(last, at, name, latest)
+    last, progress = course.parts[-1], options.progress
+    tick = _tick(last, at, name, max(comparison.wanted, default=None))
     half = None if progress is None else lambda share: progress(0.5 * share)
-    simulation = course.simulate_until(comparison, stop, half, until=tick)
+    begin = None
+    if source is not None and options.keyframes:  # the record of the step itself needs the step before it
+        begin = continue_from(source, course, read_metadata(source), tick - 1, comparison)
+    simulation = simulate_to(tick, course, comparison, begin, name, stop, half)
     if comparison.differs is not None:
         raise EpisodeError(
             f"{name} differs from its replay from {comparison.differs:g} s on, so it cannot be branched;"
@@ -230,7 +247,13 @@ def _record(
         return run_to_end(simulation, sinks, stop, rest, sources=steering)
     course, earlier = Provenance(parts), [part.trial for part in parts[:-1]]
     with Recorder(
-        episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier, force=options.force
+        episode_path(out),
+        tally,
+        course.origin,
+        begin=parts[-1].tick,
+        earlier=earlier,
+        force=options.force,
+        simulation=simulation,
     ) as recorder:
         recorder.take(frame)
         outcome = run_to_end(simulation, [tally, recorder], stop, rest, sources=steering)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import EpisodeError
-from crowdbot.simulation import EpisodeDigest, RunFailure, catch_interrupt, run_to_end
+from crowdbot.core import EpisodeError, InputError
+from crowdbot.simulation import EpisodeDigest, RunFailure, Simulation, catch_interrupt, run_to_end
 
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata, recorded_failure
+from .keyframes import KeyframeWarning
 from .metadata import END_KEYS, versions
 from .provenance import DigestComparison, OrderReplay, Provenance, digests
+from .recorded_simulation import LATE, continue_from
 
 __all__ = ["Replay", "replay"]
 
@@ -32,6 +36,7 @@ class Replay:
         complete: whether the recording is complete; an incomplete one is compared up to its last step.
         failures: the exceptions that ended the recording and the new run.
         changed: trusted code files that differ from the recorded ones.
+        begin: time [s] from which the episode was simulated again, that of a keyframe or 0.
     """
 
     path: Path
@@ -46,6 +51,7 @@ class Replay:
     complete: bool = True
     changed: tuple[str, ...] = ()
     failures: tuple[RunFailure | None, RunFailure | None] = (None, None)
+    begin: float = 0.0
 
     @property
     def software(self) -> str:
@@ -74,6 +80,7 @@ class Replay:
             "differs": self.differs,
             "complete": self.complete,
             "changed": list(self.changed),
+            "begin": self.begin,
             "error": None if self.failures[0] is None else str(self.failures[0]),
             "replayed_error": None if self.failures[1] is None else str(self.failures[1]),
         }
@@ -88,6 +95,7 @@ class Replay:
             told += f"; the recorded run ended with an error: {recorded}"
         if replayed is not None and replayed != recorded:
             told += f"; the replay ended with an error: {replayed}"
+        told += f"; simulated from its keyframe at {self.begin:g} s on" if self.begin else ""
         if self.equal:
             return f"{what} replays with the same digest {self.recorded}{told}"
         pairs = ((name, then, self.versions[name]) for name, then in self.recorded_versions.items())
@@ -102,6 +110,7 @@ def replay(
     *,
     folder: Path | None = None,
     trust: bool = False,
+    begin: float = 0.0,
     progress: Callable[[float], None] | None = None,
 ) -> Replay:
     """Simulate the trial of an episode file again, with its seed, and compare the digests.
@@ -114,14 +123,22 @@ def replay(
             identical to the recorded code. Data files are taken from the episode.
         trust: whether to run other code, including code stored in the episode, and to use files outside that folder
             (which must be identical to the recorded ones).
+        begin: time [s] from which the digests are compared. The latest keyframe up to this time is the start; what is
+            before it is not simulated. Without such a keyframe, the whole episode is simulated.
         progress: called with the completed fraction, 0 to 1.
 
     Raises:
+        InputError: ``begin`` is not a time from 0 on.
         EpisodeError: the file cannot be read, or a file of its trial is missing, differs from the recorded one, or is
             not trusted.
         TrialError: this version cannot read the trial in it.
+
+    Warns:
+        KeyframeWarning: there is no keyframe up to ``begin``, or it is damaged.
     """
     path = Path(path)
+    if not 0.0 <= begin < math.inf:
+        raise InputError(f"begin = {begin} s must be finite and at least 0")
     known, wanted = read_metadata(path), digests(path)
     complete = all(key in known for key in END_KEYS)
     if not (complete or wanted):
@@ -130,7 +147,9 @@ def replay(
     comparison = DigestComparison(EpisodeDigest(), wanted)
     with unpack_attachments(path, known, folder, trust) as place, catch_interrupt() as stop:
         course = Provenance.of(path, place.folder, trust)
-        simulation = course.simulate_until(comparison, stop)
+        start = _start(path, course, known, begin, comparison)
+        first = 0.0 if start is None else float(start.world.times[0])
+        simulation = course.simulate_until(comparison, stop, start=start)
         ticks = int(recorded["steps"]) if recorded["outcome"] in ("interrupted", "error") else None
         steering = [OrderReplay(course.parts[-1].orders)]
         outcome = run_to_end(simulation, [comparison], stop, progress, ticks, steering)
@@ -150,7 +169,22 @@ def replay(
         complete,
         place.changed,
         (recorded_failure(recorded), simulation.failures[0]),
+        first,
     )
+
+
+def _start(
+    path: Path, course: Provenance, known: dict[str, str], begin: float, comparison: DigestComparison
+) -> Simulation | None:
+    """Return the simulation at the latest keyframe up to a time [s], None for the beginning."""
+    if begin == 0.0:
+        return None
+    tick = int(begin * 1e9 + 0.5) // int(known["step_ns"])
+    found = continue_from(path, course, known, tick, comparison)
+    if found is None:
+        sentence = f"{path} has no keyframe of this version from 0 s to {begin:g} s; {LATE}"
+        warnings.warn(sentence, KeyframeWarning, stacklevel=3)
+    return found
 
 
 def _ended(known: dict[str, str], wanted: dict[int, str]) -> dict[str, str]:

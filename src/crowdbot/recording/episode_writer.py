@@ -24,10 +24,11 @@ from crowdbot.messages import (
     mount_pose,
 )
 from crowdbot.messages.marker_array import KIND as MARKERS
-from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, StepRecord, write_order
+from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, Simulation, StepRecord, write_order
 from crowdbot.trials import Trial, trial_xml
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
+from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
 from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
 
@@ -64,6 +65,7 @@ class Recorder:
         begin: tick of the first step.
         earlier: trials that it branched from, whose files are stored, too.
         force: whether an existing file may be overwritten.
+        simulation: the simulation that is recorded, for a keyframe every 5 s; None: the file has none.
 
     Raises:
         EpisodeError: the file cannot be written.
@@ -82,6 +84,7 @@ class Recorder:
         begin: int = 0,
         earlier: Sequence[Trial] = (),
         force: bool = False,
+        simulation: Simulation | None = None,
     ) -> None:
         self.path, self.tally, self.origin, self.begin, self.force = path, tally, origin, begin, force
         self._lock = contextlib.ExitStack()
@@ -91,6 +94,7 @@ class Recorder:
         if sentence := skip_message(file for file, _ in self.files):
             warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
         self.messages = Messages()
+        self.keyframes = KeyframeTrack(simulation, tally.digest)
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
         self.tape: McapWriter | None = None
@@ -161,6 +165,8 @@ class Recorder:
             self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             self._write(DIGEST, make.text(self.last[1]), now)
         assert self.tape is not None
+        if (keyframe := self.keyframes.take(frame)) is not None:
+            self.tape.attachment(f"keyframe/{frame.tick}", keyframe, MEDIA, now)
         if (frame.due and now >= self._write_due) or self.tape.large:
             self._write_due = now - now % APART + APART
             self._flush()
@@ -178,6 +184,8 @@ class Recorder:
         }
         if failure is not None:
             ending |= {"error": failure.message, "error_place": failure.place, "error_time": repr(failure.time)}
+        if self.keyframes.reason:
+            ending["no_keyframes"] = self.keyframes.reason
         self.tape.metadata(ENDING, ending)
         self._flush()
         try:

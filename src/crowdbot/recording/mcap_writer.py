@@ -83,9 +83,9 @@ class McapWriter:
         self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
 
-    def attachment(self, name: str, data: bytes) -> None:
-        """Add an attachment; its times are 0 for reproducible content."""
-        self._before += _bytes(Attachment(0, 0, name, "application/octet-stream", data))
+    def attachment(self, name: str, data: bytes, media: str = "application/octet-stream", nanoseconds: int = 0) -> None:
+        """Add an attachment; its times are simulated time, for reproducible content."""
+        self._before += _bytes(Attachment(nanoseconds, nanoseconds, name, media, data))
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Add a metadata record."""
@@ -177,7 +177,8 @@ class _Layout:
             name, data = read_attachment(body)
             media = len(body) - len(data) - len(name.encode()) - 36
             how = body[24 + len(name.encode()) :][:media].decode()
-            self.attachments.append(AttachmentIndex(place, 9 + len(body), 0, 0, len(data), name, how))
+            log, create = struct.unpack_from("<QQ", body)
+            self.attachments.append(AttachmentIndex(place, 9 + len(body), create, log, len(data), name, how))
         elif kind == McapOpcode.CHUNK:
             start, end, size, _, word = struct.unpack_from("<QQQII", body)
             how = body[32 : 32 + word].decode()

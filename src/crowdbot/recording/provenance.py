@@ -15,6 +15,7 @@ from crowdbot.simulation import (
     EpisodeDigest,
     MissedDecisionOrder,
     Order,
+    ParameterOrder,
     Simulation,
     SimulationRun,
     StepRecord,
@@ -146,12 +147,29 @@ class Provenance:
             found.append(row | ({"orders": orders} if orders else {}))
         return found
 
+    def changes_until(self, tick: int) -> int:
+        """Return the number of orders up to a tick that change the trial."""
+        return sum(isinstance(order, ParameterOrder) and at <= tick for part in self.parts for at, order in part.orders)
+
+    def begin_at(self, tick: int) -> Simulation:
+        """Return a new simulation with the changes of the trial up to a tick, to continue from a stored state."""
+        first = self.parts[0]
+        simulation, seed = Simulation(first.trial, first.seed), first.seed
+        for part in self.parts:
+            apply_overrides(simulation, part.trial, None if part.seed == seed else part.seed)
+            seed = part.seed
+            for at, order in part.orders:
+                if isinstance(order, ParameterOrder) and at <= tick:
+                    order.apply(simulation)
+        return simulation
+
     def simulate_until(
         self,
         sink: DigestComparison,
         stop: StopRequest,
         progress: Callable[[float], None] | None = None,
         until: int | None = None,
+        start: Simulation | None = None,
     ) -> Simulation:
         """Simulate all segments before the last, without recording, and return the simulation at its start.
 
@@ -160,11 +178,17 @@ class Provenance:
             stop: interrupts the run when set.
             progress: called with the completed fraction, 0 to 1.
             until: continue with the last segment up to this tick.
+            start: a simulation in the last segment, from a keyframe; None: from the beginning.
 
         Raises:
             EpisodeError: the run ends earlier.
         """
         first = self.parts[0]
+        if start is not None:
+            replay_misses(start, [row for part in self.parts for row in part.orders])
+            if until is not None:
+                _on(start, until, sink, stop, progress, OrderReplay(self.parts[-1].orders))
+            return start
         simulation = Simulation(first.trial, first.seed)
         replay_misses(simulation, [row for part in self.parts for row in part.orders])
         ends = [part.tick for part in self.parts[1:]] + ([] if until is None else [until])

@@ -10,6 +10,7 @@ from typing import TypeVar
 from crowdbot.core import Clock, InputError
 from crowdbot.simulation import (
     Episode,
+    EpisodeDigest,
     EpisodeLog,
     EpisodeStatistics,
     OrderSource,
@@ -104,14 +105,14 @@ def _record(
 ) -> tuple[T, str, Simulation]:
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
-    tally = kind(trial, chosen)
+    tally = kind(trial, chosen, None if out is None else EpisodeDigest({}))
     simulation = Simulation(trial, chosen, clock)
     with contextlib.ExitStack() as stack:
         stop = stack.enter_context(catch_interrupt())
         sinks: list[Sink] = [tally]
         if out is None:
             return tally, run_to_end(simulation, sinks, stop, progress), simulation
-        recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
+        recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force, simulation=simulation))
         outcome = run_to_end(simulation, [tally, recorder], stop, progress)
         recorder.complete(outcome, simulation.tick, simulation.failures[0])
         return tally, outcome, simulation
@@ -143,14 +144,14 @@ def open_run(
     """
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
-    tally = EpisodeStatistics(trial, chosen)
+    tally = EpisodeStatistics(trial, chosen, None if out is None else EpisodeDigest({}))
     with contextlib.ExitStack() as stack:
         takers: list[Sink] = [tally, *sinks]
-        recorder = None
+        recorder, simulation = None, Simulation(trial, chosen, clock)
         if out is not None:
-            recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
+            recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force, simulation=simulation))
             takers.append(recorder)
-        running = SimulationRun(Simulation(trial, chosen, clock), takers, sources)
+        running = SimulationRun(simulation, takers, sources)
         yield running
         running.close()
         if recorder is not None:

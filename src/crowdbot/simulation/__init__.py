@@ -10,15 +10,20 @@ from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read
 from .overrides import apply_overrides
 from .parameter_order import ParameterOrder
 from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .resumable_hash import ResumableHash
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
-from .simulation_run import OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .simulation_run import KEYFRAMES, OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .state_codec import decode_state, encode_state
+from .state_restore import restore_state
+from .state_tree import StateError, StateMark, state_of
 from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
 from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
 
 __all__ = [
+    "KEYFRAMES",
     "WALL",
     "AddPersonOrder",
     "AvatarOrder",
@@ -35,6 +40,7 @@ __all__ = [
     "ParameterOrder",
     "RedirectOrder",
     "RemoveOrder",
+    "ResumableHash",
     "RobotContact",
     "RobotControl",
     "RunEnd",
@@ -46,20 +52,26 @@ __all__ = [
     "Simulation",
     "SimulationRun",
     "Sink",
+    "StateError",
+    "StateMark",
     "StepRecord",
     "StopRequest",
     "UncommandedRobotWarning",
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
+    "decode_state",
+    "encode_state",
     "order_kinds",
     "read_order",
+    "restore_state",
     "robot_metrics",
     "run_to_end",
     "scan_row",
     "simulate",
     "simulate_seeds",
     "start_scene",
+    "state_of",
     "tracks_of",
     "warn_of_failure",
     "write_order",

@@ -17,11 +17,11 @@ from .orders import MissedDecisionOrder, Order
 from .simulation import Simulation
 from .step_record import StepRecord
 
-__all__ = ["OrderSource", "RunEnd", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
+__all__ = ["KEYFRAMES", "OrderSource", "RunEnd", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
 
 Bools = NDArray[np.bool_]
 KEYFRAMES = 5.0
-"""Simulated time [s] between two snapshots for :meth:`SimulationRun.seek`."""
+"""Simulated time [s] between two keyframes: snapshots for :meth:`SimulationRun.seek`, and states in episode files."""
 
 
 class Sink(Protocol):

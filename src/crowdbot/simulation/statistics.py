@@ -20,6 +20,8 @@ from crowdbot.trials import Trial
 from .failure import RunFailure
 from .goal_order import GoalOrder
 from .orders import write_order
+from .resumable_hash import ResumableHash
+from .state_tree import StateError
 from .step_record import StepRecord
 
 __all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
@@ -52,10 +54,30 @@ class RunSummary:
 
 
 class EpisodeDigest:
-    """Hash of an episode, updated while it runs."""
+    """Hash of an episode, updated while it runs.
 
-    def __init__(self) -> None:
-        self._sum = hashlib.blake2b(digest_size=16)
+    Args:
+        state: a stored state to continue from, or empty for a new hash whose state can be stored; None: neither.
+
+    Raises:
+        InputError: the state is not that of a hash.
+    """
+
+    def __init__(self, state: Mapping[str, Any] | None = None) -> None:
+        self._sum: Any = hashlib.blake2b(digest_size=16)
+        if state is not None:
+            self._sum = ResumableHash.of(state) if state else ResumableHash()
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The state to continue from, as arrays and numbers.
+
+        Raises:
+            StateError: the hash was made without a state.
+        """
+        if not isinstance(self._sum, ResumableHash):
+            raise StateError("the digest of this run cannot be stored")
+        return self._sum.state
 
     def take(self, frame: StepRecord) -> None:
         """Add a record: all arrays of its readings, then of its scene if due, then forces."""
@@ -79,7 +101,7 @@ class EpisodeDigest:
         """Return the hash of all records so far and the outcome."""
         whole = self._sum.copy()
         whole.update(f"outcome {outcome}\n".encode())
-        return whole.hexdigest()
+        return str(whole.hexdigest())
 
 
 class EpisodeStatistics:

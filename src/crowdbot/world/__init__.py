@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
     from .planar_environments import planar_world
+    from .planar_live_changes import widen
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -143,6 +144,7 @@ _LAZY = {
     "step_environments": "environments",
     "take_arrays": "crowd.environment_rows",
     "two_body_force": "physics.body_region_limits",
+    "widen": "planar_live_changes",
 }
 
 __all__ = [
@@ -226,6 +228,7 @@ __all__ = [
     "step_environments",
     "take_arrays",
     "two_body_force",
+    "widen",
 ]
 
 
