@@ -1,6 +1,6 @@
 """Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
-from .agent_states import AgentStates
+from .agent_states import AgentLog, AgentStates
 from .collisions import collision_mask, collision_share, neighbor_mask
 from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
@@ -32,6 +32,7 @@ from .step_clearance import step_clearance, step_wall_clearance
 __all__ = [
     "HOLD",
     "NAVIGATION_METRICS",
+    "AgentLog",
     "AgentStates",
     "ContactEvent",
     "ContactTracker",

@@ -26,18 +26,21 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .agent_states import AgentStates
+from .agent_states import AgentLog, AgentStates
 from .contact_tracker import ContactTracker
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .proximity import personal_space_compliance, proxemic_shares
-from .record_clearance import record_clearance
+from .record_clearance import log_clearance, record_clearance
 
 __all__ = ["NavigationMetrics", "NavigationOutcome"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 NEAR = 1.0
 """People closer than this [m] are tracked for contacts."""
+TOUCH = 1e-6
+"""People who come closer than this [m] may touch the robot; larger than rounding errors."""
 MOVING = 0.05
 """Minimum speed [m/s] at which the direction of the velocity defines the heading."""
 
@@ -140,6 +143,63 @@ class NavigationMetrics:
             self._decided = NavigationOutcome("collision" if touched else "success", len(self._samples) - 1)
         self._finished = arrived
 
+    def update_log(self, log: AgentLog, contact: Bools) -> None:
+        """Add all records of a log; the result is that of :meth:`update` with each of them, to the last bit.
+
+        Args:
+            log: all agents, including the robot, with ids as columns.
+            contact: ``[T]`` whether the world detected a contact of the robot since the previous record.
+
+        Raises:
+            InputError: the times do not increase, or the robot is absent.
+        """
+        if self._samples or self._finished:
+            for states, touched in zip(log.states(), contact.tolist(), strict=True):
+                self.update(states, touched)
+            return
+        log, arrived = self._counted(log)
+        found = log_clearance(log, self.robot, self.radius, self.walls)
+        touched = contact[: len(log.times)] | (np.minimum(found.swept, found.wall) < 0.0)
+        if (touched | arrived).any():
+            first = int(np.argmax(touched | arrived))
+            self._decided = NavigationOutcome("collision" if touched[first] else "success", first)
+        place, velocity = log.position[:, self.robot], log.velocity[:, self.robot]
+        heading = map(_heading, log.heading[:, self.robot].tolist(), velocity)
+        columns = (part.tolist() for part in found[1:])
+        self._samples = [
+            _Sample(*row) for row in zip(log.times.tolist(), place, velocity, heading, *columns, strict=True)
+        ]
+        self._update_contacts(log, found.closest)
+        self._before = next(log.part(-1, None).states())
+
+    def _counted(self, log: AgentLog) -> tuple[AgentLog, Bools]:
+        """Return the records that count, and at which of them the robot is at its goal; set whether it is the end."""
+        times, there = log.times, log.active[:, self.robot]
+        away = log.position[:, self.robot] - self.goal
+        arrived = there & (np.hypot(away[:, 0], away[:, 1]) < self.tolerance)
+        late = times - times[0] > self.time_limit
+        count = min(
+            (int(np.argmax(flag)) + extra for flag, extra in ((arrived, 1), (late, 0)) if flag.any()),
+            default=len(times),
+        )
+        self._finished = bool(arrived.any() or late.any())
+        order = np.diff(times[:count]) > 0.0
+        if not order.all():
+            k = int(np.argmin(order))
+            raise InputError(f"navigation metrics: {times[k + 1]} s follows {times[k]} s; time must increase")
+        if not there[:count].all():
+            missing = times[int(np.argmin(there[:count]))]
+            raise InputError(f"navigation metrics: robot {self.robot} is absent at {missing} s")
+        return log.part(0, count), arrived[:count]
+
+    def _update_contacts(self, log: AgentLog, closest: Floats) -> None:
+        """Track the people who touch the robot in the log; all others have no contact events."""
+        margin = TOUCH + max(0.0, self.radius - float(log.radius[:, self.robot].min()))
+        people = np.flatnonzero(closest.min(axis=0) < margin)
+        if len(people):
+            for k, states in enumerate(log.states(np.sort(np.append(people, self.robot)))):
+                self._contacts.update(states, people[closest[k, people] < NEAR])
+
     def result(self, outcome: str | None = None) -> dict[str, float]:
         """Return every metric of :data:`crowdbot.metrics.NAVIGATION_METRICS` so far.
 
@@ -180,7 +240,7 @@ class NavigationMetrics:
         found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
         self._contacts.update(states, found.near)
         place, velocity = states.position[own], states.velocity[own]
-        return _Sample(states.time, place, velocity, _heading(states, own), *found[1:])
+        return _Sample(states.time, place, velocity, _heading(float(states.heading[own]), velocity), *found[1:])
 
     def _nearness(self, times: Floats) -> dict[str, float]:
         rows = [(one.swept, one.nearest, one.wall, one.density) for one in self._samples]
@@ -217,10 +277,9 @@ class NavigationMetrics:
         }
 
 
-def _heading(states: AgentStates, own: int) -> float:
+def _heading(heading: float, velocity: Floats) -> float:
     """Return the heading of the robot, or of its velocity if unknown; NaN at rest."""
-    heading = float(states.heading[own])
     if math.isfinite(heading):
         return heading
-    x, y = states.velocity[own]
+    x, y = velocity
     return float(np.arctan2(y, x)) if np.hypot(x, y) > MOVING else math.nan

@@ -1,6 +1,8 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
-from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
+from .episode import Episode, ScanRow, scan_row, tracks_of
+from .episode_digest import EpisodeDigest
+from .episode_log import EpisodeLog
 from .failure import RunFailure, RunFailureWarning
 from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .overrides import apply_overrides
@@ -9,14 +11,17 @@ from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
-from .simulation_run import OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
-from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
+from .simulation_run import BatchSink, OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .statistics import EpisodeStatistics, RunSummary, robot_metrics
+from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
 
 __all__ = [
     "WALL",
     "AddPersonOrder",
+    "BatchReadings",
+    "BatchSink",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",
@@ -39,6 +44,7 @@ __all__ = [
     "Simulation",
     "SimulationRun",
     "Sink",
+    "StepBatch",
     "StepRecord",
     "StopRequest",
     "VelocityOrder",

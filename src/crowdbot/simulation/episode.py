@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,10 +18,9 @@ from crowdbot.world import BodyContactEvent, ContactForce
 
 from .failure import RunFailure
 from .orders import Order
-from .statistics import EpisodeDigest, EpisodeStatistics, present
-from .step_record import RobotContact, StepRecord
+from .step_record import RobotContact
 
-__all__ = ["Episode", "EpisodeDigest", "EpisodeLog", "ScanRow", "scan_row", "tracks_of"]
+__all__ = ["Episode", "ScanRow", "scan_row", "tracks_of"]
 
 Floats = NDArray[np.float64]
 
@@ -159,80 +158,6 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
         robots=frozenset(int(view.ids[robot]) for robot in view.robots),
         walls=tuple(view.walls),
     )
-
-
-class EpisodeLog(EpisodeStatistics):
-    """Collects the arrays of an episode while it runs.
-
-    Args:
-        trial, seed, digest: see :class:`EpisodeStatistics`.
-    """
-
-    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
-        super().__init__(trial, seed, digest)
-        self.frames: list[tuple[NDArray[Any], ...]] = []
-        self.times: list[float] = []
-        self.bodies: dict[int, float] = {}
-        self.readings: dict[str, list[Reading]] = {}
-        self.orders: list[tuple[int, Order]] = []
-        self.contacts: list[tuple[float, RobotContact]] = []
-        self.forces: list[tuple[float, ContactForce]] = []
-        self.collisions: list[BodyContactEvent] = []
-
-    def keep(self, frame: StepRecord) -> None:
-        """Add a step that the digest already contains."""
-        super().keep(frame)
-        time = frame.nanoseconds / 1e9
-        self.orders += [(frame.tick, order) for order in frame.orders]
-        self.contacts += [(time, contact) for contact in frame.touches]
-        self.forces += [(time, force) for force in frame.forces]
-        self.collisions += frame.collisions
-        for robot, mount, reading in frame.readings:
-            self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
-        if frame.due:
-            self.times.append(frame.nanoseconds / 1e9)
-            here = frame.scene.active[0]
-            self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
-            self.frames.append((frame.ids, *present(frame), frame.twists, frame.commands))
-
-    def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
-        """Return the episode."""
-        ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
-        first = self.trial.people
-        robots = tuple(range(first, first + len(self.trial.robots)))
-        position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
-        return Episode(
-            self.trial,
-            self.seed,
-            outcome,
-            steps,
-            np.array(self.times),
-            position,
-            velocity,
-            heading,
-            np.array([self.bodies.get(who, 0.0) for who in range(self.agents)]),
-            active,
-            np.arange(self.agents, dtype=np.int64),
-            robots,
-            np.stack(twists),
-            np.stack(commands),
-            {name: tuple(rows) for name, rows in self.readings.items()},
-            self.metrics(outcome),
-            self.digest.hexdigest(outcome),
-            failure,
-            tuple(self.orders),
-            tuple(self.contacts),
-            tuple(self.forces),
-            tuple(self.collisions),
-        )
-
-
-def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
-    """Return rows ``[A, ...]`` as ``[T, agents, ...]`` with one column per id; ``ids`` are the ids of the rows."""
-    out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
-    for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
-        out[k, who[who >= 0]] = row[who >= 0]
-    return out
 
 
 def scan_row(scan: Scan) -> ScanRow:
