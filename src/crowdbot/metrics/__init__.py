@@ -7,7 +7,8 @@ from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
-from .incremental import NavigationMetrics, NavigationOutcome
+from .impacts import IMPACT_METRICS, Impact, impact_metrics
+from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
 from .mahalanobis import mahalanobis
@@ -30,12 +31,15 @@ from .score import Score, score
 from .step_clearance import step_clearance, step_wall_clearance
 
 __all__ = [
+    "CONTACT_METRICS",
     "HOLD",
+    "IMPACT_METRICS",
     "NAVIGATION_METRICS",
     "AgentLog",
     "AgentStates",
     "ContactEvent",
     "ContactTracker",
+    "Impact",
     "Intervals",
     "NavigationMetrics",
     "NavigationOutcome",
@@ -55,6 +59,7 @@ __all__ = [
     "error_over_horizon",
     "fde",
     "heading_change",
+    "impact_metrics",
     "jerk",
     "kde_nll",
     "local_density",

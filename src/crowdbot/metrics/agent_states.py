@@ -46,6 +46,17 @@ class AgentStates:
             here,
         )
 
+    def select(self, chosen: NDArray[np.bool_]) -> AgentStates:
+        """Return the states of some agents, ``chosen [N]``."""
+        return AgentStates(
+            self.time,
+            self.ids[chosen],
+            self.position[chosen],
+            self.velocity[chosen],
+            self.heading[chosen],
+            self.radius[chosen],
+        )
+
 
 class AgentLog(NamedTuple):
     """States of A agents, people and robots, at T times; column k belongs to the agent with id k.

@@ -19,6 +19,7 @@ key                                value
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ from .motion import heading_change, jerk, longest_stall, path_efficiency, path_l
 from .proximity import personal_space_compliance, proxemic_shares
 from .record_clearance import log_clearance, record_clearance
 
-__all__ = ["NavigationMetrics", "NavigationOutcome"]
+__all__ = ["CONTACT_METRICS", "NavigationMetrics", "NavigationOutcome"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -41,6 +42,15 @@ NEAR = 1.0
 """People closer than this [m] are tracked for contacts."""
 TOUCH = 1e-6
 """People who come closer than this [m] may touch the robot; larger than rounding errors."""
+CONTACT_METRICS = (
+    "contacts",
+    "robot_caused_contacts",
+    "person_caused_contacts",
+    "contact_time",
+    "max_penetration",
+    "max_impact_speed",
+)
+"""Metrics of contacts, which a ghost does not have."""
 MOVING = 0.05
 """Minimum speed [m/s] at which the direction of the velocity defines the heading."""
 
@@ -78,6 +88,9 @@ class NavigationMetrics:
         tolerance: distance [m] below which the goal is reached.
         walls: segments ``[N, 4]`` [m].
         time_limit: time limit after the first record [s].
+        ghost: whether the robot is a ghost, which passes through people and walls: the metrics of
+            :data:`CONTACT_METRICS` are absent, and the outcome is never a collision.
+        ignored: ids of agents that do not exist for this robot, such as other ghosts.
 
     >>> metrics = NavigationMetrics(0, 0.3, (1.0, 0.0), tolerance=0.2)
     >>> for k in range(3):
@@ -96,7 +109,10 @@ class NavigationMetrics:
         *,
         walls: Floats | None = None,
         time_limit: float = math.inf,
+        ghost: bool = False,
+        ignored: Sequence[int] = (),
     ) -> None:
+        self.ghost, self.ignored = ghost, np.asarray(ignored, dtype=np.int64)
         self.robot, self.radius = robot, radius
         self.goal, self.tolerance, self.time_limit = np.asarray(goal, dtype=np.float64), tolerance, time_limit
         self.walls = np.zeros((0, 4)) if walls is None else walls
@@ -130,6 +146,8 @@ class NavigationMetrics:
         if self._samples and states.time - self._samples[0].time > self.time_limit:
             self._finished = True
             return
+        if len(self.ignored):
+            states = states.select(~np.isin(states.ids, self.ignored))
         own = int(np.searchsorted(states.ids, self.robot))
         if own == len(states.ids) or states.ids[own] != self.robot:
             raise InputError(f"navigation metrics: robot {self.robot} is absent at {states.time} s")
@@ -138,7 +156,7 @@ class NavigationMetrics:
         self._before = states
         away = sample.position - self.goal
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
-        touched = contact or min(sample.swept, sample.wall) < 0.0
+        touched = not self.ghost and (contact or min(sample.swept, sample.wall) < 0.0)
         if self._decided is None and (touched or arrived):
             self._decided = NavigationOutcome("collision" if touched else "success", len(self._samples) - 1)
         self._finished = arrived
@@ -153,6 +171,10 @@ class NavigationMetrics:
         Raises:
             InputError: the times do not increase, or the robot is absent.
         """
+        if len(self.ignored):
+            active = log.active.copy()
+            active[:, self.ignored] = False
+            log = log._replace(active=active)
         if self._samples or self._finished:
             for states, touched in zip(log.states(), contact.tolist(), strict=True):
                 self.update(states, touched)
@@ -160,6 +182,7 @@ class NavigationMetrics:
         log, arrived = self._counted(log)
         found = log_clearance(log, self.robot, self.radius, self.walls)
         touched = contact[: len(log.times)] | (np.minimum(found.swept, found.wall) < 0.0)
+        touched &= not self.ghost
         if (touched | arrived).any():
             first = int(np.argmax(touched | arrived))
             self._decided = NavigationOutcome("collision" if touched[first] else "success", first)
@@ -196,7 +219,7 @@ class NavigationMetrics:
         """Track the people who touch the robot in the log; all others have no contact events."""
         margin = TOUCH + max(0.0, self.radius - float(log.radius[:, self.robot].min()))
         people = np.flatnonzero(closest.min(axis=0) < margin)
-        if len(people):
+        if len(people) and not self.ghost:
             for k, states in enumerate(log.states(np.sort(np.append(people, self.robot)))):
                 self._contacts.update(states, people[closest[k, people] < NEAR])
 
@@ -238,7 +261,8 @@ class NavigationMetrics:
 
     def _measure(self, states: AgentStates, own: int) -> _Sample:
         found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
-        self._contacts.update(states, found.near)
+        if not self.ghost:
+            self._contacts.update(states, found.near)
         place, velocity = states.position[own], states.velocity[own]
         return _Sample(states.time, place, velocity, _heading(float(states.heading[own]), velocity), *found[1:])
 
@@ -258,6 +282,8 @@ class NavigationMetrics:
         }
 
     def _contact_metrics(self) -> dict[str, float]:
+        if self.ghost:
+            return {}
         events = self._contacts.events()
         return {
             "contacts": float(len(events)),

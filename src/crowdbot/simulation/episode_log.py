@@ -57,7 +57,6 @@ class EpisodeLog(EpisodeStatistics):
         self.orders: list[tuple[int, Order]] = []
         self.contacts: list[tuple[float, RobotContact]] = []
         self.forces: list[tuple[float, ContactForce]] = []
-        self.collisions: list[BodyContactEvent] = []
         self._frames: list[_Frame] = []
 
     def keep(self, frame: StepRecord) -> None:

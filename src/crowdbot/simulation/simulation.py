@@ -394,7 +394,7 @@ class Simulation:
             if not control.arrived.all() and may_be_near(position, control.agent, *goal.position, goal.tolerance):
                 control.arrive(position[:, control.agent])
         self._contacts = {e: tuple(found) for e, found in found.items()}
-        note_events(self.event, list(found), [control.arrived for control in self.robots], COLLISION, SUCCESS)
+        note_events(self.event, list(found), self.robots, COLLISION, SUCCESS)
         agents = {robot.robot.name: robot.agent for robot in self.robots}
         if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
             self.ended = np.where(self.ended == 0, met, self.ended)

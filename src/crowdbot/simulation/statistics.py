@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.metrics import AgentStates, NavigationMetrics
+from crowdbot.metrics import AgentStates, NavigationMetrics, impact_metrics
 from crowdbot.trials import Trial
+from crowdbot.world import BodyContactEvent
 
 from .episode_digest import EpisodeDigest
 from .failure import RunFailure
@@ -60,6 +61,7 @@ class EpisodeStatistics:
         self.begin = self.end = math.nan
         self._touching: set[int] = set()
         self.travels = new_metrics(trial)
+        self.collisions: list[BodyContactEvent] = []
 
     def take(self, frame: StepRecord) -> None:
         """Add a record."""
@@ -70,6 +72,7 @@ class EpisodeStatistics:
         """Add a record that the digest already contains."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
+        self.collisions += frame.collisions
         if frame.due:
             self.end = frame.nanoseconds / 1e9
             self.begin = self.end if math.isnan(self.begin) else self.begin
@@ -80,8 +83,18 @@ class EpisodeStatistics:
             self._touching = set()
 
     def metrics(self, outcome: str) -> dict[str, float]:
-        """Return the metrics of all robots."""
-        return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
+        """Return the metrics of all robots, in the physics world with those of impacts."""
+        names = [robot.name for robot in self.trial.robots]
+        return robot_metrics(self.travels, names, outcome) | self._impact_metrics()
+
+    def _impact_metrics(self) -> dict[str, float]:
+        found: dict[str, float] = {}
+        for k, robot in enumerate(self.trial.robots if self.trial.world == "physics" else ()):
+            body = ("robot", self.trial.people + k)
+            own = [one for one in self.collisions if tuple(one.first) == body and one.second.kind == "person"]
+            values = impact_metrics(own)
+            found |= {(key if k == 0 else f"{robot.name}.{key}"): value for key, value in values.items()}
+        return found
 
     def summary(
         self, outcome: str, steps: int, path: Path | None = None, failure: RunFailure | None = None
@@ -107,8 +120,17 @@ def new_metrics(trial: Trial) -> list[NavigationMetrics]:
     if not trial.robots:
         return []
     walls = trial.stage.as_walls().segments()
+    ghosts = [trial.people + k for k, robot in enumerate(trial.robots) if robot.ghost]
     return [
-        NavigationMetrics(trial.people + k, robot.radius, robot.goal.position, robot.goal.tolerance, walls=walls)
+        NavigationMetrics(
+            trial.people + k,
+            robot.radius,
+            robot.goal.position,
+            robot.goal.tolerance,
+            walls=walls,
+            ghost=robot.ghost,
+            ignored=[ghost for ghost in ghosts if ghost != trial.people + k],
+        )
         for k, robot in enumerate(trial.robots)
     ]
 
