@@ -16,6 +16,7 @@ from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
 from .nearest_neighbor import nearest_neighbor_accuracy
+from .people_table import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
     clearance,
@@ -35,6 +36,7 @@ __all__ = [
     "HOLD",
     "IMPACT_METRICS",
     "NAVIGATION_METRICS",
+    "PEOPLE_COLUMNS",
     "AgentLog",
     "AgentStates",
     "ContactEvent",
@@ -44,7 +46,9 @@ __all__ = [
     "NavigationMetrics",
     "NavigationOutcome",
     "PersonErrors",
+    "PersonImpact",
     "Score",
+    "TableRobot",
     "ade",
     "best_of",
     "bootstrap_interval",
@@ -75,6 +79,7 @@ __all__ = [
     "outcome",
     "path_efficiency",
     "path_length",
+    "people_table",
     "person_errors",
     "personal_space_compliance",
     "proxemic_shares",

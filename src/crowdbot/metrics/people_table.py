@@ -81,7 +81,7 @@ def people_table(
     for name in ("mean_speed", "max_speed", "mean_jerk"):
         columns[name] = np.array([row[name] for row in rows], dtype=np.float64)
     near, more = _nearness(log, robots, people)
-    return columns | near | _impacts(people, impacts) | more
+    return {**columns, **near, **_impacts(people, impacts), **more}
 
 
 def _motion(log: AgentLog, person: int) -> dict[str, float]:

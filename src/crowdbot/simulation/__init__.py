@@ -1,6 +1,6 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
-from .episode import Episode, ScanRow, scan_row, tracks_of
+from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .failure import RunFailure, RunFailureWarning
@@ -50,6 +50,7 @@ __all__ = [
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
+    "log_of",
     "order_kinds",
     "read_order",
     "robot_metrics",

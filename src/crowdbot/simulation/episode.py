@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import FreeClock, InputError, TickSchedule
 from crowdbot.data import Trajectories
+from crowdbot.metrics import AgentLog, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 from crowdbot.world import BodyContactEvent, ContactForce
@@ -20,7 +22,7 @@ from .failure import RunFailure
 from .orders import Order
 from .step_record import RobotContact
 
-__all__ = ["Episode", "ScanRow", "scan_row", "tracks_of"]
+__all__ = ["Episode", "ScanRow", "log_of", "scan_row", "tracks_of"]
 
 Floats = NDArray[np.float64]
 
@@ -111,6 +113,29 @@ class Episode:
                 return rows
         return ()
 
+    @functools.cached_property
+    def people(self) -> dict[str, NDArray[Any]]:
+        """One row for each person: columns of :data:`crowdbot.metrics.PEOPLE_COLUMNS`, as of a recorded episode.
+
+        >>> from crowdbot.simulation import simulate
+        >>> from crowdbot.trials import load_trial
+        >>> people = simulate(load_trial("frontal", duration=2.0), 0).people
+        >>> people["id"].tolist(), people["left"].tolist()
+        ([0], [0.0])
+        """
+        specs = self.trial.robots
+        robots = [TableRobot(k, one.name, one.ghost) for k, one in zip(self.robots, specs, strict=True)]
+        impacts = None
+        if self.trial.world == "physics":
+            hits = [one for one in self.collisions if (one.first.kind, one.second.kind) == ("robot", "person")]
+            impacts = [PersonImpact(one.second.number, one.peak_force, one.severity) for one in hits]
+        return people_table(log_of(self), robots, impacts)
+
+    @property
+    def footprints(self) -> tuple[Floats | None, ...]:
+        """Outline ``[N, 2]`` [m] of each robot with a type, in its own frame; None for a disc of its radius."""
+        return tuple(robot.body.footprint if robot.type else None for robot in self.trial.robots)
+
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories; frame k is k times ``dt`` after the first.
 
@@ -158,6 +183,12 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
         robots=frozenset(int(view.ids[robot]) for robot in view.robots),
         walls=tuple(view.walls),
     )
+
+
+def log_of(view: Any) -> AgentLog:
+    """Return the states of all agents of an episode."""
+    radius = np.broadcast_to(view.radius, view.active.shape)
+    return AgentLog(view.times, view.position, view.velocity, view.heading, radius, view.active)
 
 
 def scan_row(scan: Scan) -> ScanRow:
