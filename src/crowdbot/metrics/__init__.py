@@ -7,6 +7,7 @@ from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
+from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .impacts import IMPACT_METRICS, Impact, impact_metrics
 from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval
@@ -33,6 +34,7 @@ from .step_clearance import step_clearance, step_wall_clearance
 
 __all__ = [
     "CONTACT_METRICS",
+    "FOOTPRINT_METRICS",
     "HOLD",
     "IMPACT_METRICS",
     "NAVIGATION_METRICS",
@@ -62,6 +64,7 @@ __all__ = [
     "energy_score",
     "error_over_horizon",
     "fde",
+    "footprint_clearance",
     "heading_change",
     "impact_metrics",
     "jerk",

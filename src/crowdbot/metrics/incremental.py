@@ -29,6 +29,7 @@ from crowdbot.core import InputError
 
 from .agent_states import AgentLog, AgentStates
 from .contact_tracker import ContactTracker
+from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .proximity import personal_space_compliance, proxemic_shares
 from .record_clearance import log_clearance, record_clearance
@@ -91,6 +92,8 @@ class NavigationMetrics:
         ghost: whether the robot is a ghost, which passes through people and walls: the metrics of
             :data:`CONTACT_METRICS` are absent, and the outcome is never a collision.
         ignored: ids of agents that do not exist for this robot, such as other ghosts.
+        footprint: corners ``[N, 2]`` of the outline in the frame of the robot [m], for the metrics of
+            :data:`FOOTPRINT_METRICS`; None for a disc, which does not have them.
 
     >>> metrics = NavigationMetrics(0, 0.3, (1.0, 0.0), tolerance=0.2)
     >>> for k in range(3):
@@ -111,7 +114,9 @@ class NavigationMetrics:
         time_limit: float = math.inf,
         ghost: bool = False,
         ignored: Sequence[int] = (),
+        footprint: Floats | None = None,
     ) -> None:
+        self.footprint, self._outline = footprint, list[float]()
         self.ghost, self.ignored = ghost, np.asarray(ignored, dtype=np.int64)
         self.robot, self.radius = robot, radius
         self.goal, self.tolerance, self.time_limit = np.asarray(goal, dtype=np.float64), tolerance, time_limit
@@ -153,6 +158,8 @@ class NavigationMetrics:
             raise InputError(f"navigation metrics: robot {self.robot} is absent at {states.time} s")
         sample = self._measure(states, own)
         self._samples.append(sample)
+        if self.footprint is not None:
+            self._outline.append(footprint_clearance(states, own, self.footprint))
         self._before = states
         away = sample.position - self.goal
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
@@ -192,6 +199,10 @@ class NavigationMetrics:
         self._samples = [
             _Sample(*row) for row in zip(log.times.tolist(), place, velocity, heading, *columns, strict=True)
         ]
+        if self.footprint is not None:
+            for states in log.states():
+                own = int(np.searchsorted(states.ids, self.robot))
+                self._outline.append(footprint_clearance(states, own, self.footprint))
         self._update_contacts(log, found.closest)
         self._before = next(log.part(-1, None).states())
 
@@ -257,6 +268,7 @@ class NavigationMetrics:
             "mean_jerk": float(np.mean(jerks)) if len(jerks) else math.nan,
             "max_jerk": float(np.max(jerks)) if len(jerks) else math.nan,
             "heading_change": heading_change(heading[np.isfinite(heading)]),
+            **self._outline_metrics(),
         }
 
     def _measure(self, states: AgentStates, own: int) -> _Sample:
@@ -293,6 +305,13 @@ class NavigationMetrics:
             "max_penetration": max((event.depth for event in events), default=0.0),
             "max_impact_speed": max((event.impact_speed for event in events), default=0.0),
         }
+
+    def _outline_metrics(self) -> dict[str, float]:
+        if self.footprint is None:
+            return {}
+        known = np.array([one for one in self._outline if math.isfinite(one)])
+        values = (float(known.min()), float(known.mean())) if len(known) else (math.inf, math.inf)
+        return dict(zip(FOOTPRINT_METRICS, values, strict=True))
 
     def _time_to_collision(self) -> dict[str, float]:
         ttc = np.array([sample.ttc for sample in self._samples])

@@ -43,6 +43,7 @@ class EpisodeEnd:
                 float(one["tolerance"]),
                 walls=walls,
                 ghost=bool(one.get("ghost")),
+                footprint=np.array(one["footprint"], dtype=np.float64) if one.get("footprint") else None,
                 ignored=[ghost for ghost in ghosts if ghost != int(one["id"])],
             )
             for one in self.robots

@@ -129,6 +129,7 @@ def new_metrics(trial: Trial) -> list[NavigationMetrics]:
             robot.goal.tolerance,
             walls=walls,
             ghost=robot.ghost,
+            footprint=robot.body.footprint if robot.type else None,
             ignored=[ghost for ghost in ghosts if ghost != trial.people + k],
         )
         for k, robot in enumerate(trial.robots)
