@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, stream
 from crowdbot.metrics import (
     NAVIGATION_METRICS,
+    AgentLog,
     AgentStates,
     NavigationMetrics,
     NavigationOutcome,
@@ -209,3 +210,44 @@ def test_metrics_of_a_run_are_those_of_its_log(name):
     )
     assert episode.metrics[episode.outcome] == 1.0
     assert sum(episode.metrics[word] for word in judged[:3]) == 1.0
+
+
+def bits(values):
+    """Return metrics as text with all digits."""
+    return repr({key: float(value) for key, value in values.items()})
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.25, 2.0]), st.sampled_from([math.inf, 2.0]), st.booleans())
+def test_a_whole_log_gives_the_bits_of_its_records(seed, tolerance, limit, known):
+    times, paths, velocity, radius, active = random_log(seed)
+    rng = stream(seed, "rest")
+    heading = rng.uniform(-3, 3, active.shape) if known else np.full(active.shape, np.nan)
+    radii = np.broadcast_to(radius, active.shape)
+    log = AgentLog(times, paths, velocity, heading, radii, active)
+    contact = rng.uniform(size=len(times)) < 0.02
+    walls = rng.uniform(-3, 3, (3, 4))
+    one, other, split = (
+        NavigationMetrics(0, float(radius[0]), (1.0, 0.5), tolerance, walls=walls, time_limit=limit) for _ in range(3)
+    )
+    for states_, touched in zip(log.states(), contact.tolist(), strict=True):
+        one.update(states_, touched)
+    other.update_log(log, contact)
+    half = len(times) // 2
+    split.update_log(AgentLog(*(part[:half] for part in log)), contact[:half])
+    split.update_log(AgentLog(*(part[half:] for part in log)), contact[half:])
+    assert one.outcome == other.outcome == split.outcome
+    assert bits(one.result()) == bits(other.result()) == bits(split.result())
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [("time", "1.0 s follows 1.0 s; time must increase"), ("robot", "robot 0 is absent at 1.0 s")],
+)
+def test_bad_logs_are_refused(change, message):
+    place = np.zeros((3, 2, 2)) + 5.0
+    times = np.array([0.0, 1.0, 1.0 if change == "time" else 2.0])
+    active = np.array([[True, True], [change == "time", True], [True, True]])
+    log = AgentLog(times, place, 0 * place, np.zeros((3, 2)), np.full((3, 2), 0.3), active)
+    with pytest.raises(InputError, match=message):
+        NavigationMetrics(0, 0.3, (0.0, 0.0), 0.2).update_log(log, np.zeros(3, dtype=bool))

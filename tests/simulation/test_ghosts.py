@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import Twist
+from crowdbot.metrics import CONTACT_METRICS
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.sensors import Scan
 from crowdbot.simulation import Simulation, apply_overrides, simulate
@@ -320,3 +321,38 @@ def test_values_are_set_by_path_and_written() -> None:
     assert (robot.ghost, robot.planner, robot.deadline, robot.tracks) == (True, Planner(0.2), 0.5, 2.0)
     assert parse_trial(trial_xml(trial)) == trial
     assert valid(trial_xml(trial))
+
+
+def two_robots(**changes: Any) -> Trial:
+    """Return a trial with a robot and a ghost that never moves."""
+    trial = load_trial("frontal", duration=30.0)
+    robot = dataclasses.replace(trial.robots[0], **changes)
+    still = dataclasses.replace(robot, name="other", y=robot.y + 3.0, ghost=True, navigator=Still())
+    return dataclasses.replace(trial, robots=(robot, still))
+
+
+def test_the_end_does_not_wait_for_ghosts() -> None:
+    both, alone = simulate(two_robots(), 0), simulate(load_trial("frontal", duration=30.0), 0)
+    assert (both.outcome, both.steps) == (alone.outcome, alone.steps)
+    assert both.outcome == "success"
+
+
+def test_a_run_with_only_ghosts_ends_at_their_arrival() -> None:
+    trial = with_robots(load_trial("frontal", duration=30.0), ghost=True)
+    assert simulate(trial, 0).outcome == "success"
+
+
+def test_a_ghost_has_no_contact_metrics() -> None:
+    trial = load_trial("frontal", navigator="straight", duration=15.0)
+    ghost = simulate(with_robots(trial, ghost=True), 0)
+    assert ghost.metrics["min_clearance"] < 0.0  # it passes through a person, which is not a contact
+    assert ghost.metrics["collision"] == 0.0
+    assert not set(CONTACT_METRICS) & set(ghost.metrics)
+    assert set(CONTACT_METRICS) < set(simulate(trial, 0).metrics)
+
+
+def test_a_ghost_does_not_change_the_metrics_of_a_robot() -> None:
+    both, alone = simulate(two_robots(), 0), simulate(load_trial("frontal", duration=30.0), 0)
+    own = {name: value for name, value in both.metrics.items() if not name.startswith("other.")}
+    own |= {name: alone.metrics[name] for name in ("success", "collision", "timeout", "time_to_goal")}
+    assert repr(own) == repr(dict(alone.metrics))

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from crowdbot.core import stream
 from crowdbot.simulation.termination import may_be_near, note_events
 
 
+def controls(*arrived: np.ndarray) -> list[SimpleNamespace]:
+    """Return controls of robots that are no ghosts."""
+    return [SimpleNamespace(robot=SimpleNamespace(ghost=False), arrived=one) for one in arrived]
+
+
 def test_the_first_event_stays() -> None:
     event = np.array([0, 0, 0, 1, 2], dtype=np.int8)
     arrived = np.array([True, True, False, True, True])
-    note_events(event, [1, 4], [arrived, np.ones(5, dtype=np.bool_)], 1, 2)
+    note_events(event, [1, 4], controls(arrived, np.ones(5, dtype=np.bool_)), 1, 2)
     assert event.tolist() == [2, 1, 0, 1, 2]
-    note_events(event, [], [np.zeros(5, dtype=np.bool_)], 1, 2)
+    note_events(event, [], controls(np.zeros(5, dtype=np.bool_)), 1, 2)
     assert event.tolist() == [2, 1, 0, 1, 2]
 
 
 def test_success_needs_all_robots_and_at_least_one() -> None:
     event = np.zeros(2, dtype=np.int8)
     note_events(event, [], [], 1, 2)
-    note_events(event, [], [np.array([True, True]), np.array([False, True])], 1, 2)
+    note_events(event, [], controls(np.array([True, True]), np.array([False, True])), 1, 2)
     assert event.tolist() == [0, 2]
 
 

@@ -88,10 +88,11 @@ def print_table(
 
 def print_metrics(title: str, metrics: Mapping[str, float]) -> None:
     """Print the navigation metrics of an episode with their units."""
-    from crowdbot.metrics import NAVIGATION_METRICS
+    from crowdbot.metrics import FOOTPRINT_METRICS, IMPACT_METRICS, NAVIGATION_METRICS
 
+    units = NAVIGATION_METRICS | IMPACT_METRICS | FOOTPRINT_METRICS
     rows = [
-        (name.replace("_", " "), number(value), NAVIGATION_METRICS.get(name.rpartition(".")[2], ("", ""))[0])
+        (name.replace("_", " "), number(value), units.get(name.rpartition(".")[2], ("", ""))[0])
         for name, value in metrics.items()
     ]
     print_table(title, ("navigation metric", "value", "unit"), rows)

@@ -1,13 +1,15 @@
 """Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
-from .agent_states import AgentStates
+from .agent_states import AgentLog, AgentStates
 from .collisions import collision_mask, collision_share, neighbor_mask
 from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
-from .incremental import NavigationMetrics, NavigationOutcome
+from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
+from .impacts import IMPACT_METRICS, Impact, impact_metrics
+from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
 from .mahalanobis import mahalanobis
@@ -15,6 +17,7 @@ from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
 from .nearest_neighbor import nearest_neighbor_accuracy
+from .people_table import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
     clearance,
@@ -30,16 +33,24 @@ from .score import Score, score
 from .step_clearance import step_clearance, step_wall_clearance
 
 __all__ = [
+    "CONTACT_METRICS",
+    "FOOTPRINT_METRICS",
     "HOLD",
+    "IMPACT_METRICS",
     "NAVIGATION_METRICS",
+    "PEOPLE_COLUMNS",
+    "AgentLog",
     "AgentStates",
     "ContactEvent",
     "ContactTracker",
+    "Impact",
     "Intervals",
     "NavigationMetrics",
     "NavigationOutcome",
     "PersonErrors",
+    "PersonImpact",
     "Score",
+    "TableRobot",
     "ade",
     "best_of",
     "bootstrap_interval",
@@ -53,7 +64,9 @@ __all__ = [
     "energy_score",
     "error_over_horizon",
     "fde",
+    "footprint_clearance",
     "heading_change",
+    "impact_metrics",
     "jerk",
     "kde_nll",
     "local_density",
@@ -69,6 +82,7 @@ __all__ = [
     "outcome",
     "path_efficiency",
     "path_length",
+    "people_table",
     "person_errors",
     "personal_space_compliance",
     "proxemic_shares",

@@ -19,6 +19,7 @@ key                                value
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,18 +27,31 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .agent_states import AgentStates
+from .agent_states import AgentLog, AgentStates
 from .contact_tracker import ContactTracker
+from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .proximity import personal_space_compliance, proxemic_shares
-from .record_clearance import record_clearance
+from .record_clearance import log_clearance, record_clearance
 
-__all__ = ["NavigationMetrics", "NavigationOutcome"]
+__all__ = ["CONTACT_METRICS", "NavigationMetrics", "NavigationOutcome"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 NEAR = 1.0
 """People closer than this [m] are tracked for contacts."""
+TOUCH = 1e-6
+"""People who come closer than this [m] may touch the robot; larger than rounding errors."""
+CONTACT_METRICS = (
+    "contacts",
+    "robot_caused_contacts",
+    "person_caused_contacts",
+    "contact_time",
+    "max_penetration",
+    "max_impact_speed",
+)
+"""Metrics of contacts, which a ghost does not have."""
 MOVING = 0.05
 """Minimum speed [m/s] at which the direction of the velocity defines the heading."""
 
@@ -75,6 +89,11 @@ class NavigationMetrics:
         tolerance: distance [m] below which the goal is reached.
         walls: segments ``[N, 4]`` [m].
         time_limit: time limit after the first record [s].
+        ghost: whether the robot is a ghost, which passes through people and walls: the metrics of
+            :data:`CONTACT_METRICS` are absent, and the outcome is never a collision.
+        ignored: ids of agents that do not exist for this robot, such as other ghosts.
+        footprint: corners ``[N, 2]`` of the outline in the frame of the robot [m], for the metrics of
+            :data:`FOOTPRINT_METRICS`; None for a disc, which does not have them.
 
     >>> metrics = NavigationMetrics(0, 0.3, (1.0, 0.0), tolerance=0.2)
     >>> for k in range(3):
@@ -93,7 +112,12 @@ class NavigationMetrics:
         *,
         walls: Floats | None = None,
         time_limit: float = math.inf,
+        ghost: bool = False,
+        ignored: Sequence[int] = (),
+        footprint: Floats | None = None,
     ) -> None:
+        self.footprint, self._outline = footprint, list[float]()
+        self.ghost, self.ignored = ghost, np.asarray(ignored, dtype=np.int64)
         self.robot, self.radius = robot, radius
         self.goal, self.tolerance, self.time_limit = np.asarray(goal, dtype=np.float64), tolerance, time_limit
         self.walls = np.zeros((0, 4)) if walls is None else walls
@@ -127,18 +151,88 @@ class NavigationMetrics:
         if self._samples and states.time - self._samples[0].time > self.time_limit:
             self._finished = True
             return
+        if len(self.ignored):
+            states = states.select(~np.isin(states.ids, self.ignored))
         own = int(np.searchsorted(states.ids, self.robot))
         if own == len(states.ids) or states.ids[own] != self.robot:
             raise InputError(f"navigation metrics: robot {self.robot} is absent at {states.time} s")
         sample = self._measure(states, own)
         self._samples.append(sample)
+        if self.footprint is not None:
+            self._outline.append(footprint_clearance(states, own, self.footprint))
         self._before = states
         away = sample.position - self.goal
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
-        touched = contact or min(sample.swept, sample.wall) < 0.0
+        touched = not self.ghost and (contact or min(sample.swept, sample.wall) < 0.0)
         if self._decided is None and (touched or arrived):
             self._decided = NavigationOutcome("collision" if touched else "success", len(self._samples) - 1)
         self._finished = arrived
+
+    def update_log(self, log: AgentLog, contact: Bools) -> None:
+        """Add all records of a log; the result is that of :meth:`update` with each of them, to the last bit.
+
+        Args:
+            log: all agents, including the robot, with ids as columns.
+            contact: ``[T]`` whether the world detected a contact of the robot since the previous record.
+
+        Raises:
+            InputError: the times do not increase, or the robot is absent.
+        """
+        if len(self.ignored):
+            active = log.active.copy()
+            active[:, self.ignored] = False
+            log = log._replace(active=active)
+        if self._samples or self._finished:
+            for states, touched in zip(log.states(), contact.tolist(), strict=True):
+                self.update(states, touched)
+            return
+        log, arrived = self._counted(log)
+        found = log_clearance(log, self.robot, self.radius, self.walls)
+        touched = contact[: len(log.times)] | (np.minimum(found.swept, found.wall) < 0.0)
+        touched &= not self.ghost
+        if (touched | arrived).any():
+            first = int(np.argmax(touched | arrived))
+            self._decided = NavigationOutcome("collision" if touched[first] else "success", first)
+        place, velocity = log.position[:, self.robot], log.velocity[:, self.robot]
+        heading = map(_heading, log.heading[:, self.robot].tolist(), velocity)
+        columns = (part.tolist() for part in found[1:])
+        self._samples = [
+            _Sample(*row) for row in zip(log.times.tolist(), place, velocity, heading, *columns, strict=True)
+        ]
+        if self.footprint is not None:
+            for states in log.states():
+                own = int(np.searchsorted(states.ids, self.robot))
+                self._outline.append(footprint_clearance(states, own, self.footprint))
+        self._update_contacts(log, found.closest)
+        self._before = next(log.part(-1, None).states())
+
+    def _counted(self, log: AgentLog) -> tuple[AgentLog, Bools]:
+        """Return the records that count, and at which of them the robot is at its goal; set whether it is the end."""
+        times, there = log.times, log.active[:, self.robot]
+        away = log.position[:, self.robot] - self.goal
+        arrived = there & (np.hypot(away[:, 0], away[:, 1]) < self.tolerance)
+        late = times - times[0] > self.time_limit
+        count = min(
+            (int(np.argmax(flag)) + extra for flag, extra in ((arrived, 1), (late, 0)) if flag.any()),
+            default=len(times),
+        )
+        self._finished = bool(arrived.any() or late.any())
+        order = np.diff(times[:count]) > 0.0
+        if not order.all():
+            k = int(np.argmin(order))
+            raise InputError(f"navigation metrics: {times[k + 1]} s follows {times[k]} s; time must increase")
+        if not there[:count].all():
+            missing = times[int(np.argmin(there[:count]))]
+            raise InputError(f"navigation metrics: robot {self.robot} is absent at {missing} s")
+        return log.part(0, count), arrived[:count]
+
+    def _update_contacts(self, log: AgentLog, closest: Floats) -> None:
+        """Track the people who touch the robot in the log; all others have no contact events."""
+        margin = TOUCH + max(0.0, self.radius - float(log.radius[:, self.robot].min()))
+        people = np.flatnonzero(closest.min(axis=0) < margin)
+        if len(people) and not self.ghost:
+            for k, states in enumerate(log.states(np.sort(np.append(people, self.robot)))):
+                self._contacts.update(states, people[closest[k, people] < NEAR])
 
     def result(self, outcome: str | None = None) -> dict[str, float]:
         """Return every metric of :data:`crowdbot.metrics.NAVIGATION_METRICS` so far.
@@ -174,13 +268,15 @@ class NavigationMetrics:
             "mean_jerk": float(np.mean(jerks)) if len(jerks) else math.nan,
             "max_jerk": float(np.max(jerks)) if len(jerks) else math.nan,
             "heading_change": heading_change(heading[np.isfinite(heading)]),
+            **self._outline_metrics(),
         }
 
     def _measure(self, states: AgentStates, own: int) -> _Sample:
         found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
-        self._contacts.update(states, found.near)
+        if not self.ghost:
+            self._contacts.update(states, found.near)
         place, velocity = states.position[own], states.velocity[own]
-        return _Sample(states.time, place, velocity, _heading(states, own), *found[1:])
+        return _Sample(states.time, place, velocity, _heading(float(states.heading[own]), velocity), *found[1:])
 
     def _nearness(self, times: Floats) -> dict[str, float]:
         rows = [(one.swept, one.nearest, one.wall, one.density) for one in self._samples]
@@ -198,6 +294,8 @@ class NavigationMetrics:
         }
 
     def _contact_metrics(self) -> dict[str, float]:
+        if self.ghost:
+            return {}
         events = self._contacts.events()
         return {
             "contacts": float(len(events)),
@@ -208,6 +306,13 @@ class NavigationMetrics:
             "max_impact_speed": max((event.impact_speed for event in events), default=0.0),
         }
 
+    def _outline_metrics(self) -> dict[str, float]:
+        if self.footprint is None:
+            return {}
+        known = np.array([one for one in self._outline if math.isfinite(one)])
+        values = (float(known.min()), float(known.mean())) if len(known) else (math.inf, math.inf)
+        return dict(zip(FOOTPRINT_METRICS, values, strict=True))
+
     def _time_to_collision(self) -> dict[str, float]:
         ttc = np.array([sample.ttc for sample in self._samples])
         return {
@@ -217,10 +322,9 @@ class NavigationMetrics:
         }
 
 
-def _heading(states: AgentStates, own: int) -> float:
+def _heading(heading: float, velocity: Floats) -> float:
     """Return the heading of the robot, or of its velocity if unknown; NaN at rest."""
-    heading = float(states.heading[own])
     if math.isfinite(heading):
         return heading
-    x, y = states.velocity[own]
+    x, y = velocity
     return float(np.arctan2(y, x)) if np.hypot(x, y) > MOVING else math.nan

@@ -1,4 +1,4 @@
-"""Clearances of a robot at one record of its metrics, in one pass over the agents."""
+"""Clearances of a robot at one record of its metrics or at all of a log, in one pass over the agents."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-from .agent_states import AgentStates
+from .agent_states import AgentLog, AgentStates
 from .proximity import JUMP
 from .step_clearance import step_wall_clearance, swept_length
 
-__all__ = ["RecordClearance", "record_clearance"]
+__all__ = ["LogClearance", "RecordClearance", "log_clearance", "record_clearance"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -116,3 +116,83 @@ def record_clearance(
         own_old = position if here[0] else np.zeros((1, 2))
     wall = step_wall_clearance(own_old, place[own : own + 1], np.array([radius]), walls)[0]
     return RecordClearance(states.ids[near], swept, nearest, count / (math.pi * REACH**2), ttc, float(wall))
+
+
+class LogClearance(NamedTuple):
+    """Clearances of a robot at each record of a log.
+
+    Fields:
+        closest: ``[T, A]`` smallest clearance of each agent since the previous record [m], infinite if absent.
+        swept, nearest, density, ttc, wall: ``[T]``, see :class:`RecordClearance`.
+    """
+
+    closest: Floats
+    swept: Floats
+    nearest: Floats
+    density: Floats
+    ttc: Floats
+    wall: Floats
+
+
+@kernel
+def _measure_log(
+    jump: Floats, place: Floats, velocity: Floats, radius: Floats, active: NDArray[np.bool_], own: int,
+    closest: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """Write at each time the values of :func:`_measure`, and the smallest clearance of each agent since the last."""
+    for t in range(len(place)):
+        b = max(t - 1, 0)
+        x, y, r = place[t, own, 0], place[t, own, 1], radius[t, own]
+        bx, by = place[b, own, 0], place[b, own, 1]
+        moves = t > 0 and math.hypot(x - bx, y - by) <= jump[t]
+        least_swept, least, count, least_ttc = math.inf, math.inf, 0, math.inf
+        for n in range(place.shape[1]):
+            closest[t, n] = math.inf
+            if n == own or not active[t, n]:
+                continue
+            dx, dy = place[t, n, 0] - x, place[t, n, 1] - y
+            gap = math.sqrt(dx * dx + dy * dy) - radius[t, n] - r
+            swept = gap
+            if moves and active[b, n]:
+                px, py = place[b, n, 0], place[b, n, 1]
+                if math.hypot(place[t, n, 0] - px, place[t, n, 1] - py) <= jump[t]:
+                    swept = swept_length(px - bx, py - by, dx, dy) - radius[t, n] - r
+            closest[t, n] = min(swept, gap)
+            least_swept, least = min(least_swept, swept), min(least, gap)
+            count += 1 if math.hypot(dx, dy) < REACH else 0
+            wx, wy = velocity[t, n, 0] - velocity[t, own, 0], velocity[t, n, 1] - velocity[t, own, 1]
+            inner = dx * dx + dy * dy - (radius[t, n] + r) * (radius[t, n] + r)
+            closing = dx * wx + dy * wy
+            inside = closing * closing - (wx * wx + wy * wy) * inner
+            ttc = math.inf
+            if inner <= 0.0:
+                ttc = 0.0
+            elif closing < 0.0 and inside > 0.0:
+                ttc = inner / (math.sqrt(inside) - closing)
+            least_ttc = min(least_ttc, ttc)
+        out[0, t], out[1, t], out[2, t], out[3, t] = least_swept, least, count, least_ttc
+
+
+def log_clearance(log: AgentLog, own: int, radius: float, walls: Floats) -> LogClearance:
+    """Return the clearances of a robot at each record of a log, with the bits of :func:`record_clearance`.
+
+    Args:
+        log: the log; the robot is always present.
+        own: id of the robot.
+        radius: radius of the robot towards walls [m].
+        walls: segments ``[N, 4]`` [m].
+
+    >>> place = np.array([[[0.0, 0.0], [2.0, 0.0]]])
+    >>> log = AgentLog(np.zeros(1), place, 0 * place, np.zeros((1, 2)), np.array([[0.3, 0.2]]), np.ones((1, 2), bool))
+    >>> log_clearance(log, 0, 0.3, np.zeros((0, 4))).nearest.tolist()
+    [1.5]
+    """
+    closest, out = np.empty(log.active.shape), np.empty((4, len(log.times)))
+    jump = JUMP * np.diff(log.times, prepend=-math.inf)
+    moving = np.ascontiguousarray(log.position), np.ascontiguousarray(log.velocity)
+    _measure_log(jump, *moving, np.ascontiguousarray(log.radius), np.ascontiguousarray(log.active), own, closest, out)
+    place = log.position[:, own]
+    before = np.concatenate([place[:1], place[:-1]])
+    wall = step_wall_clearance(before, place, np.full(len(place), radius), walls)
+    swept, nearest, count, ttc = out
+    return LogClearance(closest, swept, nearest, count / (math.pi * REACH**2), ttc, wall)

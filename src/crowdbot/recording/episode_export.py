@@ -12,7 +12,7 @@ import numpy as np
 from crowdbot.core import EpisodeError, InputError, did_you_mean, lock_output
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
 
-from .episode_reader import iterate_steps, read_metadata
+from .episode_reader import iterate_steps, read_episode, read_metadata
 from .image_export import ImageExport
 from .metadata import TWIST
 from .reading_tables import READING_TABLES
@@ -21,6 +21,8 @@ from .step_records import RecordedStep
 __all__ = ["TABLES", "export"]
 
 Columns = dict[str, Any]
+PERSONS = "persons"
+"""Name of the table with one row for each person."""
 ROWS = 100_000
 """Rows per write."""
 _UNKNOWN = (np.nan, np.nan, np.nan)
@@ -47,6 +49,8 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     * ``images`` of depth cameras: size, smallest depth [m] and visible ids; pixels of depth and labels are only in the
       episode file.
 
+    ``persons`` has one row for each person of the whole episode (:data:`crowdbot.metrics.PEOPLE_COLUMNS`).
+
     Returns:
         The number of rows.
 
@@ -55,14 +59,13 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
         EpisodeError: the episode cannot be read, or the table not written.
     """
     path, to = Path(path), Path(to)
-    if table not in TABLES:
-        raise InputError(f"there is no table {table!r}{did_you_mean(table, TABLES)}; tables are {', '.join(TABLES)}")
+    known = (*TABLES, PERSONS)
+    if table not in known:
+        raise InputError(f"there is no table {table!r}{did_you_mean(table, known)}; tables are {', '.join(known)}")
     if to.suffix not in (".parquet", ".csv"):
         raise InputError(f"{to} has the extension {to.suffix or 'none'!r}; use .parquet or .csv")
-    bodies = _bodies(path)
     pictures = ImageExport(to)
-    make = pictures.columns if table == "pictures" else TABLES[table]
-    batches = (make(moment, bodies) for moment in iterate_steps(path))
+    batches = _batches(path, table, pictures)
     draft = to.with_name(f".{to.name}.{os.getpid()}.part")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
@@ -77,6 +80,14 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     except OSError as error:
         raise EpisodeError(f"cannot write {to}: {error.strerror}") from None
     return count
+
+
+def _batches(path: Path, table: str, pictures: ImageExport) -> Iterator[Columns]:
+    bodies = _bodies(path)
+    if table == PERSONS:
+        return iter([read_episode(path).people])
+    make = pictures.columns if table == "pictures" else TABLES[table]
+    return (make(moment, bodies) for moment in iterate_steps(path))
 
 
 def _bodies(path: Path) -> dict[str, tuple[int, float]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,9 +16,9 @@ from numpy.typing import NDArray
 from crowdbot.core import EpisodeError, InputError, TickSchedule
 from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
-from crowdbot.metrics import AgentStates
+from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
-from crowdbot.simulation import Order, RunFailure, ScanRow, read_order, tracks_of
+from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
 
 from .episode_repair import EpisodeEnd
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -127,6 +128,29 @@ class RecordedEpisode:
     def scans(self) -> tuple[ScanRow, ...]:
         """Scans of the first laser scanner of the first robot."""
         return next(iter(self.scans_by_topic.values()), ())
+
+    @functools.cached_property
+    def people(self) -> dict[str, NDArray[Any]]:
+        """One row for each person, see :attr:`crowdbot.simulation.Episode.people`."""
+        known = self._robot_records
+        robots = [
+            TableRobot(k, str(one["name"]), bool(one.get("ghost"))) for k, one in zip(self.robots, known, strict=True)
+        ]
+        names, impacts = {robot.name for robot in robots}, None
+        if self.metadata.get("world") == "physics":
+            hits = [one for one in self.collisions if one.first in names and one.region and one.second.isdecimal()]
+            impacts = [PersonImpact(int(one.second), one.peak_force, one.severity) for one in hits]
+        return people_table(log_of(self), robots, impacts)
+
+    @property
+    def footprints(self) -> tuple[Floats | None, ...]:
+        """Outline ``[N, 2]`` [m] of each robot in its own frame; None for a disc, and in older files."""
+        shapes = [one.get("footprint") for one in self._robot_records]
+        return tuple(None if shape is None else np.array(shape, dtype=np.float64) for shape in shapes)
+
+    @property
+    def _robot_records(self) -> list[dict[str, Any]]:
+        return list(json.loads(self.metadata["robots"]))
 
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories, see :meth:`Episode.tracks`."""

@@ -10,7 +10,8 @@ import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
 from crowdbot.data import MCAP_MAGIC, McapReader, has_summary
-from crowdbot.metrics import NavigationMetrics
+from crowdbot.messages import ContactEventRecord
+from crowdbot.metrics import NavigationMetrics, impact_metrics
 from crowdbot.simulation import robot_metrics
 
 from .mcap_writer import finish
@@ -32,6 +33,8 @@ class EpisodeEnd:
         self.robots = json.loads(known["robots"])
         rings = [np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])]
         walls = Walls.of(rings).segments()
+        ghosts = [int(one["id"]) for one in self.robots if one.get("ghost")]
+        self.impacts: list[ContactEventRecord] = []
         self.travels = [
             NavigationMetrics(
                 int(one["id"]),
@@ -39,6 +42,9 @@ class EpisodeEnd:
                 (one["goal"][0], one["goal"][1]),
                 float(one["tolerance"]),
                 walls=walls,
+                ghost=bool(one.get("ghost")),
+                footprint=np.array(one["footprint"], dtype=np.float64) if one.get("footprint") else None,
+                ignored=[ghost for ghost in ghosts if ghost != int(one["id"])],
             )
             for one in self.robots
         ]
@@ -52,6 +58,7 @@ class EpisodeEnd:
         self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
+        self.impacts += [one for one in moment.collisions if one.first in self.bodies and one.region]
         if moment.people is not None:
             self.last = moment
             if self.travels:
@@ -64,12 +71,16 @@ class EpisodeEnd:
         """Return the end metadata."""
         assert self.last is not None
         names = [one["name"] for one in self.robots]
+        metrics = robot_metrics(self.travels, names, "interrupted")
+        for k, name in enumerate(names if self.known.get("world") == "physics" else ()):
+            values = impact_metrics(one for one in self.impacts if one.first == name)
+            metrics |= {(key if k == 0 else f"{name}.{key}"): value for key, value in values.items()}
         return {
             "digest": self.last.digest,
             "outcome": "interrupted",
             "steps": str(self.last.nanoseconds // int(self.known["step_ns"])),
             "people": str(self.count - len(self.robots)),
-            "metrics": as_json(robot_metrics(self.travels, names, "interrupted")),
+            "metrics": as_json(metrics),
         }
 
 

@@ -260,6 +260,8 @@ class Recorder:
                 "goal": list(robot.goal.position),
                 "tolerance": robot.goal.tolerance,
                 "sensors": [mount.name for mount in robot.sensors],
+                **({"ghost": True} if robot.ghost else {}),
+                **({"footprint": robot.body.footprint.tolist()} if robot.type else {}),
             }
             for k, robot in enumerate(self.trial.robots)
         ]
@@ -271,6 +273,7 @@ class Recorder:
             "trial_name": self.trial.name,
             "seed": str(self.seed),
             **versions(),
+            **({"world": "physics"} if self.trial.world == "physics" else {}),
             "step_ns": str(schedule.step_ns),
             **({} if exact else {"period_ns": str(schedule.period_ns)}),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),

@@ -1,7 +1,9 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
 from .avatar_order import AvatarOrder
-from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
+from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
+from .episode_digest import EpisodeDigest
+from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
 from .goal_order import GoalOrder
@@ -14,11 +16,21 @@ from .resumable_hash import ResumableHash
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
-from .simulation_run import KEYFRAMES, OrderSource, RunEnd, RunSnapshot, SimulationRun, Sink, StopRequest
+from .simulation_run import (
+    KEYFRAMES,
+    BatchSink,
+    OrderSource,
+    RunEnd,
+    RunSnapshot,
+    SimulationRun,
+    Sink,
+    StopRequest,
+)
 from .state_codec import decode_state, encode_state
 from .state_restore import restore_state
 from .state_tree import StateError, StateMark, state_of
-from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
+from .statistics import EpisodeStatistics, RunSummary, robot_metrics
+from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord
 from .world_builder import start_scene
 
@@ -27,6 +39,8 @@ __all__ = [
     "WALL",
     "AddPersonOrder",
     "AvatarOrder",
+    "BatchReadings",
+    "BatchSink",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",
@@ -54,6 +68,7 @@ __all__ = [
     "Sink",
     "StateError",
     "StateMark",
+    "StepBatch",
     "StepRecord",
     "StopRequest",
     "UncommandedRobotWarning",
@@ -62,6 +77,7 @@ __all__ = [
     "catch_interrupt",
     "decode_state",
     "encode_state",
+    "log_of",
     "order_kinds",
     "read_order",
     "restore_state",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,16 +13,16 @@ from numpy.typing import NDArray
 
 from crowdbot.core import FreeClock, InputError, TickSchedule
 from crowdbot.data import Trajectories
+from crowdbot.metrics import AgentLog, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 from crowdbot.world import BodyContactEvent, ContactForce
 
 from .failure import RunFailure
 from .orders import Order
-from .statistics import EpisodeDigest, EpisodeStatistics, present
-from .step_record import RobotContact, StepRecord
+from .step_record import RobotContact
 
-__all__ = ["Episode", "EpisodeDigest", "EpisodeLog", "ScanRow", "scan_row", "tracks_of"]
+__all__ = ["Episode", "ScanRow", "log_of", "scan_row", "tracks_of"]
 
 Floats = NDArray[np.float64]
 
@@ -112,6 +113,29 @@ class Episode:
                 return rows
         return ()
 
+    @functools.cached_property
+    def people(self) -> dict[str, NDArray[Any]]:
+        """One row for each person: columns of :data:`crowdbot.metrics.PEOPLE_COLUMNS`, as of a recorded episode.
+
+        >>> from crowdbot.simulation import simulate
+        >>> from crowdbot.trials import load_trial
+        >>> people = simulate(load_trial("frontal", duration=2.0), 0).people
+        >>> people["id"].tolist(), people["left"].tolist()
+        ([0], [0.0])
+        """
+        specs = self.trial.robots
+        robots = [TableRobot(k, one.name, one.ghost) for k, one in zip(self.robots, specs, strict=True)]
+        impacts = None
+        if self.trial.world == "physics":
+            hits = [one for one in self.collisions if (one.first.kind, one.second.kind) == ("robot", "person")]
+            impacts = [PersonImpact(one.second.number, one.peak_force, one.severity) for one in hits]
+        return people_table(log_of(self), robots, impacts)
+
+    @property
+    def footprints(self) -> tuple[Floats | None, ...]:
+        """Outline ``[N, 2]`` [m] of each robot with a type, in its own frame; None for a disc of its radius."""
+        return tuple(robot.body.footprint if robot.type else None for robot in self.trial.robots)
+
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories; frame k is k times ``dt`` after the first.
 
@@ -161,78 +185,10 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     )
 
 
-class EpisodeLog(EpisodeStatistics):
-    """Collects the arrays of an episode while it runs.
-
-    Args:
-        trial, seed, digest: see :class:`EpisodeStatistics`.
-    """
-
-    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
-        super().__init__(trial, seed, digest)
-        self.frames: list[tuple[NDArray[Any], ...]] = []
-        self.times: list[float] = []
-        self.bodies: dict[int, float] = {}
-        self.readings: dict[str, list[Reading]] = {}
-        self.orders: list[tuple[int, Order]] = []
-        self.contacts: list[tuple[float, RobotContact]] = []
-        self.forces: list[tuple[float, ContactForce]] = []
-        self.collisions: list[BodyContactEvent] = []
-
-    def keep(self, frame: StepRecord) -> None:
-        """Add a step that the digest already contains."""
-        super().keep(frame)
-        time = frame.nanoseconds / 1e9
-        self.orders += [(frame.tick, order) for order in frame.orders]
-        self.contacts += [(time, contact) for contact in frame.touches]
-        self.forces += [(time, force) for force in frame.forces]
-        self.collisions += frame.collisions
-        for robot, mount, reading in frame.readings:
-            self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
-        if frame.due:
-            self.times.append(frame.nanoseconds / 1e9)
-            here = frame.scene.active[0]
-            self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
-            self.frames.append((frame.ids, *present(frame), frame.twists, frame.commands))
-
-    def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
-        """Return the episode."""
-        ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
-        first = self.trial.people
-        robots = tuple(range(first, first + len(self.trial.robots)))
-        position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
-        return Episode(
-            self.trial,
-            self.seed,
-            outcome,
-            steps,
-            np.array(self.times),
-            position,
-            velocity,
-            heading,
-            np.array([self.bodies.get(who, 0.0) for who in range(self.agents)]),
-            active,
-            np.arange(self.agents, dtype=np.int64),
-            robots,
-            np.stack(twists),
-            np.stack(commands),
-            {name: tuple(rows) for name, rows in self.readings.items()},
-            self.metrics(outcome),
-            self.digest.hexdigest(outcome),
-            failure,
-            tuple(self.orders),
-            tuple(self.contacts),
-            tuple(self.forces),
-            tuple(self.collisions),
-        )
-
-
-def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
-    """Return rows ``[A, ...]`` as ``[T, agents, ...]`` with one column per id; ``ids`` are the ids of the rows."""
-    out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
-    for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
-        out[k, who[who >= 0]] = row[who >= 0]
-    return out
+def log_of(view: Any) -> AgentLog:
+    """Return the states of all agents of an episode."""
+    radius = np.broadcast_to(view.radius, view.active.shape)
+    return AgentLog(view.times, view.position, view.velocity, view.heading, radius, view.active)
 
 
 def scan_row(scan: Scan) -> ScanRow:

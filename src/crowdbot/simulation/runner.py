@@ -9,30 +9,19 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from types import FrameType
 
-from crowdbot.core import Clock
+from crowdbot.core import Clock, TrialError
 from crowdbot.trials import Trial, check_trial
 
-from .episode import Episode, EpisodeLog
+from .episode import Episode
+from .episode_log import EpisodeLog, EpisodeLogs
 from .external_robots import warn_of_missing_source
 from .failure import RunFailure, RunFailureWarning
 from .simulation import Simulation
 from .simulation_run import OrderSource, SimulationRun, Sink, StopRequest
-from .step_record import StepRecord
 
 __all__ = ["catch_interrupt", "run_to_end", "simulate", "simulate_seeds", "warn_of_failure"]
 
 Progress = Callable[[float], None]
-
-
-class _EpisodeLogs:
-    """Passes the records of each environment to its log."""
-
-    def __init__(self, logs: Sequence[EpisodeLog]) -> None:
-        self.logs = logs
-
-    def take(self, frame: StepRecord) -> None:
-        """Process a step record."""
-        self.logs[frame.environment].take(frame)
 
 
 def simulate(
@@ -80,12 +69,11 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
     >>> [one.digest for one in simulate_seeds(trial, [3, 4])] == [simulate(trial, seed).digest for seed in (3, 4)]
     True
     """
-    for seed in seeds:
-        check_trial(trial, int(seed))
     warn_of_missing_source(trial, ())
+    simulation = _checked_simulation(trial, [int(seed) for seed in seeds])
     logs = [EpisodeLog(trial, int(seed)) for seed in seeds]
     with catch_interrupt() as stop:
-        run = SimulationRun(Simulation(trial, seeds), [_EpisodeLogs(logs)], stop=stop)
+        run = SimulationRun(simulation, [EpisodeLogs(logs)], stop=stop)
         told = -1
         while run.outcome is None:
             if 2 * run.ends.count(None) <= run.simulation.count:
@@ -99,6 +87,23 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
     for end in ends:
         warn_of_failure_in(trial, end.failure)
     return tuple(log.episode(*end) for log, end in zip(logs, ends, strict=True))
+
+
+def _checked_simulation(trial: Trial, seeds: Sequence[int]) -> Simulation:
+    """Return the simulation of a trial after its check; only the placement of people depends on the seed.
+
+    Raises:
+        InputError: the list of seeds is empty.
+        TrialError: the trial is impossible with one of the seeds.
+    """
+    for seed in seeds[:1]:
+        check_trial(trial, seed)
+    try:
+        return Simulation(trial, seeds)
+    except TrialError:
+        for seed in seeds[1:]:
+            check_trial(trial, seed)
+        raise
 
 
 def warn_of_failure(simulation: Simulation) -> None:

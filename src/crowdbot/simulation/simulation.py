@@ -368,8 +368,7 @@ class Simulation:
         """Detect contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
         self._contacts = robot_contacts(self.world, self.robots, ids)
         note_arrivals(self.world, self.robots)
-        arrivals = [control.arrived for control in self.robots]
-        note_events(self.event, list(self._contacts), arrivals, COLLISION, SUCCESS)
+        note_events(self.event, list(self._contacts), self.robots, COLLISION, SUCCESS)
         agents = {robot.robot.name: robot.agent for robot in self.robots}
         if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
             self.ended = np.where(self.ended == 0, met, self.ended)

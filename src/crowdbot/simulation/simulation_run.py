@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,13 @@ from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
 from .failure import RunFailure
 from .orders import MissedDecisionOrder, Order
 from .simulation import Simulation
+from .step_batch import StepBatch
 from .step_record import StepRecord
 
-__all__ = ["KEYFRAMES", "OrderSource", "RunEnd", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
+__all__ = ["KEYFRAMES", "BatchSink", "OrderSource", "RunEnd", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
 
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 KEYFRAMES = 5.0
 """Simulated time [s] between two keyframes: snapshots for :meth:`SimulationRun.seek`, and states in episode files."""
 
@@ -29,6 +31,17 @@ class Sink(Protocol):
 
     def take(self, frame: StepRecord) -> None:
         """Process a step record."""
+
+
+@runtime_checkable
+class BatchSink(Sink, Protocol):
+    """A consumer of step records that can take those of many environments as arrays.
+
+    A run with several environments whose sinks are all of this kind makes no single records.
+    """
+
+    def take_batch(self, batch: StepBatch) -> None:
+        """Process the records of one step."""
 
 
 class OrderSource(Protocol):
@@ -259,8 +272,7 @@ class SimulationRun:
     def flush(self) -> None:
         """Apply the orders for the current instant, and write its records; no more orders are possible for it."""
         self._apply()
-        for e in np.flatnonzero(self._pending).tolist():
-            self._write(e, last=False)
+        self._write(np.flatnonzero(self._pending), last=False)
 
     @property
     def outcome(self) -> str | None:
@@ -306,8 +318,7 @@ class SimulationRun:
         self._pending = runs & (eventful | (due & ~simulation.broken))
         if ended.any():
             self._apply()
-            for e in np.flatnonzero(ended & self._pending).tolist():
-                self._write(e, last=True)
+            self._write(np.flatnonzero(ended & self._pending), last=True)
 
     def _note_misses(self) -> None:
         """Keep the decisions of this step that missed their deadline for the records."""
@@ -358,10 +369,21 @@ class SimulationRun:
             self._pending[order.environment] = True
         self._queue = []
 
-    def _write(self, e: int, last: bool) -> None:
-        self._pending[e] = False
-        due = self._schedule.is_due(int(self.simulation.ticks[e]))
-        orders = tuple(self._orders.pop(e, ()))
-        frame = self.simulation.record(e, due, last, orders, self._numbers[e])
-        for sink in self.sinks:
-            sink.take(frame)
+    def _write(self, index: Ints, last: bool) -> None:
+        """Write the records of some environments."""
+        self._pending[index] = False
+        if not len(index):
+            return
+        due = self._schedule.is_due(self.simulation.ticks[index])
+        numbers = [self._numbers[e] for e in index.tolist()]
+        orders = {e: tuple(self._orders.pop(e)) for e in index.tolist() if e in self._orders}
+        sinks = [sink for sink in self.sinks if isinstance(sink, BatchSink)]
+        if self.simulation.count > 1 and len(sinks) == len(self.sinks) > 0:
+            batch = StepBatch.of(self.simulation, index, np.array(numbers), due, last, orders)
+            for sink in sinks:
+                sink.take_batch(batch)
+            return
+        for k, e in enumerate(index.tolist()):
+            frame = self.simulation.record(e, bool(due[k]), last, orders.get(e, ()), numbers[k])
+            for one in self.sinks:
+                one.take(frame)

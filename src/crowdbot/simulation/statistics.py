@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-import dataclasses
-import hashlib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.core import Pose, SpatialPose
-from crowdbot.metrics import AgentStates, NavigationMetrics
+from crowdbot.metrics import AgentStates, NavigationMetrics, impact_metrics
 from crowdbot.trials import Trial
+from crowdbot.world import BodyContactEvent
 
+from .episode_digest import EpisodeDigest
 from .failure import RunFailure
 from .goal_order import GoalOrder
-from .orders import write_order
-from .resumable_hash import ResumableHash
-from .state_tree import StateError
 from .step_record import StepRecord
 
-__all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
+__all__ = ["EpisodeStatistics", "RunSummary", "new_metrics", "robot_metrics"]
 
 
 @dataclass(frozen=True)
@@ -53,57 +47,6 @@ class RunSummary:
     failure: RunFailure | None = None
 
 
-class EpisodeDigest:
-    """Hash of an episode, updated while it runs.
-
-    Args:
-        state: a stored state to continue from, or empty for a new hash whose state can be stored; None: neither.
-
-    Raises:
-        InputError: the state is not that of a hash.
-    """
-
-    def __init__(self, state: Mapping[str, Any] | None = None) -> None:
-        self._sum: Any = hashlib.blake2b(digest_size=16)
-        if state is not None:
-            self._sum = ResumableHash.of(state) if state else ResumableHash()
-
-    @property
-    def state(self) -> dict[str, Any]:
-        """The state to continue from, as arrays and numbers.
-
-        Raises:
-            StateError: the hash was made without a state.
-        """
-        if not isinstance(self._sum, ResumableHash):
-            raise StateError("the digest of this run cannot be stored")
-        return self._sum.state
-
-    def take(self, frame: StepRecord) -> None:
-        """Add a record: all arrays of its readings, then of its scene if due, then forces."""
-        for robot, mount, reading in frame.readings:
-            self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
-            for field in dataclasses.fields(reading):
-                self._sum.update(_bytes(getattr(reading, field.name)))
-        if frame.due:
-            self._sum.update(f"frame {frame.nanoseconds}\n".encode())
-            who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
-            for array in (*who, *present(frame), frame.twists, frame.commands):
-                self._sum.update(_bytes(array))
-        for force in frame.forces:
-            self._sum.update(f"force {_contact_text(*force)}\n".encode())
-        for order in frame.orders:
-            self._sum.update(f"order {frame.nanoseconds} {write_order(order)}\n".encode())
-        for collision in frame.collisions:
-            self._sum.update(f"collision {_contact_text(*dataclasses.astuple(collision))}\n".encode())
-
-    def hexdigest(self, outcome: str) -> str:
-        """Return the hash of all records so far and the outcome."""
-        whole = self._sum.copy()
-        whole.update(f"outcome {outcome}\n".encode())
-        return str(whole.hexdigest())
-
-
 class EpisodeStatistics:
     """Statistics of a running episode.
 
@@ -118,11 +61,8 @@ class EpisodeStatistics:
         self.agents = trial.people + len(trial.robots)
         self.begin = self.end = math.nan
         self._touching: set[int] = set()
-        walls = trial.stage.as_walls().segments()
-        self.travels = [
-            NavigationMetrics(trial.people + k, robot.radius, robot.goal.position, robot.goal.tolerance, walls=walls)
-            for k, robot in enumerate(trial.robots)
-        ]
+        self.travels = new_metrics(trial)
+        self.collisions: list[BodyContactEvent] = []
 
     def take(self, frame: StepRecord) -> None:
         """Add a record."""
@@ -137,6 +77,7 @@ class EpisodeStatistics:
                 names = [robot.name for robot in self.trial.robots]
                 self.travels[names.index(order.robot)].tolerance = float(order.tolerance)
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
+        self.collisions += frame.collisions
         if frame.due:
             self.end = frame.nanoseconds / 1e9
             self.begin = self.end if math.isnan(self.begin) else self.begin
@@ -148,8 +89,18 @@ class EpisodeStatistics:
             self._touching = set()
 
     def metrics(self, outcome: str) -> dict[str, float]:
-        """Return the metrics of all robots."""
-        return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
+        """Return the metrics of all robots, in the physics world with those of impacts."""
+        names = [robot.name for robot in self.trial.robots]
+        return robot_metrics(self.travels, names, outcome) | self._impact_metrics()
+
+    def _impact_metrics(self) -> dict[str, float]:
+        found: dict[str, float] = {}
+        for k, robot in enumerate(self.trial.robots if self.trial.world == "physics" else ()):
+            body = ("robot", self.trial.people + k)
+            own = [one for one in self.collisions if tuple(one.first) == body and one.second.kind == "person"]
+            values = impact_metrics(own)
+            found |= {(key if k == 0 else f"{robot.name}.{key}"): value for key, value in values.items()}
+        return found
 
     def summary(
         self, outcome: str, steps: int, path: Path | None = None, failure: RunFailure | None = None
@@ -170,6 +121,27 @@ class EpisodeStatistics:
         )
 
 
+def new_metrics(trial: Trial) -> list[NavigationMetrics]:
+    """Return the metrics of each robot of a trial, before its first record."""
+    if not trial.robots:
+        return []
+    walls = trial.stage.as_walls().segments()
+    ghosts = [trial.people + k for k, robot in enumerate(trial.robots) if robot.ghost]
+    return [
+        NavigationMetrics(
+            trial.people + k,
+            robot.radius,
+            robot.goal.position,
+            robot.goal.tolerance,
+            walls=walls,
+            ghost=robot.ghost,
+            footprint=robot.body.footprint if robot.type else None,
+            ignored=[ghost for ghost in ghosts if ghost != trial.people + k],
+        )
+        for k, robot in enumerate(trial.robots)
+    ]
+
+
 def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], outcome: str) -> dict[str, float]:
     """Return the metrics of all robots; for a single robot, the outcome is that of the run."""
     found: dict[str, float] = {}
@@ -177,18 +149,6 @@ def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], ou
         values = travel.result(outcome if len(travels) == 1 else None)
         found |= {(key if number == 0 else f"{name}.{key}"): value for key, value in values.items()}
     return found
-
-
-def present(frame: StepRecord) -> tuple[NDArray[Any], ...]:
-    """Return position, velocity, heading and active of a record, E = 1; 0 for absent agents."""
-    scene = frame.scene
-    here = scene.active[0]
-    return (
-        np.where(here[:, None], scene.position[0], 0.0),
-        np.where(here[:, None], scene.velocity[0], 0.0),
-        np.where(here, scene.heading[0], 0.0),
-        here.copy(),
-    )
 
 
 def _instant(frame: StepRecord) -> AgentStates:
@@ -203,20 +163,3 @@ def _instant(frame: StepRecord) -> AgentStates:
         scene.heading[0, there],
         scene.radius[0, there],
     )
-
-
-def _contact_text(first: tuple[str, int], second: tuple[str, int], *values: object) -> str:
-    """Return what the digest takes of a contact: text without the names of classes, which may change."""
-    bodies = [f"Party(kind={kind!r}, number={number!r})" for kind, number in (first, second)]
-    return f"({', '.join([*bodies, *map(repr, values)])})"
-
-
-def _bytes(value: Any) -> bytes:
-    if isinstance(value, Pose):
-        value = np.column_stack([value.position, value.heading])
-    elif isinstance(value, SpatialPose):
-        value = np.column_stack([value.position, value.rotation])
-    elif dataclasses.is_dataclass(value):
-        return b"".join(_bytes(getattr(value, field.name)) for field in dataclasses.fields(value))
-    array = np.ascontiguousarray(value)
-    return repr(value).encode() if array.dtype.hasobject else array.tobytes()

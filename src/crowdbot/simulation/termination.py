@@ -12,7 +12,15 @@ from crowdbot.core import kernel
 from crowdbot.trials import Agent, EndCondition, InitialPeople, Spawner, Trial, area
 from crowdbot.world import World
 
-__all__ = ["FINISHED", "end_condition_numbers", "goal_zones", "leave_goal_zones", "may_be_near", "note_events"]
+__all__ = [
+    "FINISHED",
+    "arrivals_of",
+    "end_condition_numbers",
+    "goal_zones",
+    "leave_goal_zones",
+    "may_be_near",
+    "note_events",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,16 +121,17 @@ def may_be_near(position: Floats, agent: int, point: Floats, distance: Floats) -
 
 
 def note_events(
-    event: NDArray[np.int8], contacts: Sequence[int], arrivals: Sequence[Bools], collision: int, success: int
+    event: NDArray[np.int8], contacts: Sequence[int], robots: Sequence[Any], collision: int, success: int
 ) -> None:
     """Note the first event ``[E]`` of each environment, 0 before.
 
     Args:
         event: first events; modified in place.
         contacts: environments in which a robot has a contact.
-        arrivals: ``[E]`` for each robot, whether it has arrived; success is the arrival of all.
+        robots: controls of the robots; success is the arrival of all that :func:`arrivals_of` counts.
         collision, success: the numbers of the events.
     """
+    arrivals = arrivals_of(robots)
     open_ = event == 0
     arrives = bool(arrivals) and all(one.any() for one in arrivals)
     if not (contacts or arrives) or not open_.any():
@@ -132,6 +141,20 @@ def note_events(
     arrived = np.all(arrivals, axis=0) if arrivals else np.zeros(len(event), dtype=np.bool_)
     event[open_ & collided] = collision
     event[open_ & ~collided & arrived] = success
+
+
+def arrivals_of(robots: Sequence[Any]) -> list[Bools]:
+    """Return which robots have arrived, ``[E]`` for each whose arrival ends a run.
+
+    Ghosts do not count, unless all robots are ghosts: such a run ends as it would with the robots.
+
+    >>> from types import SimpleNamespace as Control
+    >>> real, ghost = (Control(robot=Control(ghost=one), arrived=np.array([not one])) for one in (False, True))
+    >>> len(arrivals_of([real, ghost])), len(arrivals_of([ghost]))
+    (1, 1)
+    """
+    real = [control.arrived for control in robots if not control.robot.ghost]
+    return real or [control.arrived for control in robots]
 
 
 def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, robots: Mapping[str, int]) -> Ints | None:
