@@ -15,7 +15,7 @@ from crowdbot.simulation import Simulation, apply_overrides, simulate
 from crowdbot.simulation.termination import goal_zones
 from crowdbot.simulation.world_builder import begin_world, build_world
 from crowdbot.trials import Planner, Trial, builtin_trials, expand_sweeps, load_trial, parse_trial, trial_xml
-from crowdbot.world import PhysicsWorld, PlanarWorld
+from crowdbot.world import PhysicsWorld, PlanarWorld, SceneCamera
 from samples import sample
 from space_trials import LEAN, room
 from trial_schema import valid
@@ -320,3 +320,14 @@ def test_values_are_set_by_path_and_written() -> None:
     assert (robot.ghost, robot.planner, robot.deadline, robot.tracks) == (True, Planner(0.2), 0.5, 2.0)
     assert parse_trial(trial_xml(trial)) == trial
     assert valid(trial_xml(trial))
+
+
+def test_films_show_a_ghost_with_a_body_and_cameras_of_robots_do_not() -> None:
+    world: Any = Simulation(with_bodies(facing(True)), 0).world
+    ghost = 0
+    x, y = world.pose(ghost).position[0].tolist()
+    camera = SceneCamera((x - 1.5, y, 2.0), (x, y, 0.2), width=64, height=48)
+    film = world.renderer.images(camera, rgb=False, segmentation=True).segmentation
+    seen = world.environment_renderer(0).images(camera, rgb=False, segmentation=True).segmentation
+    assert ghost in film
+    assert ghost not in seen
