@@ -16,7 +16,7 @@ from crowdbot.simulation import Simulation, apply_overrides, simulate
 from crowdbot.simulation.termination import goal_zones
 from crowdbot.simulation.world_template import WorldTemplate
 from crowdbot.trials import Planner, Trial, builtin_trials, expand_sweeps, load_trial, parse_trial, trial_xml
-from crowdbot.world import PhysicsWorld, PlanarWorld
+from crowdbot.world import PhysicsWorld, PlanarWorld, SceneCamera
 from samples import sample
 from space_trials import LEAN, room
 from trial_schema import valid
@@ -356,3 +356,12 @@ def test_a_ghost_does_not_change_the_metrics_of_a_robot() -> None:
     own = {name: value for name, value in both.metrics.items() if not name.startswith("other.")}
     own |= {name: alone.metrics[name] for name in ("success", "collision", "timeout", "time_to_goal")}
     assert repr(own) == repr(dict(alone.metrics))
+def test_films_show_a_ghost_with_a_body_and_cameras_of_robots_do_not() -> None:
+    world: Any = Simulation(with_bodies(facing(True)), 0).world
+    ghost = 0
+    x, y = world.pose(ghost).position[0].tolist()
+    camera = SceneCamera((x - 1.5, y, 2.0), (x, y, 0.2), width=64, height=48)
+    film = world.renderer.images(camera, rgb=False, segmentation=True).segmentation
+    seen = world.environment_renderer(0).images(camera, rgb=False, segmentation=True).segmentation
+    assert ghost in film
+    assert ghost not in seen

@@ -68,6 +68,41 @@ def test_who_is_removed_is_gone_and_who_is_moved_is_elsewhere(name: str) -> None
     assert moved.world.scene.heading[0, robot] == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.parametrize("name", ["planar", "physics"])
+def test_people_beyond_the_bodies_of_a_trial_get_bodies_and_replay(name: str, tmp_path: Path) -> None:
+    """The room has bodies for its people only; six more come, are seen by a laser in space, and replay."""
+    trial, file = TRIALS[name], tmp_path / "episode.mcap"
+    agents = Simulation(trial, 3).world.scene.shape[1]
+    more = [AddPersonOrder(x=3.0 + 0.7 * k, y=5.0, goal_x=3.0, goal_y=1.0) for k in range(6)]
+    with open_run(trial, 3, out=file) as running:
+        for k in range(12):
+            running.step(more[:3] if k == 2 else more[3:] if k == 5 else ())
+        world = running.simulation.world
+        assert world.scene.shape == (1, agents + 6)
+        assert sorted(world.ids[0].tolist())[-1] == agents + 5
+        if name == "physics":
+            assert world.people is not None
+            assert len(world.people.people) == agents - 1 + 6
+            new = np.isin(world.people.agents, np.arange(agents, agents + 6))
+            feet = world.people.ends[new][:, :, [0, 1]].mean(axis=1)
+            np.testing.assert_allclose(feet, world.scene.position[0, world.people.agents[new]], atol=0.3)
+    assert len(read_episode(file).orders) == 6
+    assert replay(file).equal
+
+
+def test_people_are_added_to_one_environment_with_bodies() -> None:
+    trial = TRIALS["physics"]
+    run, alone = SimulationRun(Simulation(trial, [3, 3])), SimulationRun(Simulation(trial, 3))
+    run.step([AddPersonOrder(x=3.0, y=5.0, goal_x=3.0, goal_y=1.0, environment=1)])
+    alone.step()
+    for _ in range(5):
+        run.step()
+        alone.step()
+    first = alone.simulation.record().scene
+    assert run.simulation.record(0).scene.digest() == first.digest()
+    assert run.simulation.record(1).scene.active.sum() == first.active.sum() + 1
+
+
 def test_a_person_with_another_goal_turns_around() -> None:
     trial = TRIALS["frontal"]
     x, y = Simulation(trial, 3).world.scene.position[0, 0].tolist()

@@ -234,8 +234,8 @@ class World(ABC):
         >>> from crowdbot.world import PlanarWorld, Robot
         >>> world = PlanarWorld(Scene.of([[3.0, 0.0]]), ORCA(), {}, dt=0.1)
         >>> agent = world.add_robot(Robot.load("turtlebot2"), 0.0, 1.0)
-        >>> world.step({agent: Twist(0.3)}).position[0].round(3).tolist()
-        [[3.0, 0.0], [0.005, 1.0]]
+        >>> world.step({agent: Twist(0.3)}).active.tolist()
+        [[True, True]]
         >>> world.remove_robot(agent)
         >>> world.step({}).active.tolist()
         [[True, False]]

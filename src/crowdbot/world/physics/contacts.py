@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
 
-__all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact"]
+__all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact", "GeomTable"]
 
 Floats = NDArray[np.float64]
 KINDS = ("robot", "person", "prop", "wall")
@@ -58,6 +58,27 @@ class EngineContact(NamedTuple):
     swing: Floats
 
 
+class GeomTable(NamedTuple):
+    """Body and part of each geom of an engine model; one table for all worlds with the model.
+
+    Fields:
+        kind: ``[G]`` kind of the body.
+        number: agent of a robot, body slot of a person, number of a prop or a wall ring.
+        part: link of a robot or limb of a person, otherwise empty.
+    """
+
+    kind: NDArray[np.int64]
+    number: tuple[int, ...]
+    part: tuple[str, ...]
+
+    @classmethod
+    def of(cls, model: Any, prefixes: dict[int, str]) -> GeomTable:
+        """Return the table of a model; ``prefixes`` are the name prefixes of robots, by agent."""
+        rows = [_sorted_out(model.geom(g).name, prefixes) for g in range(model.ngeom)]
+        kinds = np.array([kind for kind, _, _ in rows], dtype=np.int64)
+        return cls(kinds, tuple(number for _, number, _ in rows), tuple(part for _, _, part in rows))
+
+
 class _ContactPoint(NamedTuple):
     """A contact point between the geoms ``one`` and ``other``, with their velocities."""
 
@@ -74,22 +95,19 @@ class ContactReader:
 
     Args:
         model, data: model and data of the engine.
-        prefixes: name prefixes of robots, by agent.
+        geoms: bodies and parts of the geoms.
         agent_of: returns the agent of a body slot.
         swing: velocities of the limb ends ``[S, L, 6]`` [m/s] relative to their bodies.
     """
 
     def __init__(
-        self, model: Any, data: Any, prefixes: dict[int, str], agent_of: Callable[[int], int],
+        self, model: Any, data: Any, geoms: GeomTable, agent_of: Callable[[int], int],
         swing: Callable[[], Floats],
     ) -> None:  # fmt: skip
         self._mj, self._model, self._data = engine(), model, data
         self._agent_of, self._swing = agent_of, swing
-        names = [model.geom(g).name for g in range(model.ngeom)]
-        rows = [_sorted_out(name, prefixes) for name in names]
-        self._kind = np.array([kind for kind, _, _ in rows], dtype=np.int64)
-        self._number = [number for _, number, _ in rows]
-        self._part = [part for _, _, part in rows]
+        self.geoms = geoms
+        self._kind, self._number, self._part = geoms
         self._found: list[_ContactPoint] = []
         self._sizes: Floats = np.zeros((0, len(LIMB_NAMES), 3))
 

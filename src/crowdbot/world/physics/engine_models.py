@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from crowdbot.core import Scene, Walls
 from crowdbot.world.robots.robot import Robot
 
+from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
@@ -89,6 +90,7 @@ class CompiledBodies:
         base: a model for constants: numbers of bodies, joints and actuators.
         first: state before the first step.
         shapes: limbs and masses of the bodies of people before they are assigned.
+        geoms: bodies and parts of the geoms.
     """
 
     def __init__(self, design: BodyDesign) -> None:
@@ -101,6 +103,7 @@ class CompiledBodies:
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()
         self.shapes = PeopleBodies(self.base, self.first, design.slots, design.step).shapes
+        self.geoms = GeomTable.of(self.base, self.built.prefixes)
         self._free, self._lock = [self.base], threading.Lock()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> CompiledBodies:

@@ -155,10 +155,11 @@ class RigidWorld(PlanarWorld):
 
     def copy(self) -> Self:
         """Return an independent world in the same state, on a free clock."""
-        shared = [engine(), self.stage, self.router, self.people.people, self.people.gait, self.model]
+        shared: list[Any] = [engine(), self.stage, self.router, self.people.people, self.people.gait, self.model]
         shared += [body.robot for body in self.robot_bodies.values()]
         shared += [start.robot for start in self.rigid.starts.values()]
         shared += [part.compiled.base for part in self.rigid.parts]
+        shared.append(self.rigid.reader.geoms)
         renderers, self._renderers = self._renderers, {}
         known = {id(one): one for one in shared} | {id(part.data): copy.copy(part.data) for part in self.rigid.parts}
         try:

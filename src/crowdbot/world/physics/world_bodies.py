@@ -142,7 +142,7 @@ class WorldBodies:
         self.robots = dict(sorted(self.robots.items()))
         compiled = self.main.compiled
         self.reader = ContactReader(
-            compiled.base, self.main.data, compiled.built.prefixes, self.people.agent_of, self.people.swing_of
+            compiled.base, self.main.data, compiled.geoms, self.people.agent_of, self.people.swing_of
         )
 
     def _main_design(self, ghosts: Sequence[int]) -> BodyDesign:
