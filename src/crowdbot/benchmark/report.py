@@ -132,9 +132,7 @@ def _navigation_table(episode: Episode) -> str:
         f"<tr><td>{html.escape(name.replace('_', ' '))}</td><td>{_format_value(value)}</td><td>{html.escape(unit)}</td>"
         f"<td>{html.escape(words)}</td></tr>"
         for name, value in episode.metrics.items()
-        for unit, words in [
-            (NAVIGATION_METRICS | IMPACT_METRICS | FOOTPRINT_METRICS).get(name.rpartition(".")[2], ("", ""))
-        ]
+        for unit, words in [known.get(name.rpartition(".")[2], ("", ""))]
     )
     head = "<tr><th>metric</th><th>value</th><th>unit</th><th>definition</th></tr>"
     return f'<table class="words"><thead>{head}</thead><tbody>{rows}</tbody></table>'

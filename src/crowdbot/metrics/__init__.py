@@ -17,7 +17,7 @@ from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
 from .nearest_neighbor import nearest_neighbor_accuracy
-from .people_table import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
+from .people_rows import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
     clearance,
