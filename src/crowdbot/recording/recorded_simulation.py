@@ -36,10 +36,11 @@ class RecordedSimulation:
     Raises:
         EpisodeError: the file cannot be read.
 
+    >>> import tempfile
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.recording import record
     >>> from crowdbot.trials import Trial
-    >>> path = record(Trial(name="empty", duration=12.0, crowd=ORCA()), out="seek").path
+    >>> path = record(Trial(name="empty", duration=12.0, crowd=ORCA()), out=tempfile.mkdtemp()).path
     >>> with RecordedSimulation(path) as recorded:
     ...     [recorded.at(seconds).tick for seconds in (11.0, 3.0)]
     [220, 60]
