@@ -86,7 +86,7 @@ class TrackBatch(Sequence[TrackHistory]):
     @property
     def length(self) -> int:
         """Largest number of rows T."""
-        return self.times.shape[1]
+        return int(self.times.shape[1])
 
     @property
     def valid(self) -> Bools:
@@ -128,7 +128,9 @@ class TrackBatch(Sequence[TrackHistory]):
         wide = self.ids.shape[1] + ids.shape[1]
         old, new = (np.full((N, wide), -1, dtype=np.int64) for _ in range(2))
         count = np.zeros(N, dtype=np.int64)
-        wrong = _merge(self.times, self.ids, self.people, self.position, rows, time, *row, old, new, count)
+        wrong = _merge(
+            self.times, self.ids, self.people, self.position, rows, time, row[0], row[1], row[2], old, new, count
+        )
         if wrong >= 0:
             self[wrong].update(float(time[wrong]), ids[wrong, seen[wrong]], position[wrong, seen[wrong]])
         A = int(count.max(initial=0))

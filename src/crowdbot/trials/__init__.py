@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from .placement.expansion import expand_spawners
     from .placement.population import place
     from .placement.spawn_placement import GAP, InitialPeople
-    from .predictor import RobotPredictor
     from .props import Cube, Light, Table, Tree
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
+    from .robots.predictor import RobotPredictor
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -77,7 +77,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.expansion": ["expand_spawners"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
-        "predictor": ["RobotPredictor"],
+        "robots.predictor": ["RobotPredictor"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
