@@ -12,6 +12,7 @@ from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
 from .straight import Straight
+from .track_batch import TrackBatch
 from .track_history import TrackHistory
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "ObservationBatch",
     "PathPlanner",
     "Straight",
+    "TrackBatch",
     "TrackHistory",
     "VisiblePeople",
     "Waypoints",

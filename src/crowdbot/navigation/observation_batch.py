@@ -16,6 +16,7 @@ from crowdbot.sensors import Reading
 
 from .forecast_tracks import forecast_tracks
 from .observation import DriveLimits, Observation, VisiblePeople
+from .track_batch import TrackBatch
 from .track_history import HORIZON, TrackHistory, choose_predictor
 
 __all__ = ["AgentsInView", "ObservationBatch", "reading_of"]
@@ -70,7 +71,7 @@ class ObservationBatch:
         readings: latest reading of each sensor by name, with N rows.
         arrived: ``[N]`` bool by name of a sensor, whether its reading has arrived in the environment; a sensor that is
             not listed has a reading everywhere.
-        tracks: N histories of the visible people, or empty.
+        tracks: N histories of the visible people, or empty; a sequence of histories becomes a :class:`TrackBatch`.
         predictor, predictor_step: default predictor of :meth:`forecast` and the time between its rows [s], or None.
 
     Raises:
@@ -96,7 +97,7 @@ class ObservationBatch:
     waypoint: Floats = field(default_factory=lambda: np.zeros(0))
     readings: Mapping[str, Reading] = field(default_factory=dict)
     arrived: Mapping[str, Bools] = field(default_factory=dict)
-    tracks: Sequence[TrackHistory] = ()
+    tracks: TrackBatch | Sequence[TrackHistory] = ()
     predictor: Predictor | None = None
     predictor_step: float | None = None
 
@@ -116,6 +117,8 @@ class ObservationBatch:
             _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, np.float64))
         if len(self.tracks) not in (0, N):
             raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
+        if not isinstance(self.tracks, TrackBatch) and len({one.length for one in self.tracks}) == 1:
+            object.__setattr__(self, "tracks", TrackBatch.of(self.tracks))
 
     @classmethod
     def of(

@@ -72,4 +72,5 @@ class GoalOrder(Order):
 
     def _control(self, simulation: Any) -> RobotControl:
         agent = simulation.agent_of(self.robot)
-        return next(control for control in simulation.robots if control.agent == agent)
+        found: RobotControl = next(control for control in simulation.robots if control.agent == agent)
+        return found

@@ -21,7 +21,7 @@ from crowdbot.navigation import (
     Observation,
     ObservationBatch,
     PathPlanner,
-    TrackHistory,
+    TrackBatch,
     copy_memory,
 )
 from crowdbot.sensors import Reading
@@ -53,7 +53,7 @@ class _Known(NamedTuple):
 
     path: Floats
     """``[N, 9]`` state of the path planner."""
-    tracks: list[TrackHistory]
+    tracks: TrackBatch
     """N histories of the visible people, or empty."""
     failures: dict[int, Exception]
     """Environments without a path or with invalid tracks."""
@@ -107,7 +107,7 @@ class RobotControl:
     arrived: Bools
     planner: PathPlanner | None
     path: Floats
-    tracks: list[TrackHistory]
+    tracks: TrackBatch
     missed: Ints
     ordered: Ints
     goal: Floats
@@ -189,11 +189,13 @@ class RobotControl:
     def _observe(self, around: WorldView, environments: Ints) -> tuple[ObservationBatch, _Known]:
         """Return the observations, and the state of paths and tracks after them."""
         batch = self._perceive(around, environments)
-        path, tracks = self.path[environments], [self.tracks[e] for e in environments] if self.tracks else []
+        path, tracks = self.path[environments], self.tracks
         failures: dict[int, Exception] = {}
         changes: dict[str, Any] = {}
         if tracks:
-            tracks = [_updated(history, batch, k) for k, history in enumerate(tracks)]
+            tracks, people = tracks.select(environments), batch.people
+            fresh = ~(batch.time <= tracks.times[:, -1])  # one row for each time; NaN before the first row
+            tracks = tracks.update(batch.time, people.ids, people.position, people.seen, fresh)
             changes["tracks"] = tracks
         if self.planner is not None:
             found = self.planner.next_waypoints(batch.pose[:, :2], batch.goal, path)
@@ -312,8 +314,9 @@ class RobotControl:
 
     def _remember(self, environments: Ints, known: _Known) -> None:
         self.path[environments] = known.path
-        for e, history in zip(environments.tolist(), known.tracks, strict=False):
-            self.tracks[e] = history
+        if self.tracks:
+            whole = len(environments) == len(self.tracks)
+            self.tracks = known.tracks if whole else self.tracks.put(environments, known.tracks)
 
     def _wait_for_orders(self, navigator: ExternalNavigator, around: WorldView, environments: Ints) -> None:
         """Stop where the latest order is too old; plan paths and keep tracks for the program outside."""
@@ -351,7 +354,7 @@ class RobotControl:
         other = copy.copy(self)
         other.sensors = tuple(sensor.select(environments) for sensor in self.sensors)
         other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
-        other.tracks = [self.tracks[e] for e in environments] if self.tracks else []
+        other.tracks = self.tracks.select(environments) if self.tracks else self.tracks
         other.replayed = [self.replayed[e] for e in environments]
         for name in ROWS:
             setattr(other, name, getattr(self, name)[environments])
@@ -363,27 +366,17 @@ class RobotControl:
             mine.put(environments, new)
         for k, e in enumerate(environments.tolist()):
             self.memories[e], self.replayed[e] = other.memories[k], other.replayed[k]
-            if self.tracks:
-                self.tracks[e] = other.tracks[k]
+        if self.tracks:
+            self.tracks = self.tracks.put(environments, other.tracks)
         for name in ROWS:
             getattr(self, name)[environments] = getattr(other, name)
 
 
-def _empty_tracks(robot: RobotSpec, count: int) -> list[TrackHistory]:
+def _empty_tracks(robot: RobotSpec, count: int) -> TrackBatch:
     """Return an empty history for each environment, none for a robot without tracks."""
     if robot.tracks is None:
-        return []
-    rows = max(2, math.ceil(robot.tracks / robot.control_period - SAME) + 1)
-    return [TrackHistory.empty(rows)] * count
-
-
-def _updated(history: TrackHistory, batch: ObservationBatch, k: int) -> TrackHistory:
-    """Return a history with a row of the people whom the robot sees now, once for each time."""
-    now, people = float(batch.time[k]), batch.people
-    if len(history.times) and now <= history.times[-1]:
-        return history
-    seen = people.seen[k]
-    return history.update(now, people.ids[k, seen], people.position[k, seen])
+        return TrackBatch.empty(0)
+    return TrackBatch.empty(count, max(2, math.ceil(robot.tracks / robot.control_period - SAME) + 1))
 
 
 def decision_schedule(robot: RobotSpec, clock: Clock) -> TickSchedule:

@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from .placement.placement_plan import PeopleBatch, PlacementPlan
     from .placement.population import place
     from .placement.spawn_placement import GAP, InitialPeople
-    from .predictor import RobotPredictor
     from .props import Cube, Light, Table, Tree
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
+    from .robots.predictor import RobotPredictor
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -80,7 +80,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
-        "predictor": ["RobotPredictor"],
+        "robots.predictor": ["RobotPredictor"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],

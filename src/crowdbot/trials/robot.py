@@ -33,8 +33,8 @@ from .fields import FieldProblem, attribute, check, child, children, mounted_fie
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
-from .predictor import RobotPredictor, forecast_problems
-from .robot_types import robot_folder_of, robot_of_type
+from .robots.predictor import RobotPredictor, forecast_problems
+from .robots.robot_types import robot_folder_of, robot_of_type
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
@@ -196,8 +196,9 @@ class RobotSpec:
             raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
             object.__setattr__(self, "sensors", _merge_sensors(self.type_sensors, self.sensors))
-        if isinstance(self.predictor, Predictor):
-            object.__setattr__(self, "predictor", RobotPredictor(predictor=self.predictor))
+        given: Any = self.predictor
+        if isinstance(given, Predictor):
+            object.__setattr__(self, "predictor", RobotPredictor(predictor=given))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(

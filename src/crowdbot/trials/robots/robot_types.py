@@ -7,9 +7,8 @@ from pathlib import Path
 
 from crowdbot import world
 from crowdbot.core import InputError, RobotError, did_you_mean, reads_only
+from crowdbot.trials.fields import quote_value
 from crowdbot.world import builtin_robots
-
-from .fields import quote_value
 
 __all__ = ["robot_folder_of", "robot_of_type"]
 

@@ -10,9 +10,8 @@ from pathlib import Path
 
 from crowdbot.core import InputError, kebab_case
 from crowdbot.prediction import WEIGHTS_FIELDS, Predictor
-
-from .fields import attribute, check, mounted_field, quote_value
-from .files.trial_files import resolve_file
+from crowdbot.trials.fields import attribute, check, mounted_field, quote_value
+from crowdbot.trials.files.trial_files import resolve_file
 
 __all__ = ["RobotPredictor", "forecast_problems"]
 

@@ -1,0 +1,1 @@
+"""Parts of a robot of a trial: its type and its predictor."""
