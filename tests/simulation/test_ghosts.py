@@ -356,6 +356,8 @@ def test_a_ghost_does_not_change_the_metrics_of_a_robot() -> None:
     own = {name: value for name, value in both.metrics.items() if not name.startswith("other.")}
     own |= {name: alone.metrics[name] for name in ("success", "collision", "timeout", "time_to_goal")}
     assert repr(own) == repr(dict(alone.metrics))
+
+
 def test_films_show_a_ghost_with_a_body_and_cameras_of_robots_do_not() -> None:
     world: Any = Simulation(with_bodies(facing(True)), 0).world
     ghost = 0
