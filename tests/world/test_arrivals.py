@@ -93,7 +93,7 @@ def test_arrivals_are_counted(sources: list[PeopleSource], seeds: list[int], tim
             queue.fill(time)
     expected = [[queue.come for queue in queues] for queues in plain._queues]
     assert arrival_counts(sources, seeds, time).tolist() == expected
-    assert sources[-1].come_by(time, seeds[0], len(sources) - 1) == expected[0][-1]
+    assert arrival_counts(sources[-1:], seeds[:1], time, len(sources) - 1).tolist() == [expected[0][-1:]]
 
 
 def test_joined_queues_continue() -> None:

@@ -115,24 +115,28 @@ class _Queues:
             self.gaps[e, k], self.gap[e, k] = rng.standard_exponential(BLOCK), 0
             self.times[e, k] = _state_of(rng)
 
-    def draw_bodies(self, e: int, k: int) -> None:
-        """Draw speeds and radii of the next people of a queue, of as many as is possible."""
+    def draw_bodies(self, busy: Bools, k: int) -> None:
+        """Draw speeds and radii of the next people of source ``k`` in all ``busy`` ``[E, K]`` queues without any."""
+        some = np.flatnonzero(busy[:, k] & (self.next[:, k] >= self.last[:, k]) & np.isnan(self.body[:, k, 0]))
         both = (self.sources[k].speed, self.sources[k].radius)
         drawn = [n for n, value in enumerate(both) if not isinstance(value, int | float)]
-        self.next[e, k], self.before[e, k] = 0, self.after[e, k]
         many = _is_buffered(self.sources[k])
-        self.last[e, k] = count = BLOCK if many else 1
-        rows, shares = self.bodies[e, k], draw_uniform(self.after[e : e + 1, k], count * len(drawn) if many else 0)
+        self.next[some, k], self.before[some, k] = 0, self.after[some, k]
+        self.last[some, k] = count = BLOCK if many else 1
+        states = self.after[some, k]
+        shares = draw_uniform(states, count * len(drawn) if many else 0)
         for n, value in enumerate(both):
             if n not in drawn:
-                rows[:, n] = value
+                self.bodies[some, k, :, n] = value
             elif many:
                 own: Any = value
-                rows[:, n] = own.values_at(shares[0, drawn.index(n) :: len(drawn)])
+                self.bodies[some, k, :, n] = own.values_at(shares[:, drawn.index(n) :: len(drawn)])
             else:
                 sampler: Any = value
-                rows[0, n] = np.asarray(sampler.draw(self.streams[k][e], 1))[0]
-        if not many:
+                for e in some.tolist():
+                    self.bodies[e, k, 0, n] = np.asarray(sampler.draw(self.streams[k][e], 1))[0]
+        self.after[some, k] = states
+        for e in some.tolist() if not many else ():
             self.after[e, k] = _state_of(self.streams[k][e])
 
     def refuse_body(self, e: int, k: int) -> None:
@@ -266,7 +270,7 @@ class Arrivals:
         shape, queues = scene.shape, self._queues
         external = dense(scene.external, shape, BOOL)
         now = np.full(shape[0], time, dtype=np.float64)
-        busy = np.empty(queues.waiting.shape, dtype=np.bool_)
+        busy: Bools = np.empty(queues.waiting.shape, dtype=np.bool_)
         new = np.zeros(shape, dtype=np.bool_)
         if not find_busy(queues.arrival, queues.waiting, now, dense(scene.active, shape, BOOL), external, busy):
             return scene, new
@@ -279,9 +283,9 @@ class Arrivals:
         queue = (queues.waiting, queues.body, queues.bodies, queues.next, queues.last, queues.places)
         people, mark = (position, radius, active, external), np.zeros(2, dtype=np.int64)
         while (state := enter(busy, queue, people, walls, rings, first, ids, following, where, values, mark)) != DONE:
-            e, k = divmod(int(mark[0]), busy.shape[1])
+            e, k = divmod(int(mark[0]), len(queues.sources))
             if state == NO_BODY:
-                queues.draw_bodies(e, k)
+                queues.draw_bodies(busy, k)
             else:
                 queues.refuse_body(e, k)
         count = int(mark[1])

@@ -89,16 +89,3 @@ class PeopleSource:
             value = getattr(self, name)
             if isinstance(value, int | float) and not 0.0 < value < math.inf:
                 raise InputError(f"PeopleSource: {name} = {value} must be finite and above 0")
-
-    def come_by(self, time: float, seed: int, number: int = 0) -> int:
-        """Return the number of arrivals until a time [s] for source ``number`` of a world with this seed.
-
-        >>> from crowdbot.world import PointWaypoint
-        >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
-        >>> path = WaypointSequence((PointWaypoint(9.0, 1.0),))
-        >>> PeopleSource(door, path, rate=0.5, timing="regular").come_by(9.0, seed=0)
-        5
-        """
-        from .arrivals import arrival_counts
-
-        return int(arrival_counts([self], [seed], time, number)[0, 0])
