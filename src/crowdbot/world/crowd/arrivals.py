@@ -126,7 +126,7 @@ class _Queues:
         states = self.after[some, k]
         shares = draw_uniform(states, count * len(drawn) if many else 0)
         for n, value in enumerate(both):
-            if n not in drawn:
+            if isinstance(value, int | float):
                 self.bodies[some, k, :, n] = value
             elif many:
                 own: Any = value
