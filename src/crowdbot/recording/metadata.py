@@ -9,8 +9,6 @@ import platform
 from collections.abc import Mapping
 from typing import Any
 
-import llvmlite.binding
-import numba
 import numpy as np
 
 __all__ = [
@@ -50,6 +48,10 @@ CONTACTS = "/crowdbot/contacts"
 
 def versions() -> dict[str, str]:
     """Return what an episode depends on to the last bit: versions of packages, and the processor."""
+    # numba takes longer to import than the rest of this package; many commands need no kernel
+    import llvmlite.binding
+    import numba
+
     door = importlib.import_module(
         "crowdbot"
     )  # crowdbot imports this package, so it cannot be imported at module level

@@ -27,7 +27,7 @@ from crowdbot.trials import (
     people_appearance,
     place,
 )
-from crowdbot.world import PeopleSource, PlanarWorld, Router, World, join_worlds, planar_world
+from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
 from .mounted_sensor import spatial
 from .world_builder import avatars_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
@@ -81,7 +81,7 @@ class WorldTemplate:
         """Return the world of the plane, without bodies, in which given people start."""
         self._check()
         first = len(people.first)
-        spare = np.array([self._spare(seed, first) for seed in seeds], dtype=np.int64)
+        spare = self._spare(seeds, first)
         scene = start_scenes(self.trial, people, spare, self._walls)
         shape, robots = scene.shape[1], self._robots(first)
         drives = {agent: robot.drive for agent, robot in robots.items()}
@@ -106,7 +106,7 @@ class WorldTemplate:
             planar = self.build(batch, [seed])
             return planar, people_appearance(trial, people, planar.scene.shape[1], seed) if self._embodied else None
         self._check()
-        scene = start_scenes(trial, batch, np.array([self._spare(seed, first)]), self._walls)
+        scene = start_scenes(trial, batch, self._spare([seed], first), self._walls)
         agents = scene.shape[1]
         figures = people_appearance(trial, people, agents, seed)
         how = self._parameters(people, agents) | {"seed": seed}
@@ -197,11 +197,13 @@ class WorldTemplate:
         what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
         raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
 
-    def _spare(self, seed: int, first: int) -> int:
-        """Return the number of free slots: the maximum number of people who enter, up to the capacity."""
-        trial = self.trial
-        come = sum(source.come_by(trial.ticks * trial.step, seed, k) for k, source in enumerate(self._sources))
-        return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
+    def _spare(self, seeds: Sequence[int], first: int) -> Ints:
+        """Return ``[E]`` the number of free slots: the maximum number of people who enter, up to the capacity."""
+        trial, end = self.trial, self.trial.ticks * self.trial.step
+        if not self._sources:
+            return np.zeros(len(seeds), dtype=np.int64)
+        come: Ints = arrival_counts(self._sources, seeds, end).sum(axis=1)
+        return come if trial.capacity is None else np.minimum(come, max(0, trial.capacity - first))
 
     def _robots(self, first: int) -> dict[int, RobotSpec]:
         return {first + k: robot for k, robot in enumerate(self.trial.robots)}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .crowd.avatars import Avatars, give_pose
+    from .crowd.arrivals import arrival_counts
     from .crowd.contact import ContactModel
     from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence
@@ -114,6 +115,7 @@ _LAZY = {
     "Wheel": "robots.wheel",
     "World": "world",
     "add_person": "live_changes",
+    "arrival_counts": "crowd.arrivals",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
     "check_joint": "robots.joint_motion",
@@ -198,6 +200,7 @@ __all__ = [
     "Wheel",
     "World",
     "add_person",
+    "arrival_counts",
     "builtin_robots",
     "check_goal",
     "check_joint",

@@ -14,10 +14,11 @@ from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
 from .agent_arrays import BOOL, FLOAT, dense
+from .arrivals import Arrivals
 from .journey import JourneyAssignment
 from .person_random import uniform
 from .routing import WAY, Router, fresh
-from .source import Arrivals, PeopleSource
+from .source import PeopleSource
 
 __all__ = ["PeopleFlow", "environment_seeds"]
 

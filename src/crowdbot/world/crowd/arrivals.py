@@ -1,0 +1,362 @@
+"""Arrivals: the queues of the sources of all environments, and the people who enter."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, RandomStreams, Scene, draw_uniform, stream_states
+from crowdbot.models.mixture import MODEL
+
+from .agent_arrays import BOOL, dense
+from .entry_queue import BLOCK, DONE, NO_BODY, enter, fill
+from .entry_room import find_busy
+from .journey import JOURNEY
+from .source import TOP, PeopleSource
+
+__all__ = ["Arrivals", "arrival_counts"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Words = NDArray[np.uint64]
+
+ROWS = (
+    "begin", "due", "come", "waiting", "arrival", "body", "gaps", "gap", "times", "bodies", "next", "last", "before",
+    "after", "places",
+)  # fmt: skip
+"""Fields of :class:`_Queues` with one row for each environment."""
+
+
+@dataclass
+class _Queues:
+    """Queues of K sources in E environments.
+
+    Fields:
+        sources: the sources.
+        begin: ``[E, K]`` time of the first arrival with regular timing [s].
+        due: ``[E, K]`` time of the next arrival [s] if there is one.
+        come, waiting: ``[E, K]`` number of people who have arrived, and who wait.
+        arrival: ``[E, K]`` time of the next arrival [s], infinite if nobody comes any more.
+        body: ``[E, K, 2]`` preferred speed [m/s] and radius [m] of the first person in the queue, NaN before they are
+            drawn.
+        gaps, gap: ``[E, K, B]`` next times between arrivals as multiples of the mean, and ``[E, K]`` the first unused.
+        times: ``[E, K, 4]`` states of the generators of these times.
+        bodies, next, last: ``[E, K, B, 2]`` next speeds and radii; first unused and end of those that are drawn.
+        before, after: ``[E, K, 4]`` states of the generators of bodies, before and after these were drawn.
+        places: ``[E, K, 4]`` states of the generators of positions.
+        streams: generators of bodies of each source, for samplers of other classes.
+    """
+
+    sources: tuple[PeopleSource, ...]
+    begin: Floats
+    due: Floats
+    come: Numbers
+    waiting: Numbers
+    arrival: Floats
+    body: Floats
+    gaps: Floats
+    gap: Numbers
+    times: Words
+    bodies: Floats
+    next: Numbers
+    last: Numbers
+    before: Words
+    after: Words
+    places: Words
+    streams: list[RandomStreams]
+
+    @classmethod
+    def of(cls, sources: Sequence[PeopleSource], seeds: Sequence[int], first: int = 0) -> _Queues:
+        """Return the queues at time 0; the sources have the numbers from ``first`` on."""
+        shape, keys = (len(seeds), len(sources)), np.array(seeds, dtype=np.int64)
+        names = ("times", "bodies", "places")
+        states = stream_states(keys, [("source", first + k, name) for k in range(len(sources)) for name in names])
+        times, bodies, places = (states[:, n::3].copy() for n in range(3))
+        zero = np.zeros(shape, dtype=np.int64)
+        due = np.tile(np.array([source.begin for source in sources], dtype=np.float64), (len(seeds), 1))
+        queues = cls(
+            tuple(sources), due.copy(), due, zero, zero.copy(), np.full(shape, np.inf), np.full((*shape, 2), np.nan),
+            np.zeros((*shape, BLOCK)), np.full(shape, BLOCK), times, np.zeros((*shape, BLOCK, 2)), zero.copy(),
+            zero.copy(), bodies, bodies.copy(), places,
+            [RandomStreams(seeds, "source", first + k, "bodies") for k in range(len(sources))],
+        )  # fmt: skip
+        poisson = np.array([source.timing == "poisson" for source in sources], dtype=np.bool_)
+        queues._draw_gaps(np.broadcast_to(poisson, shape))
+        scale = np.array([1.0 / source.rate for source in sources], dtype=np.float64)
+        queues.due = np.where(poisson, queues.due + scale * queues.gaps[..., 0], queues.due)
+        queues.gap[:, poisson] = 1
+        queues.fill(np.full(len(seeds), -np.inf), np.ones(shape, dtype=np.bool_))
+        return queues
+
+    def fill(self, now: Floats, chosen: Bools) -> None:
+        """Add all arrivals up to a time ``[E]`` [s] to the ``chosen`` ``[E, K]`` queues."""
+        sources = self.sources
+        rate = np.array([source.rate for source in sources], dtype=np.float64)
+        end = np.array([source.end for source in sources], dtype=np.float64)
+        most = np.array([np.inf if one.max_count is None else one.max_count for one in sources], dtype=np.float64)
+        regular = np.array([source.timing == "regular" for source in sources], dtype=np.bool_)
+        short = np.zeros(chosen.shape, dtype=np.bool_)
+        queue = (self.begin, self.due, self.come, self.waiting, self.arrival, self.gaps, self.gap)
+        while fill(queue, rate, end, most, regular, now, chosen, short):
+            self._draw_gaps(short)
+
+    def _draw_gaps(self, chosen: Bools) -> None:
+        """Draw new times between arrivals for the ``chosen`` ``[E, K]`` queues."""
+        rng = np.random.Generator(np.random.PCG64(0))
+        for e, k in np.argwhere(chosen).tolist():
+            _set_state(rng, self.times[e, k])
+            self.gaps[e, k], self.gap[e, k] = rng.standard_exponential(BLOCK), 0
+            self.times[e, k] = _state_of(rng)
+
+    def draw_bodies(self, busy: Bools, k: int) -> None:
+        """Draw speeds and radii of the next people of source ``k`` in all ``busy`` ``[E, K]`` queues without any."""
+        some = np.flatnonzero(busy[:, k] & (self.next[:, k] >= self.last[:, k]) & np.isnan(self.body[:, k, 0]))
+        both = (self.sources[k].speed, self.sources[k].radius)
+        drawn = [n for n, value in enumerate(both) if not isinstance(value, int | float)]
+        many = _is_buffered(self.sources[k])
+        self.next[some, k], self.before[some, k] = 0, self.after[some, k]
+        self.last[some, k] = count = BLOCK if many else 1
+        states = self.after[some, k]
+        shares = draw_uniform(states, count * len(drawn) if many else 0)
+        for n, value in enumerate(both):
+            if isinstance(value, int | float):
+                self.bodies[some, k, :, n] = value
+            elif many:
+                own: Any = value
+                self.bodies[some, k, :, n] = own.values_at(shares[:, drawn.index(n) :: len(drawn)])
+            else:
+                sampler: Any = value
+                for e in some.tolist():
+                    self.bodies[e, k, 0, n] = np.asarray(sampler.draw(self.streams[k][e], 1))[0]
+        self.after[some, k] = states
+        for e in some.tolist() if not many else ():
+            self.after[e, k] = _state_of(self.streams[k][e])
+
+    def refuse_body(self, e: int, k: int) -> None:
+        """Raise :class:`InputError` for the speed or radius that a queue has drawn last."""
+        for name, number in zip(("speed", "radius"), self.bodies[e, k, self.next[e, k] - 1].tolist(), strict=True):
+            if not 0.0 < number < np.inf:
+                raise InputError(f"PeopleSource: the sampled {name} {number} must be finite and above 0")
+
+    @property
+    def rings(self) -> tuple[Floats, Numbers]:
+        """Corners of the zones [m], and the first of each."""
+        rings = [source.zone.ring for source in self.sources]
+        return np.concatenate(rings), np.cumsum([0, *map(len, rings)])
+
+    def change_sources(self, sources: Sequence[PeopleSource]) -> None:
+        """Change the sources. With regular timing, the next arrival stays as planned."""
+        for k, (old, new) in enumerate(zip(self.sources, sources, strict=True)):
+            for e in range(len(self.due)):
+                self._forget_bodies(e, k)
+                if _is_buffered(old) and not _is_buffered(new):
+                    _set_state(self.streams[k][e], self.after[e, k])
+                begin, come = self.due[e, k] - self.come[e, k] / new.rate, self.come[e, k]
+                same = new == dataclasses.replace(old, begin=float(self.begin[e, k]))
+                planned = new.timing == "regular" and not same and come and begin < new.end
+                self.begin[e, k] = begin if planned else new.begin
+        self.sources = tuple(sources)
+
+    def _forget_bodies(self, e: int, k: int) -> None:
+        """Return to the random numbers before the bodies that have been drawn for later people."""
+        if self.next[e, k] < self.last[e, k]:
+            both = (self.sources[k].speed, self.sources[k].radius)
+            drawn = sum(not isinstance(value, int | float) for value in both)
+            self.after[e, k] = self.before[e, k]
+            draw_uniform(self.after[e : e + 1, k], int(self.next[e, k]) * drawn)
+            self.last[e, k] = self.next[e, k]
+
+
+class Arrivals:
+    """Queues and entries of a set of sources.
+
+    Args:
+        sources: the sources.
+        seeds: seed of each environment.
+        first_journey: index of the journey of the first source; the others follow.
+        fresh: initial values in the memory of the scene for a new person, by name (default: 0).
+
+    >>> from crowdbot.world import PointWaypoint, PolygonZone, WaypointSequence
+    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> path = WaypointSequence((PointWaypoint(9, 1),))
+    >>> coming = Arrivals([PeopleSource(door, path, rate=2.0, timing="regular")], [0], 0, {})
+    >>> empty = Scene.of(np.zeros((3, 2)), active=False)
+    >>> scene, new = coming.let_in(empty, 0.6, np.arange(3)[None], np.array([3]))
+    >>> new.tolist(), scene.active.tolist()
+    ([[True, True, False]], [[True, True, False]])
+    """
+
+    def __init__(
+        self,
+        sources: Sequence[PeopleSource],
+        seeds: Sequence[int],
+        first_journey: int,
+        fresh: Mapping[str, float | Floats],
+    ) -> None:
+        self._queues = _Queues.of(sources, seeds)
+        self._first_journey = first_journey
+        self._fresh = fresh
+
+    @property
+    def waiting_count(self) -> Numbers:
+        """Number of people waiting to enter, ``[E]``."""
+        return np.asarray(self._queues.waiting.sum(axis=1))
+
+    def select(self, environments: Sequence[int]) -> Arrivals:
+        """Return independent queues of some environments."""
+        index, chosen = list(environments), copy.copy(self)
+        rows: dict[str, Any] = {name: getattr(self._queues, name)[index] for name in ROWS}
+        streams = [one.select(index) for one in self._queues.streams]
+        chosen._queues = dataclasses.replace(self._queues, streams=streams, **rows)
+        return chosen
+
+    def join(self, others: Sequence[Arrivals]) -> Arrivals:
+        """Return the queues of this and other worlds with the same sources."""
+        whole, every = copy.copy(self), [one._queues for one in (self, *others)]
+        rows: dict[str, Any] = {name: np.concatenate([getattr(one, name) for one in every]) for name in ROWS}
+        streams = [ones[0].join(ones[1:]) for ones in zip(*(one.streams for one in every), strict=True)]
+        whole._queues = dataclasses.replace(self._queues, streams=streams, **rows)
+        return whole
+
+    def put(self, environments: Sequence[int], other: Arrivals) -> None:
+        """Replace the queues of some environments by those of another world with the same sources."""
+        index = list(environments)
+        for name in ROWS:
+            getattr(self._queues, name)[index] = getattr(other._queues, name)
+        for mine, new in zip(self._queues.streams, other._queues.streams, strict=True):
+            mine.put(index, new)
+
+    def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
+        """Replace the sources; queues and planned arrivals are kept.
+
+        Args:
+            sources: as many as before, with the same journeys.
+            seeds: new seed of each environment; None: the random numbers continue.
+
+        Raises:
+            InputError: the number or the journeys of the sources differ.
+        """
+        queues = self._queues
+        if [source.journey for source in sources] != [source.journey for source in queues.sources]:
+            raise InputError("the number and the journeys of sources cannot change in a running world")
+        queues.change_sources(sources)
+        if seeds is not None:
+            new = _Queues.of(sources, seeds)
+            for name in ("gaps", "gap", "times", "next", "last", "before", "after", "places"):
+                setattr(queues, name, getattr(new, name))
+            queues.streams = new.streams
+        queues.fill(np.full(len(queues.due), -np.inf), np.ones(queues.due.shape, dtype=np.bool_))
+
+    def let_in(
+        self, scene: Scene, time: float | Floats, ids: Numbers, following: Numbers
+    ) -> tuple[Scene, NDArray[np.bool_]]:
+        """Return the scene with the people who have arrived up to a time, and who they are ``[E, A]``.
+
+        New people are at rest and have no goal yet.
+
+        Args:
+            scene: current scene.
+            time: time since the start [s], one or ``[E]``.
+            ids: ``[E, A]`` identities; modified in place.
+            following: ``[E]`` next identities; modified in place.
+        """
+        shape, queues = scene.shape, self._queues
+        external = dense(scene.external, shape, BOOL)
+        now = np.full(shape[0], time, dtype=np.float64)
+        busy: Bools = np.empty(queues.waiting.shape, dtype=np.bool_)
+        new = np.zeros(shape, dtype=np.bool_)
+        if not find_busy(queues.arrival, queues.waiting, now, dense(scene.active, shape, BOOL), external, busy):
+            return scene, new
+        queues.fill(now, busy)
+        position, radius, active = scene.position.copy(), scene.radius.copy(), scene.active.copy()
+        walls = np.ascontiguousarray(scene.walls.segments())
+        rings, first = queues.rings
+        most = int(np.sum(queues.waiting, where=busy))
+        where, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 4))
+        queue = (queues.waiting, queues.body, queues.bodies, queues.next, queues.last, queues.places)
+        people, mark = (position, radius, active, external), np.zeros(2, dtype=np.int64)
+        while (state := enter(busy, queue, people, walls, rings, first, ids, following, where, values, mark)) != DONE:
+            e, k = divmod(int(mark[0]), len(queues.sources))
+            if state == NO_BODY:
+                queues.draw_bodies(busy, k)
+            else:
+                queues.refuse_body(e, k)
+        count = int(mark[1])
+        if not count:
+            return scene, new
+        new[where[:count, 0], where[:count, 1]] = True
+        return self._with(scene, where[:count], values[:count]), new
+
+    def _with(self, scene: Scene, where: Numbers, values: Floats) -> Scene:
+        (e, a, source), (x, y, speed, radius) = where.T, values.T
+
+        def put(value: NDArray[Any], new: Any) -> NDArray[Any]:
+            changed = value.copy()
+            changed[e, a] = new
+            return changed
+
+        place = np.stack([x, y], axis=-1)
+        memory = {name: put(value, self._fresh.get(name, 0.0)) for name, value in scene.memory.items()}
+        if JOURNEY in memory:
+            memory[JOURNEY] = put(memory[JOURNEY], self._first_journey + source)
+        if MODEL in memory:
+            memory[MODEL] = put(memory[MODEL], [self._queues.sources[k].model for k in source])
+        return scene.replace(
+            position=put(scene.position, place),
+            velocity=put(scene.velocity, 0.0),
+            goal=put(scene.goal, place),
+            radius=put(scene.radius, radius),
+            preferred_speed=put(scene.preferred_speed, speed),
+            max_speed=put(scene.max_speed, TOP * speed),
+            active=put(scene.active, True),
+            visible=put(scene.visible, True),
+            group=put(scene.group, -1),
+            memory=memory,
+        )
+
+
+def arrival_counts(sources: Sequence[PeopleSource], seeds: Sequence[int], time: float, first: int = 0) -> Numbers:
+    """Return ``[E, K]`` the number of arrivals until a time [s] for the sources of worlds with these seeds.
+
+    Args:
+        sources: K sources.
+        seeds: E seeds.
+        time: time [s].
+        first: number of the first source in the world.
+
+    >>> from crowdbot.world import PointWaypoint, PolygonZone, WaypointSequence
+    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> source = PeopleSource(door, WaypointSequence((PointWaypoint(9, 1),)), rate=0.5, timing="regular")
+    >>> arrival_counts([source], seeds=[0, 1], time=9.0).tolist()
+    [[5], [5]]
+    """
+    queues = _Queues.of(sources, [int(seed) % 2**63 for seed in seeds], first)
+    queues.fill(np.full(len(seeds), float(time)), np.ones(queues.due.shape, dtype=np.bool_))
+    return queues.come
+
+
+def _is_buffered(source: PeopleSource) -> bool:
+    """Return whether several speeds and radii can be drawn in advance: one random number for each."""
+    return all(isinstance(one, int | float) or hasattr(one, "values_at") for one in (source.speed, source.radius))
+
+
+def _state_of(rng: np.random.Generator) -> Words:
+    """Return the state ``[4]`` of a PCG64, as kernels take it."""
+    known: Any = rng.bit_generator.state["state"]
+    words = [known[name] >> shift & (2**64 - 1) for name in ("state", "inc") for shift in (64, 0)]
+    return np.array(words, dtype=np.uint64)
+
+
+def _set_state(rng: np.random.Generator, state: Words) -> None:
+    """Continue a PCG64 at a state ``[4]``; half a number that it has kept for whole numbers stays."""
+    a, b, c, d = map(int, state)
+    known: Any = dict(rng.bit_generator.state)
+    known["state"] = {"state": a << 64 | b, "inc": c << 64 | d}
+    rng.bit_generator.state = known
