@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -109,7 +110,8 @@ def test_a_row_holds_the_whole_pose() -> None:
 def test_csv_and_json_lines_give_the_same_poses() -> None:
     hand = ",".join(f"right_hand_{name}" for name in ("x", "y", "z", "qw", "qx", "qy", "qz"))
     table = f"time,x,y,heading,{hand}\n1,0,0,0,,,,,,,\n2,1,0,0.5,0.3,-0.3,1.2,1,0,0,0\n"
-    lines = '{"time": 1, "x": 0, "y": 0}\n\n{"time": 2, "x": 1, "y": 0, "heading": 0.5, "right_hand": [0.3, -0.3, 1.2, 1, 0, 0, 0]}\n'
+    second = {"time": 2, "x": 1, "y": 0, "heading": 0.5, "right_hand": [0.3, -0.3, 1.2, 1, 0, 0, 0]}
+    lines = '{"time": 1, "x": 0, "y": 0}\n\n' + json.dumps(second)
     one, two = read_pose_file(table.encode(), "a.csv", begin=1.0), read_pose_file(lines.encode(), "a.jsonl", begin=1.0)
     assert one.time.tolist() == two.time.tolist() == [0.0, 1.0]
     assert np.array_equal(one.rows, two.rows, equal_nan=True)

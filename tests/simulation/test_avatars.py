@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, TrialError
+from crowdbot.core import InputError, TrialError, without_running_code
 from crowdbot.recording import branch, open_run, read_episode, replay
 from crowdbot.simulation import (
     AvatarOrder,
@@ -255,7 +256,10 @@ def test_nobody_is_touched_on_the_way_of_a_teleport() -> None:
 
 def test_a_contact_pushes_the_robot_and_not_the_avatar() -> None:
     """An avatar walks against a robot that stands: the robot is moved, the avatar keeps to its samples."""
-    still = '<robot name="robot" type="turtlebot2" x="0" y="0"><goal x="6" y="0"/><navigator type="straight" speed="0.01"/></robot>'
+    still = (
+        '<robot name="robot" type="turtlebot2" x="0" y="0"><goal x="6" y="0"/>'
+        '<navigator type="straight" speed="0.01"/></robot>'
+    )
     trial = parse_trial(
         f"""<trial name="push" duration="3" world="physics"><stage/><crowd type="orca"/>
         <avatar name="guide" source="external" x="1" y="0" heading="3.14159"/>{still}<end collision="false"/></trial>"""
@@ -352,3 +356,57 @@ def test_the_bodies_of_a_replay_have_the_hand_where_it_was(world: str) -> None:
     hand = people.ends[slot(trial), 13]  # the capsule of the right hand
     assert min(np.linalg.norm(hand[:3] - wrist), np.linalg.norm(hand[3:] - wrist)) < 0.15
     assert np.ptp(people.skin(2)[slot(trial), :, 2]) > 1.7
+
+
+def test_environments_restart_with_their_avatars_at_the_start() -> None:
+    run = SimulationRun(Simulation(TRIALS["planar"], range(3)), sources=[Walk()])
+    for _ in range(10):
+        run.step()
+    run.simulation.restart([1], seeds=[1])
+    place = run.simulation.world.scene.position[:, 2]
+    assert place[1].tolist() == [2.0, 1.0]
+    assert place[0].tolist() != [2.0, 1.0]
+    fresh = Simulation(TRIALS["planar"], 1)
+    fresh.begin()
+    fresh.advance()
+    run.simulation.advance()
+    assert state(run.simulation, 1) == state(fresh, 0)
+
+
+def test_a_trial_with_a_function_is_checked_without_running_code(tmp_path: Path) -> None:
+    (tmp_path / "circle.py").write_text(CIRCLE + "\nraise SystemExit('code was run')\n")
+    with without_running_code():
+        avatar = '<avatar name="guide" source="function" function="circle.py:Circle"/>'
+        trial = parse_trial(text(avatar), folder=tmp_path)
+        with pytest.raises(TrialError, match=r"Square is not a concrete PoseSource"):
+            parse_trial(text(avatar.replace(":Circle", ":Square")), folder=tmp_path)
+    assert trial.avatars[0].function == "circle.py:Circle"
+
+
+def test_a_trial_ends_when_only_avatars_are_left() -> None:
+    trial = parse_trial(
+        """<trial name="alone" duration="20"><stage/><crowd type="orca"/><agent x="0" y="0" goal="2,0"/>
+        <avatar name="guide" source="external" x="0" y="3"/><end empty="true"/></trial>"""
+    )
+    run = SimulationRun(Simulation(trial))
+    assert run.advance() == "finished"
+    assert run.simulation.tick < 100
+
+
+def test_a_file_that_stands_for_a_time_and_hands_that_come_and_go(tmp_path: Path) -> None:
+    rows = [
+        {"time": 0.0, "x": 2.0, "y": 1.0},
+        {"time": 0.5, "x": 2.0, "y": 1.0, "left_hand": [2.2, 1.3, 1.5, 1, 0, 0, 0]},
+        {"time": 1.0, "x": 2.0, "y": 1.0},
+    ]
+    (tmp_path / "walk.jsonl").write_text("\n".join(map(json.dumps, rows)))
+    trial = parse_trial(text('<avatar name="guide" source="file" file="walk.jsonl" height="1.9"/>'), folder=tmp_path)
+    simulation = Simulation(trial, posed=True)
+    assert simulation.world.people is not None
+    assert simulation.world.people.people.height[2] == 1.9
+    reached = []
+    for _ in range(24):
+        wrist = simulation.world.people.posture().position[2, 9]
+        reached.append(bool(np.linalg.norm(wrist - (2.2, 1.3, 1.5)) < 0.01))
+        simulation.advance()
+    assert reached == [False] * 10 + [True] * 10 + [False] * 4

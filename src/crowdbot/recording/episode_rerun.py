@@ -46,9 +46,11 @@ def open_rerun(path: Path | str, *, folder: Path | None = None, trust: bool = Fa
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.recording import record
-    >>> summary = record(Trial(name="empty", duration=1.0, crowd=ORCA()), out="empty-episode", force=True)
-    >>> with open_rerun("empty-episode/episode.mcap") as rerun:
-    ...     rerun.trial.name, rerun.seed
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as out:
+    ...     summary = record(Trial(name="empty", duration=1.0, crowd=ORCA()), out=out)
+    ...     with open_rerun(f"{out}/episode.mcap") as rerun:
+    ...         rerun.trial.name, rerun.seed
     ('empty', 0)
     """
     path = Path(path)

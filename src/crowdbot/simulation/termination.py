@@ -172,7 +172,7 @@ def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, rob
         return None
     met = np.zeros(len(world.slots), dtype=np.int64)
     if trial.end.empty:
-        alone = _people_count(world) == 0
+        alone = _people_count(world) == len(trial.avatars)  # avatars never leave
         if alone.any():
             met[alone & ~_expects_people(trial, world, people)] = 1
     for number, condition in enumerate(trial.end.conditions):

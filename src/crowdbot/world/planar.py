@@ -170,7 +170,7 @@ class PlanarWorld(PlanarLiveChanges):
         elapsed = self.environment_time.age
         earlier, crowd = self._step_crowd(hide_ghosts(before, self.ghosts))
         if self.avatars is not None:
-            before, crowd = self.avatars.move(self, before, crowd, elapsed)
+            earlier, before, crowd = self.avatars.move(self, earlier, before, crowd, elapsed)
         after = self._step_robots(before, crowd, asked)
         after = self._resolve_overlaps(earlier, after)
         after = after.replace(external=external, time=self.environment_time.now)

@@ -56,6 +56,7 @@ class Avatars:
         self.agents = np.asarray(agents, dtype=np.int64)
         self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
         self.sources = [tuple(row) for row in sources]
+        self._latest: dict[tuple[int, float], tuple[PoseSource, PoseMotion]] = {}  # holds sources, so ids are unique
         self.rows = np.zeros((len(self.sources), len(self.agents), len(BodyPose(0.0, 0.0).row())))
 
     def __deepcopy__(self, memo: Any) -> Avatars:
@@ -75,14 +76,14 @@ class Avatars:
             InputError: a source returns no pose.
         """
         now = np.broadcast_to(np.asarray(time, dtype=np.float64), (scene.shape[0],)).tolist()
+        latest, self._latest = self._latest, {}
         position, velocity, heading = scene.position.copy(), scene.velocity.copy(), scene.heading.copy()
-        known: dict[tuple[int, float], PoseMotion] = {}
         for e, sources in enumerate(self.sources):
             for k, (agent, source, delay) in enumerate(zip(self.agents.tolist(), sources, self.delay, strict=True)):
                 key = (id(source), now[e] - delay)
-                motion = known.get(key)
-                if motion is None:
-                    known[key] = motion = source.motion(key[1])
+                known = self._latest.get(key) or latest.get(key) or (source, source.motion(key[1]))
+                self._latest[key] = known
+                motion = known[1]
                 row = motion.row
                 self.rows[e, k] = row
                 position[e, agent] = row[:2]
@@ -90,17 +91,26 @@ class Avatars:
                 heading[e, agent] = math.pi - (math.pi - row[2]) % (2.0 * math.pi)
         return scene.replace(position=position, velocity=velocity, heading=heading)
 
-    def move(self, world: Any, before: Scene, crowd: Scene, time: float | Floats) -> tuple[Scene, Scene]:
+    def move(
+        self, world: Any, earlier: Scene, before: Scene, crowd: Scene, time: float | Floats
+    ) -> tuple[Scene, Scene, Scene]:
         """Return the scenes before and after a step of the crowd with the avatars at their new places.
 
         An avatar that teleports in the step is already at its new place before it. The bodies of people get the new
         poses for the end of the step.
+
+        Args:
+            world: the world of the scenes.
+            earlier, before: scenes before the last substep of the crowd, and before the step.
+            crowd: scene after the step of the crowd.
+            time: time at the end of the step [s], one or ``[E]``.
         """
         after, motions = self.place(crowd, time), people_motions(world)
+        earlier = self._skip_jumps(earlier, after, world.dt, ())
         before = self._skip_jumps(before, after, world.dt, motions)
         for motion, poses in zip(motions, self._poses(), strict=False):
             motion.set_poses(poses)
-        return before, after
+        return earlier, before, after
 
     def _skip_jumps(self, before: Scene, after: Scene, dt: float, motions: Sequence[PeopleMotion]) -> Scene:
         step = after.position[:, self.agents] - before.position[:, self.agents]
