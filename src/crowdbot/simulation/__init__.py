@@ -1,18 +1,17 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
-from .avatar_order import AvatarOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
-from .goal_order import GoalOrder
-from .joint_order import JointOrder
-from .orders import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
+from .orders.avatar_order import AvatarOrder
+from .orders.goal_order import GoalOrder
+from .orders.joint_order import JointOrder
+from .orders.order import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
+from .orders.parameter_order import ParameterOrder
+from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
 from .overrides import apply_overrides
-from .parameter_order import ParameterOrder
-from .people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
-from .resumable_hash import ResumableHash
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
 from .simulation import Simulation
@@ -26,9 +25,10 @@ from .simulation_run import (
     Sink,
     StopRequest,
 )
-from .state_codec import decode_state, encode_state
-from .state_restore import restore_state
-from .state_tree import StateError, StateMark, state_of
+from .state.resumable_hash import ResumableHash
+from .state.state_codec import decode_state, encode_state
+from .state.state_restore import restore_state
+from .state.state_tree import StateError, StateMark, state_of
 from .statistics import EpisodeStatistics, RunSummary, robot_metrics
 from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord

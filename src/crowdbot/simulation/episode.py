@@ -19,7 +19,7 @@ from crowdbot.trials import Trial
 from crowdbot.world import BodyContactEvent, ContactForce
 
 from .failure import RunFailure
-from .orders import Order
+from .orders.order import Order
 from .step_record import RobotContact
 
 __all__ = ["Episode", "ScanRow", "log_of", "scan_row", "tracks_of"]

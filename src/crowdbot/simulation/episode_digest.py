@@ -15,9 +15,9 @@ from crowdbot.core import Pose, SpatialPose
 from crowdbot.sensors import Reading, TrackedPeople
 
 from .mounted_sensor import SensorReadings
-from .orders import Order, write_order
-from .resumable_hash import ResumableHash
-from .state_tree import StateError
+from .orders.order import Order, write_order
+from .state.resumable_hash import ResumableHash
+from .state.state_tree import StateError
 from .step_batch import BatchReadings, StepBatch
 from .step_record import StepRecord
 

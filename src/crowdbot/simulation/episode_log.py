@@ -18,7 +18,7 @@ from .episode import Episode
 from .episode_digest import EpisodeDigest, add_batch
 from .failure import RunFailure
 from .mounted_sensor import SensorReadings
-from .orders import Order
+from .orders.order import Order
 from .statistics import EpisodeStatistics, new_metrics
 from .step_batch import StepBatch
 from .step_record import RobotContact, StepRecord

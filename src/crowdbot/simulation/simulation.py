@@ -44,7 +44,7 @@ from .world_view import WorldView
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent
 
-    from .orders import Order
+    from .orders.order import Order
 
 __all__ = ["COLLISION", "NONE", "SUCCESS", "Simulation"]
 

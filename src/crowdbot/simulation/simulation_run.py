@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
 
 from .failure import RunFailure
-from .orders import MissedDecisionOrder, Order
+from .orders.order import MissedDecisionOrder, Order
 from .simulation import Simulation
 from .step_batch import StepBatch
 from .step_record import StepRecord

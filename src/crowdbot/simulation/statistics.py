@@ -15,7 +15,7 @@ from crowdbot.world import BodyContactEvent
 
 from .episode_digest import EpisodeDigest
 from .failure import RunFailure
-from .goal_order import GoalOrder
+from .orders.goal_order import GoalOrder
 from .step_record import StepRecord
 
 __all__ = ["EpisodeStatistics", "RunSummary", "new_metrics", "robot_metrics"]

@@ -17,7 +17,7 @@ from .step_record import RobotContact
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent, ContactForce
 
-    from .orders import Order
+    from .orders.order import Order
     from .simulation import Simulation
 
 __all__ = ["BatchReadings", "StepBatch"]

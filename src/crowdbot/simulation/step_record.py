@@ -15,7 +15,7 @@ from crowdbot.trials import Mount, RobotSpec
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent, ContactForce
 
-    from .orders import Order
+    from .orders.order import Order
 
 __all__ = ["WALL", "RobotContact", "StepRecord"]
 

@@ -10,8 +10,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .crowd.avatars import Avatars, give_pose
     from .crowd.arrivals import arrival_counts
+    from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
     from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence

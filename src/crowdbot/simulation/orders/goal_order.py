@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.simulation.robot_control import RobotControl
+from crowdbot.simulation.simulation import NONE, SUCCESS
 from crowdbot.trials import robot_place_problem
 from crowdbot.world import check_place, redirect_person
 
-from .orders import Order
-from .robot_control import RobotControl
-from .simulation import NONE, SUCCESS
+from .order import Order
 
 __all__ = ["GoalOrder"]
 

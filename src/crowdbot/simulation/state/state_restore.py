@@ -1,4 +1,4 @@
-"""Restore a simulation from its state, see :mod:`crowdbot.simulation.state_tree`."""
+"""Restore a simulation from its state, see :mod:`crowdbot.simulation.state.state_tree`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .state_fields import ENVIRONMENT_TIME, holder_fields, is_holder, qualified,
 from .state_tree import CHECKED, SCALARS, StateError, StateMark, engine_arrays, read_engine, value_fields
 
 if TYPE_CHECKING:
-    from .simulation import Simulation
+    from crowdbot.simulation.simulation import Simulation
 
 __all__ = ["restore_state"]
 

@@ -19,7 +19,7 @@ from crowdbot.core import InputError
 from .state_fields import ENVIRONMENT_TIME, MODEL_ARRAYS, holder_fields, is_holder, qualified, value_name
 
 if TYPE_CHECKING:
-    from .simulation import Simulation
+    from crowdbot.simulation.simulation import Simulation
 
 __all__ = ["CHECKED", "StateError", "StateMark", "engine_arrays", "read_engine", "state_of", "value_fields"]
 

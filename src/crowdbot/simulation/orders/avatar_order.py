@@ -8,7 +8,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.humans import BodyPose
 from crowdbot.world import give_pose
 
-from .orders import Order, OrderTarget
+from .order import Order, OrderTarget
 
 __all__ = ["AvatarOrder"]
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.simulation.robot_control import RobotControl
+from crowdbot.simulation.robot_joints import move_robot_joint, tilt_problem
 from crowdbot.world import check_joint
 
-from .orders import Order
-from .robot_control import RobotControl
-from .robot_joints import move_robot_joint, tilt_problem
+from .order import Order
 
 __all__ = ["JointOrder"]
 

@@ -16,7 +16,7 @@ from crowdbot.world import (
     slot_of,
 )
 
-from .orders import Order, OrderTarget
+from .order import Order, OrderTarget
 
 __all__ = ["AddPersonOrder", "MoveOrder", "RedirectOrder", "RemoveOrder"]
 

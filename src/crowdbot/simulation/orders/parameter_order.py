@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.simulation.overrides import apply_overrides, check_overrides
 from crowdbot.trials import Trial, apply_values
 
-from .orders import Order, OrderTarget
-from .overrides import apply_overrides, check_overrides
+from .order import Order, OrderTarget
 
 __all__ = ["ParameterOrder"]
 

@@ -1,0 +1,1 @@
+"""State: a simulation as plain values, for keyframes of episodes, and back."""
