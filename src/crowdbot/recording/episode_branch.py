@@ -166,13 +166,16 @@ def _run(
     with catch_interrupt() as stop:
         comparison = DigestComparison(EpisodeDigest({}), dict(wanted))
         simulation = _there(course, at, comparison, stop, options, name, source)
+        if options.trial is None:  # orders may have changed the trial
+            new = apply_values(simulation.trial, options.changes, place=f"trial {old.name!r} with changes")
         apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
         rest = tuple(row for row in last.orders if row[0] >= simulation.tick) if options.orders else ()
         if not options.orders:
             replay_misses(simulation, None)
         part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed), rest)
-        tally = kind(new, part.seed, comparison.digest)
+        robots = simulation.world.ids[0, [control.agent for control in simulation.robots]].tolist()
+        tally = kind(new, part.seed, comparison.digest, robots)
         parts = (*course.parts, part)
         return tally, _record(simulation, tally, comparison, parts, options, stop), simulation
 

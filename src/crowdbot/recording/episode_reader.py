@@ -21,7 +21,7 @@ from crowdbot.sensors import Reading
 from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
 
 from .episode_repair import EpisodeEnd
-from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
+from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, KEYS, METADATA, from_json
 from .step_records import RecordedContact, RecordedStep, read_steps
 
 __all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
@@ -249,7 +249,7 @@ def _sentences(path: Path, what: str = "is damaged") -> Iterator[None]:
 
 
 def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
-    known = {**records.get(METADATA, {}), **records.get(ENDING, {})}
+    known = {**records.get(METADATA, {}), **records.get(ADDED_ROBOTS, {}), **records.get(ENDING, {})}
     if any(key not in known for key in KEYS):
         raise EpisodeError(
             f"{path} is an MCAP file but not an episode of crowdbot: it has no metadata record {METADATA!r}"
@@ -278,16 +278,20 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
     if not due and not complete:
         raise EpisodeError(f"{path} has no recorded steps: the run was killed before the first one")
     robots = json.loads(known["robots"])
+    start = len(robots)
+    robots += json.loads(known.get("added_robots", "[]"))
     places = [int(robot["id"]) for robot in robots]
     if complete:
-        count = int(known["people"]) + len(robots)
+        count = int(known["people"]) + start
     else:
         count = 1 + max([-1, *places, *(who for moment in found for who in moment.largest_ids())])
     arrays = _Arrays.of(len(due), count)
-    commands = np.zeros((len(due), len(robots), 3))
+    commands = np.full((len(due), len(robots), 3), np.nan)
     for k, (moment, people) in enumerate(due):
         arrays.put(k, people)
         for r, robot in enumerate(robots):
+            if robot["name"] not in moment.robots:  # added later, or removed
+                continue
             arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
             commands[k, r] = moment.commands[robot["name"]]
     scans: dict[str, list[ScanRow]] = _by_topic(moment.scans for moment in found)
@@ -298,6 +302,8 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         for moment in found:
             ending.take(moment)
         known = known | ending.metadata()
+    if "added_robots" in known:
+        known = known | {"robots": json.dumps(robots)}
     return RecordedEpisode(
         path,
         known,

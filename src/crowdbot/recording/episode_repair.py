@@ -64,6 +64,8 @@ class EpisodeEnd:
             if self.travels:
                 now = moment.everyone(self.bodies)
                 for travel in self.travels:
+                    if travel.robot not in now.ids:  # an order has removed it: its metrics end before
+                        continue
                     travel.update(now, travel.robot in self.touching)
             self.touching = set()
 

@@ -12,6 +12,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+import numpy as np
+
 from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
 from crowdbot.messages import (
     MAP,
@@ -25,12 +27,12 @@ from crowdbot.messages import (
 )
 from crowdbot.messages.marker_array import KIND as MARKERS
 from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, Simulation, StepRecord, write_order
-from crowdbot.trials import Trial, trial_xml
+from crowdbot.trials import RobotSpec, Trial, trial_xml
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
-from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
+from .metadata import ADDED_ROBOTS, CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
 
 __all__ = ["Recorder"]
 
@@ -105,13 +107,8 @@ class Recorder:
         self._markers = clock.schedule(self.trial.recording.markers)
         self._next_markers = self._markers.index(self._markers.next_due(begin))
         self._write_due = begin * clock.step_ns
-        self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
-        self._goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in self.trial.robots]
-        self._mounts = [
-            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount_pose(robot, mount))
-            for robot in self.trial.robots
-            for mount in robot.sensors
-        ]
+        self._names = dict(zip(tally.robot_ids, [robot.name for robot in self.trial.robots], strict=True))
+        self._added: dict[int, dict[str, Any]] = {}
 
     def __enter__(self) -> Recorder:
         """Create the folder and lock the file."""
@@ -144,11 +141,11 @@ class Recorder:
 
     def take(self, frame: StepRecord) -> None:
         """Write a step."""
-        first = self.trial.people
         now, make = frame.nanoseconds, self.messages
+        self._note_added(frame)
         self._write("/clock", make.clock(now), now)
-        if self.trial.robots:
-            self._write("/tf", make.transforms(now, self._poses(frame, first)), now)
+        if frame.robots:
+            self._write("/tf", make.transforms(now, self._poses(frame)), now)
         self._fixed(frame)
         for robot, mount, reading in frame.readings:
             told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
@@ -161,7 +158,7 @@ class Recorder:
         for topic, message in contact_messages(make, now, frame, self._names):
             self._write(topic, message, now)
         if frame.due:
-            self._scene(frame, first)
+            self._scene(frame)
             self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             self._write(DIGEST, make.text(self.last[1]), now)
         assert self.tape is not None
@@ -194,37 +191,47 @@ class Recorder:
             raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
         self.tape = None
 
-    def _scene(self, frame: StepRecord, first: int) -> None:
+    def _note_added(self, frame: StepRecord) -> None:
+        """Write a metadata record when orders have added robots."""
+        new = [(k, robot) for k, robot in zip(frame.robot_ids, frame.robots, strict=True) if k not in self._names]
+        if not new:
+            return
+        self._names |= {k: robot.name for k, robot in new}
+        self._added |= {k: _robot_record(k, robot) for k, robot in new}
+        assert self.tape is not None
+        self.tape.metadata(ADDED_ROBOTS, {"added_robots": as_json(list(self._added.values()))})
+
+    def _scene(self, frame: StepRecord) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
         self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
-        for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
-            name = self.trial.robots[k].name
+        for k, (_, _, x, y, heading) in enumerate(self._poses(frame)):
+            name = frame.robots[k].name
             self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
         if (latest := self._markers.index(frame.tick)) >= self._next_markers:
             self._next_markers = latest + 1
-            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
+            goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in frame.robots]
+            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, goals), now)
 
     def _fixed(self, frame: StepRecord) -> None:
         """Write the frames of sensors at each step, which makes each step self-contained."""
-        rows = list(self._mounts)
+        rows = [
+            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount_pose(robot, mount))
+            for robot in frame.robots
+            for mount in robot.sensors
+        ]
         for robot, mount, reading in frame.readings:
             topic = f"{robot.name}/{mount.name}"
             rows += codec_of(type(reading), topic).frames(robot.name, topic)
         if rows:
             self._write("/tf_static", self.messages.fixed(frame.nanoseconds, rows), frame.nanoseconds)
 
-    def _poses(self, frame: StepRecord, first: int) -> list[tuple[str, str, float, float, float]]:
+    def _poses(self, frame: StepRecord) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
+        agents = [int(np.flatnonzero(frame.ids == one)[0]) for one in frame.robot_ids]
         return [
-            (
-                MAP,
-                f"{robot.name}/base_link",
-                float(scene.position[0, first + k, 0]),
-                float(scene.position[0, first + k, 1]),
-                float(scene.heading[0, first + k]),
-            )
-            for k, robot in enumerate(self.trial.robots)
+            (MAP, f"{robot.name}/base_link", *scene.position[0, agent].tolist(), float(scene.heading[0, agent]))
+            for agent, robot in zip(agents, frame.robots, strict=True)
         ]
 
     def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
@@ -252,19 +259,7 @@ class Recorder:
             raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
 
     def _metadata(self) -> dict[str, str]:
-        robots = [
-            {
-                "name": robot.name,
-                "id": self.trial.people + k,
-                "radius": robot.radius,
-                "goal": list(robot.goal.position),
-                "tolerance": robot.goal.tolerance,
-                "sensors": [mount.name for mount in robot.sensors],
-                **({"ghost": True} if robot.ghost else {}),
-                **({"footprint": robot.body.footprint.tolist()} if robot.type else {}),
-            }
-            for k, robot in enumerate(self.trial.robots)
-        ]
+        robots = [_robot_record(*row) for row in zip(self.tally.robot_ids, self.trial.robots, strict=True)]
         schedule = self._schedule
         exact = schedule.period_ns == schedule.every * schedule.step_ns  # readers take the period from the times
         return {
@@ -292,3 +287,17 @@ class Recorder:
         for folder in reversed(self.made):
             if not any(folder.iterdir()):
                 folder.rmdir()
+
+
+def _robot_record(robot_id: int, robot: RobotSpec) -> dict[str, Any]:
+    """Return what readers of a file need to know about a robot."""
+    return {
+        "name": robot.name,
+        "id": robot_id,
+        "radius": robot.radius,
+        "goal": list(robot.goal.position),
+        "tolerance": robot.goal.tolerance,
+        "sensors": [mount.name for mount in robot.sensors],
+        **({"ghost": True} if robot.ghost else {}),
+        **({"footprint": robot.body.footprint.tolist()} if robot.type else {}),
+    }

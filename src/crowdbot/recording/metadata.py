@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 __all__ = [
+    "ADDED_ROBOTS",
     "CONTACTS",
     "DIGEST",
     "ENDING",
@@ -29,6 +30,8 @@ __all__ = [
 
 METADATA = "crowdbot"
 """Name of the metadata record at the start."""
+ADDED_ROBOTS = "crowdbot.robots"
+"""Name of the metadata record of the robots that orders have added; the last one counts."""
 ENDING = "crowdbot.end"
 """Name of the metadata record at the end; missing in files of killed runs."""
 KEYS = ("trial", "trial_name", "seed", "version", "walls", "robots")

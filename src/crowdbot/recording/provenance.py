@@ -15,11 +15,11 @@ from crowdbot.simulation import (
     EpisodeDigest,
     MissedDecisionOrder,
     Order,
-    ParameterOrder,
     Simulation,
     SimulationRun,
     StepRecord,
     StopRequest,
+    TrialOrder,
     apply_overrides,
     read_order,
     write_order,
@@ -149,7 +149,7 @@ class Provenance:
 
     def changes_until(self, tick: int) -> int:
         """Return the number of orders up to a tick that change the trial."""
-        return sum(isinstance(order, ParameterOrder) and at <= tick for part in self.parts for at, order in part.orders)
+        return sum(isinstance(order, TrialOrder) and at <= tick for part in self.parts for at, order in part.orders)
 
     def begin_at(self, tick: int) -> Simulation:
         """Return a new simulation with the changes of the trial up to a tick, to continue from a stored state."""
@@ -159,7 +159,7 @@ class Provenance:
             apply_overrides(simulation, part.trial, None if part.seed == seed else part.seed)
             seed = part.seed
             for at, order in part.orders:
-                if isinstance(order, ParameterOrder) and at <= tick:
+                if isinstance(order, TrialOrder) and at <= tick:
                     order.apply(simulation)
         return simulation
 

@@ -105,7 +105,7 @@ class RecordedStep:
         """
         people = self.people
         assert people is not None
-        states = [(robots[name], state) for name, state in self.robots.items()]
+        states = [(robots[name], state) for name, state in self.robots.items() if name in robots]
         rows = np.array([(s.x, s.y, s.vx, s.vy, s.heading, own[1]) for own, s in states]).reshape(-1, 6)
         ids = np.concatenate([people.ids, np.array([own[0] for own, _ in states], dtype=np.int64)])
         order = np.argsort(ids)

@@ -6,11 +6,13 @@ from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
 from .orders.avatar_order import AvatarOrder
+from .orders.element_orders import AddElementOrder, RemoveElementOrder
 from .orders.goal_order import GoalOrder
 from .orders.joint_order import JointOrder
 from .orders.order import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
 from .orders.parameter_order import ParameterOrder
 from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .orders.trial_order import TrialOrder
 from .overrides import apply_overrides
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
@@ -37,6 +39,7 @@ from .world_builder import start_scene
 __all__ = [
     "KEYFRAMES",
     "WALL",
+    "AddElementOrder",
     "AddPersonOrder",
     "AvatarOrder",
     "BatchReadings",
@@ -53,6 +56,7 @@ __all__ = [
     "OrderSource",
     "ParameterOrder",
     "RedirectOrder",
+    "RemoveElementOrder",
     "RemoveOrder",
     "ResumableHash",
     "RobotContact",
@@ -71,6 +75,7 @@ __all__ = [
     "StepBatch",
     "StepRecord",
     "StopRequest",
+    "TrialOrder",
     "UncommandedRobotWarning",
     "VelocityOrder",
     "apply_overrides",

@@ -42,17 +42,20 @@ class _Frame(NamedTuple):
     twists: Floats
     commands: Floats
     touching: frozenset[int]
+    robots: tuple[int, ...]
 
 
 class EpisodeLog(EpisodeStatistics):
     """Collects the arrays of an episode while it runs. Its metrics are computed from the arrays when asked for.
 
     Args:
-        trial, seed, digest: see :class:`EpisodeStatistics`.
+        trial, seed, digest, robots: see :class:`EpisodeStatistics`.
     """
 
-    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
-        super().__init__(trial, seed, digest)
+    def __init__(
+        self, trial: Trial, seed: int, digest: EpisodeDigest | None = None, robots: Sequence[int] | None = None
+    ) -> None:
+        super().__init__(trial, seed, digest, robots)
         self.readings: dict[str, list[Reading | tuple[SensorReadings, int]]] = {}
         self.orders: list[tuple[int, Order]] = []
         self.contacts: list[tuple[float, RobotContact]] = []
@@ -69,7 +72,7 @@ class EpisodeLog(EpisodeStatistics):
             scene = frame.scene
             parts = (scene.active, scene.heading, scene.radius, scene.position, scene.velocity)
             arrays = [frame.ids, *(part[0] for part in parts), frame.twists, frame.commands]
-            self._keep_frame(frame.nanoseconds, arrays)
+            self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids)
 
     def keep_row(self, batch: StepBatch, row: int) -> None:
         """Add a row of a batch without its readings, which the digest already contains."""
@@ -80,7 +83,7 @@ class EpisodeLog(EpisodeStatistics):
         if batch.due[row]:
             parts = (batch.ids, batch.active, batch.heading, batch.radius, batch.position, batch.velocity)
             arrays = [part[row, :slots] for part in parts]
-            self._keep_frame(nanoseconds, [*arrays, batch.twists[row], batch.commands[row]])
+            self._keep_frame(nanoseconds, [*arrays, batch.twists[row], batch.commands[row]], self.robot_ids)
 
     def metrics(self, outcome: str) -> dict[str, float]:
         """Return the metrics of all robots."""
@@ -88,15 +91,19 @@ class EpisodeLog(EpisodeStatistics):
 
     def _metrics(self, arrays: Mapping[str, NDArray[Any]], outcome: str) -> dict[str, float]:
         if self.trial.robots:
-            self.travels = new_metrics(self.trial)
+            self.travels = new_metrics(self.trial, self.robot_ids)
             log = AgentLog(*(arrays[name] for name in AgentLog._fields))
             for travel in self.travels:
-                travel.update_log(log, np.array([travel.robot in frame.touching for frame in self._frames]))
+                touched = np.array([travel.robot in frame.touching for frame in self._frames])
+                there = log.active[:, travel.robot]
+                end = len(there) if there.all() else int(np.argmin(there))  # an order has removed it
+                travel.update_log(log.part(0, end), touched[:end])
         return super().metrics(outcome)
 
     def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
         """Return the episode."""
-        arrays, first = self._arrays(), self.trial.people
+        arrays = self._arrays()
+        robots = tuple(dict.fromkeys(robot for frame in self._frames for robot in frame.robots))
         here = arrays["active"]
         last = len(here) - 1 - np.argmax(here[::-1], axis=0)
         radius = np.where(here.any(axis=0), arrays["radius"][last, np.arange(self.agents)], 0.0)
@@ -112,9 +119,9 @@ class EpisodeLog(EpisodeStatistics):
             radius,
             here,
             np.arange(self.agents, dtype=np.int64),
-            tuple(range(first, first + len(self.trial.robots))),
-            np.stack([frame.twists for frame in self._frames]),
-            np.stack([frame.commands for frame in self._frames]),
+            robots,
+            _by_robot([frame.twists for frame in self._frames], [frame.robots for frame in self._frames], robots),
+            _by_robot([frame.commands for frame in self._frames], [frame.robots for frame in self._frames], robots),
             _Readings(self.readings),
             self._metrics(arrays, outcome),
             self.digest.hexdigest(outcome),
@@ -143,10 +150,10 @@ class EpisodeLog(EpisodeStatistics):
         self.forces += [(time, force) for force in forces]
         self.collisions += collisions
 
-    def _keep_frame(self, nanoseconds: int, arrays: Sequence[NDArray[Any]]) -> None:
+    def _keep_frame(self, nanoseconds: int, arrays: Sequence[NDArray[Any]], robots: tuple[int, ...]) -> None:
         self.end = nanoseconds / 1e9
         self.begin = self.end if math.isnan(self.begin) else self.begin
-        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching)]))
+        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots]))
         self._touching = set()
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
@@ -217,6 +224,16 @@ class _Readings(Mapping[str, tuple[Reading, ...]]):
     def __reduce__(self) -> tuple[Any, ...]:
         """Write only the own readings, not the batches."""
         return dict, (dict(self),)
+
+
+def _by_robot(rows: Sequence[Floats], ids: Sequence[tuple[int, ...]], robots: tuple[int, ...]) -> Floats:
+    """Return rows ``[R, 3]`` as ``[T, robots, 3]``, NaN while a robot is absent; ``ids`` are the robots of the rows."""
+    if all(own == robots for own in ids):
+        return np.stack(rows)
+    out = np.full((len(rows), len(robots), 3), np.nan)
+    for k, (row, own) in enumerate(zip(rows, ids, strict=True)):
+        out[k, [robots.index(robot) for robot in own]] = row
+    return out
 
 
 def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[Ints], agents: int) -> NDArray[Any]:

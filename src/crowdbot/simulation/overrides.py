@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,11 +27,21 @@ START = ("name", "type", "x", "y", "heading")
 """Values of a robot that cannot change during a run."""
 
 
+class _Robots(NamedTuple):
+    """Robots before and after a change of the trial."""
+
+    kept: list[tuple[RobotControl, RobotSpec]]
+    """Robots that stay, with their new specification."""
+    removed: list[RobotControl]
+    added: list[RobotSpec]
+
+
 def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = None) -> None:
     """Continue a simulation with another trial, and with new random numbers if a seed is given.
 
     Positions, internal states and current commands are kept. Values that only affect the start cannot change: time
-    step, capacity, spawners, journeys, and the number of robots and sources.
+    step, capacity, spawners, journeys, and the number of sources. Robots that are new in the trial start at rest;
+    robots that it lacks are removed, and so are props.
 
     Raises:
         InputError: a value changes that only affects the start.
@@ -39,53 +50,66 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
     if trial == old and seed is None:
         return
     check_overrides(simulation, trial)
+    robots = _match_robots(simulation.robots, trial)
+    _change_robots(simulation, robots, trial)
+    _change_props(simulation, trial)
+    pairs = list(zip(simulation.robots, trial.robots, strict=True))
+    drives = {control.agent: control.robot.drive for control in simulation.former_robots}
     world.reconfigure(
         _scene(simulation, trial),
         [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources],
         seed,
         model=_model(simulation, trial),
-        drives={control.agent: robot.drive for control, robot in zip(simulation.robots, trial.robots, strict=True)},
-        latency={control.agent: robot.latency for control, robot in zip(simulation.robots, trial.robots, strict=True)},
+        drives=drives | {control.agent: robot.drive for control, robot in pairs},
+        latency={control.agent: robot.latency for control, robot in pairs},
         robot_margin=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.limits(),
         exits=[way.out() for way in trial.exits],
         heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,
-        ghosts=[control.agent for control, robot in zip(simulation.robots, trial.robots, strict=True) if robot.ghost],
+        ghosts=[control.agent for control, robot in pairs if robot.ghost],
         **_router(old, trial),
     )
     simulation.trial = trial
     if seed is not None:
         simulation.seeds = environment_seeds(seed, simulation.count)
-    bodies = {robot.agent: spec.body for robot, spec in zip(simulation.robots, trial.robots, strict=True)}
-    world.change_bodies(bodies, trial.stage.physical(), own_walls(trial))
-    simulation.robots = [
-        _robot_control(simulation, control, robot, seed)
-        for control, robot in zip(simulation.robots, trial.robots, strict=True)
-    ]
+    world.change_bodies(
+        {control.agent: robot.body for control, robot in pairs}, trial.stage.physical(), own_walls(trial)
+    )
+    simulation.robots = [_robot_control(simulation, control, robot, seed) for control, robot in pairs]
     for control in simulation.robots:
         restore_joints(control, world)
     if [robot.goal for robot in old.robots] != [robot.goal for robot in trial.robots]:
         simulation.event[simulation.event == SUCCESS] = NONE
 
 
-def check_overrides(simulation: Any, new: Trial) -> None:
-    """Raise :class:`InputError` if a value of the new trial cannot change while a simulation runs."""
+def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
+    """Raise :class:`InputError` if a value of the new trial cannot change while a simulation runs.
+
+    Args:
+        simulation: the simulation.
+        new: the new trial.
+        added: check that there is room for new robots, too.
+    """
     old, time = simulation.trial, float(simulation.world.times.max())
-    if new.stage != old.stage and simulation.world.walls_fixed:
-        raise InputError("the stage cannot change in a branch of the physics world")
+    if simulation.world.walls_fixed:
+        if dataclasses.replace(new.stage, props=old.stage.props) != old.stage:
+            raise InputError("the walls of the stage cannot change in a branch of the physics world; props can")
+        _prop_changes(old, new)
     for name in FIXED:
         if getattr(old, name) != getattr(new, name):
             raise InputError(f"{name} cannot change in a branch: it only affects the start; run another trial instead")
-    for name in ("robots", "sources"):
-        before, after = len(getattr(old, name)), len(getattr(new, name))
-        if before != after:
-            raise InputError(f"the number of {name} cannot change in a branch: {before} before, {after} after")
-    for one, two in zip(old.robots, new.robots, strict=True):
+    before, after = len(old.sources), len(new.sources)
+    if before != after:
+        raise InputError(f"the number of sources cannot change in a branch: {before} before, {after} after")
+    robots = _match_robots(simulation.robots, new)
+    for control, two in robots.kept:
         for name in START:
-            if getattr(one, name) != getattr(two, name):
-                raise InputError(f"{name} of robot {one.name!r} cannot change in a branch: it only affects the start")
+            if getattr(control.robot, name) != getattr(two, name):
+                raise InputError(f"{name} of robot {two.name!r} cannot change in a branch: it only affects the start")
+    if added:
+        _check_added_robots(simulation, robots)
     for first, second in zip(old.sources, new.sources, strict=True):
         if (first.goal, first.journey, first.arrival) != (second.goal, second.journey, second.arrival):
             raise InputError(f"the goal of source {first.name!r} cannot change in a branch")
@@ -95,9 +119,79 @@ def check_overrides(simulation: Any, new: Trial) -> None:
         raise InputError(f"a duration of {new.duration:g} s ends before the branch begins at {time:g} s")
 
 
+def _match_robots(controls: Sequence[RobotControl], trial: Trial) -> _Robots:
+    """Return which robots stay, go and come, by name."""
+    now = {control.robot.name: control for control in controls}
+    names = {robot.name for robot in trial.robots}
+    return _Robots(
+        [(now[robot.name], robot) for robot in trial.robots if robot.name in now],
+        [control for control in controls if control.robot.name not in names],
+        [robot for robot in trial.robots if robot.name not in now],
+    )
+
+
+def _check_added_robots(simulation: Any, robots: _Robots) -> None:
+    """Raise :class:`InputError` unless robots can be added where they start, with names that no robot had before."""
+    former = {control.robot.name for control in simulation.former_robots}
+    scene = simulation.world.scene
+    for robot in robots.added:
+        if robot.name in former or any(robot.name == control.robot.name for control in robots.removed):
+            raise InputError(f"a robot {robot.name!r} was removed from this run; give the new one another name")
+        away = np.hypot(*(scene.position - np.array(robot.position)).transpose(2, 0, 1))
+        near = scene.active & (away < scene.radius + robot.radius)
+        if not robot.ghost and near.any():
+            raise InputError(
+                f"robot {robot.name!r} cannot be added at x = {robot.x:g}, y = {robot.y:g} m: somebody is there"
+            )
+
+
+def _change_robots(simulation: Simulation, robots: _Robots, trial: Trial) -> None:
+    """Remove and add robots; those that stay keep their state."""
+    world = simulation.world
+    for control in robots.removed:
+        world.remove_robot(control.agent)
+    simulation.former_robots += robots.removed
+    controls = {robot.name: control for control, robot in robots.kept}
+    for robot in robots.added:
+        agent = world.add_robot(robot.body, robot.x, robot.y, robot.heading, ghost=robot.ghost)
+        controls[robot.name] = RobotControl.of(trial, robot, agent, world, simulation.seeds)
+    simulation.robots = [controls[robot.name] for robot in trial.robots]
+
+
+def _prop_changes(old: Trial, new: Trial) -> tuple[list[int], list[Any]]:
+    """Return the numbers of the props that are removed, and the new props, which come last.
+
+    Raises:
+        InputError: a prop is changed.
+    """
+    rest, removed = list(new.stage.props), []
+    for number, prop in enumerate(old.stage.props):
+        if rest and rest[0] == prop:
+            rest.pop(0)
+        else:
+            removed.append(number)
+    kept = [prop for number, prop in enumerate(old.stage.props) if number not in removed]
+    if [*kept, *rest] != list(new.stage.props) or (removed and rest):
+        raise InputError("a prop cannot change in a branch of the physics world; remove it, then add another")
+    return removed, rest
+
+
+def _change_props(simulation: Simulation, trial: Trial) -> None:
+    """Remove and add props in the physics world; the walls of a planar world are replaced as a whole."""
+    world: Any = simulation.world
+    if not world.walls_fixed:
+        return
+    removed, added = _prop_changes(simulation.trial, trial)
+    names = world.prop_names
+    for number in removed:
+        world.remove_prop(names[number])
+    for prop in added:
+        world.add_prop(prop.prop())
+
+
 def _scene(simulation: Simulation, trial: Trial) -> Any:
     scene = simulation.world.scene
-    if trial.stage != simulation.trial.stage:
+    if trial.stage != simulation.trial.stage and not simulation.world.walls_fixed:
         scene = scene.replace(walls=trial.stage.as_walls())
     columns = {
         name: getattr(scene, name).copy() for name in ("radius", "goal", "visible", "max_speed", "preferred_speed")

@@ -75,6 +75,7 @@ class Simulation:
         world: moves people and robots; has the clock.
         around: the world for sensors and cameras.
         robots: state of each robot.
+        former_robots: robots that orders have removed.
         readings: readings that arrived in the latest step, with their robots; see :meth:`new_readings`.
         event: ``[E]`` the first of :data:`COLLISION` and :data:`SUCCESS`, :data:`NONE` before.
         ended: ``[E]`` number of the end condition that has ended an environment, 0 for none.
@@ -108,6 +109,7 @@ class Simulation:
         self.robots = [
             RobotControl.of(trial, one, first + k, self.world, self.seeds) for k, one in enumerate(trial.robots)
         ]
+        self.former_robots: list[RobotControl] = []
         self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
         self.ended = np.zeros(count, dtype=np.int64)
@@ -220,6 +222,8 @@ class Simulation:
             self._collisions(e, last),
             orders,
             e if number is None else number,
+            tuple(robot.robot for robot in self.robots),
+            tuple(world.ids[e, [robot.agent for robot in self.robots]].tolist()),
         )
 
     def is_eventful(self) -> Bools:
@@ -272,6 +276,9 @@ class Simulation:
             InputError: an environment does not exist or is given twice, or there is not one seed for each.
         """
         index = environment_index(environments, self.count, len(seeds))
+        start = [self.trial.people + k for k in range(len(self.robots))]
+        if self.former_robots or [robot.agent for robot in self.robots] != start:
+            raise InputError("robots were added or removed in this simulation; make a new one instead of a restart")
         self._template = self._template.of_trial(self.trial)
         new = Simulation(self._template, seeds)
         new.begin()
@@ -291,6 +298,7 @@ class Simulation:
         some.world = select_environments(self.world, index)
         some._set_around()
         some.robots = [robot.select(index) for robot in self.robots]
+        some.former_robots = list(self.former_robots)
         robots = dict(zip(map(id, self.robots), some.robots, strict=True))
         some.readings = [
             (robots[id(robot)], part) for robot, told in self.readings if (part := told.matching(index)) is not None

@@ -53,15 +53,20 @@ class EpisodeStatistics:
     Args:
         trial, seed: the trial and its seed.
         digest: digest of the time before the first record; None for a run from the start.
+        robots: ids of the robots of the trial (default: the ids after those of the people at the start).
     """
 
-    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
+    def __init__(
+        self, trial: Trial, seed: int, digest: EpisodeDigest | None = None, robots: Sequence[int] | None = None
+    ) -> None:
         self.trial, self.seed = trial, seed
+        first = trial.people
+        self.robot_ids = tuple(range(first, first + len(trial.robots))) if robots is None else tuple(robots)
         self.digest = digest or EpisodeDigest()
         self.agents = trial.people + len(trial.robots)
         self.begin = self.end = math.nan
         self._touching: set[int] = set()
-        self.travels = new_metrics(trial)
+        self.travels = new_metrics(trial, self.robot_ids)
         self.collisions: list[BodyContactEvent] = []
 
     def take(self, frame: StepRecord) -> None:
@@ -84,7 +89,9 @@ class EpisodeStatistics:
             if self.travels:
                 now = _instant(frame)
                 for travel in self.travels:
-                    travel.goal = frame.scene.goal[0, travel.robot]
+                    if travel.robot not in now.ids:  # an order has removed it: its metrics end before
+                        continue
+                    travel.goal = frame.scene.goal[0, np.flatnonzero(frame.ids == travel.robot)[0]]
                     travel.update(now, travel.robot in self._touching)
             self._touching = set()
 
@@ -96,7 +103,7 @@ class EpisodeStatistics:
     def _impact_metrics(self) -> dict[str, float]:
         found: dict[str, float] = {}
         for k, robot in enumerate(self.trial.robots if self.trial.world == "physics" else ()):
-            body = ("robot", self.trial.people + k)
+            body = ("robot", self.robot_ids[k])
             own = [one for one in self.collisions if tuple(one.first) == body and one.second.kind == "person"]
             values = impact_metrics(own)
             found |= {(key if k == 0 else f"{robot.name}.{key}"): value for key, value in values.items()}
@@ -121,24 +128,24 @@ class EpisodeStatistics:
         )
 
 
-def new_metrics(trial: Trial) -> list[NavigationMetrics]:
-    """Return the metrics of each robot of a trial, before its first record."""
+def new_metrics(trial: Trial, ids: Sequence[int]) -> list[NavigationMetrics]:
+    """Return the metrics of each robot of a trial, with these ids, before its first record."""
     if not trial.robots:
         return []
     walls = trial.stage.as_walls().segments()
-    ghosts = [trial.people + k for k, robot in enumerate(trial.robots) if robot.ghost]
+    ghosts = [own for own, robot in zip(ids, trial.robots, strict=True) if robot.ghost]
     return [
         NavigationMetrics(
-            trial.people + k,
+            own,
             robot.radius,
             robot.goal.position,
             robot.goal.tolerance,
             walls=walls,
             ghost=robot.ghost,
             footprint=robot.body.footprint if robot.type else None,
-            ignored=[ghost for ghost in ghosts if ghost != trial.people + k],
+            ignored=[ghost for ghost in ghosts if ghost != own],
         )
-        for k, robot in enumerate(trial.robots)
+        for own, robot in zip(ids, trial.robots, strict=True)
     ]
 
 

@@ -48,6 +48,7 @@ class StepRecord:
         collisions: contact events that ended since the last record, in the physics world.
         orders: orders from outside that were applied in this step.
         environment: number of the environment.
+        robots, robot_ids: the robots of the rows of ``twists`` and ``commands``, and their ids.
     """
 
     tick: int
@@ -63,3 +64,5 @@ class StepRecord:
     collisions: tuple[BodyContactEvent, ...] = ()
     orders: tuple[Order, ...] = ()
     environment: int = 0
+    robots: tuple[RobotSpec, ...] = ()
+    robot_ids: tuple[int, ...] = ()

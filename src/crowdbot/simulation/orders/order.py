@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import json
 import math
 from abc import ABC, abstractmethod
@@ -129,7 +130,8 @@ def order_kinds() -> dict[str, type[Order]]:
     while rest:
         kind = rest.pop()
         rest += kind.__subclasses__()
-        found[order_name(kind)] = kind
+        if not inspect.isabstract(kind):
+            found[order_name(kind)] = kind
     return dict(sorted(found.items()))
 
 

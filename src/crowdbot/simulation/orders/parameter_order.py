@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.simulation.overrides import apply_overrides, check_overrides
 from crowdbot.trials import Trial, apply_values
 
-from .order import Order, OrderTarget
+from .trial_order import TrialOrder
 
 __all__ = ["ParameterOrder"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class ParameterOrder(Order):
+class ParameterOrder(TrialOrder):
     """Change a value of the trial, such as ``crowd.neighbor-distance`` or ``robot.goal.x``; E = 1.
 
     Fields:
@@ -30,14 +28,3 @@ class ParameterOrder(Order):
         """Return the trial with the new value."""
         trial: Trial = simulation.trial
         return apply_values(trial, {self.path: self.value}, place=f"order parameter of trial {trial.name!r}")
-
-    def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if the value cannot change while the trial runs."""
-        super().check(simulation)
-        if simulation.count > 1:
-            raise InputError("ParameterOrder: values of a trial belong to all environments; use one environment")
-        check_overrides(simulation, self.new_trial(simulation))
-
-    def apply(self, simulation: Any) -> None:
-        """Change the value."""
-        apply_overrides(simulation, self.new_trial(simulation))

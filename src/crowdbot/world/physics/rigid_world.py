@@ -211,6 +211,11 @@ class RigidWorld(PlanarWorld):
         remove_robot_at(self, agent, chosen)
         self._forget()
 
+    @property
+    def prop_names(self) -> list[str]:
+        """Names of the props on the stage, in their order."""
+        return [name for name in self._prop_names if name]
+
     def add_prop(self, prop: PropBody, name: str = "") -> str:
         """Add a prop, at rest on the floor; see :class:`World`."""
         name = new_prop_name(self._prop_names, name)

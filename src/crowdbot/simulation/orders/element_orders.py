@@ -1,0 +1,60 @@
+"""Orders that add elements to the trial of a running simulation, and remove them: robots, props, walls, exits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.trials import Trial, add_element, needs_trust, remove_element
+
+from .trial_order import TrialOrder
+
+__all__ = ["AddElementOrder", "RemoveElementOrder"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddElementOrder(TrialOrder):
+    """Add a robot, a prop, a wall, an exit or a sensor to the running trial.
+
+    The new trial is checked like a file. Code and files outside the folder of the trial are not loaded. A new robot
+    starts at rest at its place, and gets the next free id.
+
+    Fields:
+        xml: the element, such as ``<cube x="1" y="2"/>``.
+        parent: path of the element that gets it, such as ``stage``; empty for the trial itself.
+
+    >>> from crowdbot.simulation import Simulation
+    >>> from crowdbot.trials import load_trial
+    >>> simulation = Simulation(load_trial("frontal"), 0)
+    >>> order = AddElementOrder(xml='<cube x="0" y="1"/>', parent="stage")
+    >>> order.check(simulation)
+    >>> order.apply(simulation)
+    >>> len(simulation.trial.stage.props)
+    1
+    """
+
+    xml: str
+    parent: str = ""
+
+    def new_trial(self, simulation: Any) -> Trial:
+        """Return the trial with the element."""
+        trial: Trial = simulation.trial
+        place = f"order add-element of trial {trial.name!r}"
+        return add_element(trial, self.xml, self.parent, place=place, trust=needs_trust(trial))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RemoveElementOrder(TrialOrder):
+    """Remove a robot, a prop, a wall, an exit or a sensor from the running trial.
+
+    Fields:
+        path: path of the element, such as ``robot[pepper]`` or ``stage/cube[2]``.
+    """
+
+    path: str
+
+    def new_trial(self, simulation: Any) -> Trial:
+        """Return the trial without the element."""
+        trial: Trial = simulation.trial
+        place = f"order remove-element of trial {trial.name!r}"
+        return remove_element(trial, self.path, place=place, trust=needs_trust(trial))
