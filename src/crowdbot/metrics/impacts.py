@@ -26,17 +26,28 @@ class Impact(Protocol):
     """What the metrics read of a contact event; :class:`crowdbot.world.BodyContactEvent` and its record have it."""
 
     @property
-    def cause(self) -> str: ...
+    def cause(self) -> str:
+        """Who caused the contact."""
+
     @property
-    def impact_speed(self) -> float: ...
+    def impact_speed(self) -> float:
+        """Approach speed at the first touch [m/s]."""
+
     @property
-    def impulse(self) -> float: ...
+    def impulse(self) -> float:
+        """Impulse [N s]."""
+
     @property
-    def peak_force(self) -> float: ...
+    def peak_force(self) -> float:
+        """Largest force [N]."""
+
     @property
-    def steady_force(self) -> float: ...
+    def steady_force(self) -> float:
+        """Clamping force [N]."""
+
     @property
-    def severity(self) -> float: ...
+    def severity(self) -> float:
+        """Largest share of the limits of the body region."""
 
 
 def impact_metrics(impacts: Iterable[Impact]) -> dict[str, float]:

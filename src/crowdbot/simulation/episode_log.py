@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.metrics import AgentLog
+from crowdbot.core import FreeClock
+from crowdbot.metrics import AgentLog, NavigationMetrics
 from crowdbot.sensors import Reading
 from crowdbot.trials import Trial
 from crowdbot.world import BodyContactEvent, ContactForce
@@ -18,6 +19,7 @@ from .episode import Episode
 from .episode_digest import EpisodeDigest, add_batch
 from .failure import RunFailure
 from .mounted_sensor import SensorReadings
+from .orders.goal_order import GoalOrder
 from .orders.order import Order
 from .statistics import EpisodeStatistics, new_metrics
 from .step_batch import StepBatch
@@ -43,6 +45,7 @@ class _Frame(NamedTuple):
     commands: Floats
     touching: frozenset[int]
     robots: tuple[int, ...]
+    goals: Floats
 
 
 class EpisodeLog(EpisodeStatistics):
@@ -72,7 +75,8 @@ class EpisodeLog(EpisodeStatistics):
             scene = frame.scene
             parts = (scene.active, scene.heading, scene.radius, scene.position, scene.velocity)
             arrays = [frame.ids, *(part[0] for part in parts), frame.twists, frame.commands]
-            self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids)
+            agents = [int(np.flatnonzero(frame.ids == robot)[0]) for robot in frame.robot_ids]
+            self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids, scene.goal[0, agents])
 
     def keep_row(self, batch: StepBatch, row: int) -> None:
         """Add a row of a batch without its readings, which the digest already contains."""
@@ -83,7 +87,8 @@ class EpisodeLog(EpisodeStatistics):
         if batch.due[row]:
             parts = (batch.ids, batch.active, batch.heading, batch.radius, batch.position, batch.velocity)
             arrays = [part[row, :slots] for part in parts]
-            self._keep_frame(nanoseconds, [*arrays, batch.twists[row], batch.commands[row]], self.robot_ids)
+            whole = [*arrays, batch.twists[row], batch.commands[row]]
+            self._keep_frame(nanoseconds, whole, self.robot_ids, batch.goals[row])
 
     def metrics(self, outcome: str) -> dict[str, float]:
         """Return the metrics of all robots."""
@@ -94,11 +99,28 @@ class EpisodeLog(EpisodeStatistics):
             self.travels = new_metrics(self.trial, self.robot_ids)
             log = AgentLog(*(arrays[name] for name in AgentLog._fields))
             for travel in self.travels:
-                touched = np.array([travel.robot in frame.touching for frame in self._frames])
                 there = log.active[:, travel.robot]
                 end = len(there) if there.all() else int(np.argmin(there))  # an order has removed it
-                travel.update_log(log.part(0, end), touched[:end])
+                self._measure(travel, log.part(0, end))
         return super().metrics(outcome)
+
+    def _measure(self, travel: NavigationMetrics, log: AgentLog) -> None:
+        """Add all records in which a robot is present to its metrics, with the goals in force."""
+        frames = self._frames[: len(log.times)]
+        touched = np.array([travel.robot in frame.touching for frame in frames])
+        goals = [frame.goals[frame.robots.index(travel.robot)] for frame in frames]
+        name = self.trial.robots[self.robot_ids.index(travel.robot)].name
+        orders = [(at, one) for at, one in self.orders if isinstance(one, GoalOrder) and one.robot == name]
+        if not orders and np.all(np.array(goals) == travel.goal):
+            travel.update_log(log, touched)
+            return
+        step = FreeClock(self.trial.step).step_ns
+        for states, frame, goal, contact in zip(log.states(), frames, goals, touched.tolist(), strict=True):
+            travel.goal = goal
+            for at, order in orders:
+                if at * step <= frame.nanoseconds and order.tolerance is not None:
+                    travel.tolerance = float(order.tolerance)
+            travel.update(states, contact)
 
     def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
         """Return the episode."""
@@ -150,10 +172,12 @@ class EpisodeLog(EpisodeStatistics):
         self.forces += [(time, force) for force in forces]
         self.collisions += collisions
 
-    def _keep_frame(self, nanoseconds: int, arrays: Sequence[NDArray[Any]], robots: tuple[int, ...]) -> None:
+    def _keep_frame(
+        self, nanoseconds: int, arrays: Sequence[NDArray[Any]], robots: tuple[int, ...], goals: Floats
+    ) -> None:
         self.end = nanoseconds / 1e9
         self.begin = self.end if math.isnan(self.begin) else self.begin
-        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots]))
+        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots, goals]))
         self._touching = set()
 
     def _arrays(self) -> dict[str, NDArray[Any]]:

@@ -47,6 +47,7 @@ class StepBatch:
         slots: ``[N]`` number of agents; further columns have no meaning.
         ids, active, heading, radius: ``[N, A]``; radius in [m], heading in [rad].
         position, velocity: ``[N, A, 2]`` [m], [m/s].
+        goals: ``[N, R, 2]`` current goal of each robot [m].
         twists, commands: ``[N, R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
         readings: readings of this step, sensor by sensor.
         touches, forces, collisions, orders: as in :class:`StepRecord`, by row; rows without are missing.
@@ -63,6 +64,7 @@ class StepBatch:
     radius: Floats
     position: Floats
     velocity: Floats
+    goals: Floats
     twists: Floats
     commands: Floats
     readings: tuple[BatchReadings, ...] = ()
@@ -128,6 +130,7 @@ class StepBatch:
             scene.radius[index],
             scene.position[index],
             scene.velocity[index],
+            scene.goal[index][:, [robot.agent for robot in robots]],
             twists,
             commands,
             tuple(one for one in readings if (one.rows >= 0).any()),

@@ -171,6 +171,7 @@ def avatars_of(trial: Trial, end: int) -> Avatars | None:
 
 
 def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:
+    """Return the journey of each agent; None if nobody has one."""
     which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None

@@ -132,7 +132,7 @@ def _text(value: Any, what: str) -> str:
         return plain(value)
     if hasattr(type(value), "parse"):
         return str(value)
-    if isinstance(value, tuple):
+    if isinstance(value, tuple) and not any(map(_is_default_part, value)):
         return " ".join(_text(one, what) for one in value)
     if _is_default_part(value):
         return kebab_case(type(value).__name__)

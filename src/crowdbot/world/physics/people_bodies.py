@@ -163,7 +163,11 @@ class PeopleBodies:
         old, kept = len(self.agent), dict(self.__dict__)
         self.__dict__.update(more.__dict__)
         for name, array in kept.items():
-            if isinstance(array, np.ndarray) and name not in ("geoms", "bodies", "_place", "_speed"):
+            if not isinstance(array, np.ndarray) or name in ("geoms", "bodies", "_place", "_speed"):
+                continue
+            if name in ("led", "_begin"):  # of agents, not of bodies
+                setattr(self, name, array)
+            else:
                 getattr(self, name)[:old] = array
         for array, before in zip(self.shapes, kept["shapes"], strict=True):
             array[:old] = before
