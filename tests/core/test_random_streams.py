@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import RandomStreams, draw_uniform, stream, stream_states
+from crowdbot.core import InputError, RandomStreams, draw_uniform, stream, stream_states
 
 PATHS = [("spawner", 3, "place"), ("crowd",), (), ("x" * 150, 9), ("é" * 40,), ("a" * 122,), ("a" * 300, -7)]
 
@@ -51,3 +53,31 @@ def test_streams_are_joined_and_put() -> None:
         streams[3]
     with pytest.raises(ValueError, match="shorter"):
         streams.put([0, 1], RandomStreams([1], "s"))
+
+
+@given(drawn=st.lists(st.integers(0, 3), min_size=1, max_size=4))
+@settings(max_examples=20, deadline=None)
+def test_stored_streams_draw_the_same_later_numbers(drawn: list[int]) -> None:
+    streams = RandomStreams(range(len(drawn)), "sensor", 3)
+    for e, count in enumerate(drawn):
+        _ = streams[e].random(count) if count else None
+    found = RandomStreams.of_states(json.loads(json.dumps(streams.states)))
+    assert [state[2] is None for state in found.states] == [count == 0 for count in drawn]
+    assert found.states == streams.states
+    assert [one.random() for one in found] == [one.random() for one in streams]
+
+
+@pytest.mark.parametrize(
+    ("states", "sentence"),
+    [
+        ([1], "needs its seed, its path"),
+        ([[1, ["a"]]], "needs its seed, its path"),
+        ([[True, ["a"], None]], "needs its seed, its path"),
+        ([[1, [0.5], None]], "needs its seed, its path"),
+        ([[1, ["a"], {"bit_generator": "PCG64"}]], "not the state of a random generator"),
+        ([[1, ["a"], 7]], "not the state of a random generator"),
+    ],
+)
+def test_wrong_states_of_streams_are_refused(states: list[object], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        RandomStreams.of_states(states)

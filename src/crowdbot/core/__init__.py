@@ -47,6 +47,7 @@ from .version import source_digest
 from .walls import Walls
 
 if TYPE_CHECKING:
+    from .blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .compiling import notify_compiling
     from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
+        "blake2b": ["HASH_BLOCK", "hash_blocks", "hash_start"],
         "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
@@ -68,6 +70,7 @@ __getattr__, __dir__ = lazy_exports(
 
 __all__ = [
     "CHUNK",
+    "HASH_BLOCK",
     "MOUNT_HEIGHT",
     "PERSON_COLOR",
     "PERSON_HEIGHT",
@@ -121,6 +124,8 @@ __all__ = [
     "find_class",
     "format_xml",
     "from_attributes",
+    "hash_blocks",
+    "hash_start",
     "import_optional",
     "is_cold",
     "kebab_case",

@@ -9,6 +9,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from .blake2b import HASH_BLOCK, hash_blocks, hash_start
+from .errors import InputError
 from .kernels import kernel
 from .random import stream, stream_text
 
@@ -19,43 +21,12 @@ Ints = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 Words = NDArray[np.uint64]
 
-BLOCK = 128
-"""Bytes of a block of BLAKE2b."""
 PLACES = 24
 """Bytes reserved for the seed at the beginning of a text."""
-IV = np.array(
-    [
-        0x6A09E667F3BCC908, 0xBB67AE8584CAA73B, 0x3C6EF372FE94F82B, 0xA54FF53A5F1D36F1,
-        0x510E527FADE682D1, 0x9B05688C2B3E6C1F, 0x1F83D9ABFB41BD6B, 0x5BE0CD19137E2179,
-    ],
-    dtype=np.uint64,
-)  # fmt: skip
-"""Initial words of BLAKE2b (RFC 7693, section 2.6)."""
-SIGMA = np.array(
-    [
-        [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
-        [14, 10, 4, 8, 9, 15, 13, 6, 1, 12, 0, 2, 11, 7, 5, 3],
-        [11, 8, 12, 0, 5, 2, 15, 13, 10, 14, 3, 6, 7, 1, 9, 4],
-        [7, 9, 3, 1, 13, 12, 11, 14, 2, 6, 5, 10, 4, 0, 15, 8],
-        [9, 0, 5, 7, 2, 4, 10, 15, 14, 1, 11, 12, 6, 8, 3, 13],
-        [2, 12, 6, 10, 0, 11, 8, 3, 4, 13, 7, 5, 15, 14, 1, 9],
-        [12, 5, 1, 15, 14, 13, 4, 10, 0, 7, 6, 3, 9, 2, 8, 11],
-        [13, 11, 7, 14, 12, 1, 3, 9, 5, 0, 15, 4, 8, 6, 2, 10],
-        [6, 15, 14, 9, 11, 3, 0, 8, 12, 2, 13, 7, 1, 4, 10, 5],
-        [10, 2, 8, 4, 7, 6, 1, 5, 15, 11, 9, 14, 3, 12, 13, 0],
-    ]
-)
-"""Message schedule of BLAKE2b (RFC 7693, section 2.7)."""
-WAYS = np.array(
-    [
-        [0, 4, 8, 12], [1, 5, 9, 13], [2, 6, 10, 14], [3, 7, 11, 15],
-        [0, 5, 10, 15], [1, 6, 11, 12], [2, 7, 8, 13], [3, 4, 9, 14],
-    ]
-)  # fmt: skip
-"""Words that each mixing of a round of BLAKE2b uses."""
-DIGEST = np.uint64(16)
-LOW32, LOW64 = np.uint64(0xFFFFFFFF), np.uint64(0xFFFFFFFFFFFFFFFF)
-S1, S11, S16, S24, S32, S58, S63, S64 = (np.uint64(k) for k in (1, 11, 16, 24, 32, 58, 63, 64))
+DIGEST = 16
+"""Bytes of a hash of which a generator is seeded."""
+LOW32 = np.uint64(0xFFFFFFFF)
+S1, S11, S16, S32, S58, S63, S64 = (np.uint64(k) for k in (1, 11, 16, 32, 58, 63, 64))
 ZERO = np.uint64(0)
 INIT_A, MULT_A = np.uint64(0x43B0D7E5), np.uint64(0x931E8875)
 INIT_B, MULT_B = np.uint64(0x8B51F9DD), np.uint64(0x58F38DED)
@@ -110,6 +81,25 @@ class RandomStreams(Sequence[np.random.Generator]):
         for e, cell in zip(environments, other._cells, strict=True):
             self._cells[e] = cell
 
+    @property
+    def states(self) -> list[list[Any]]:
+        """Seed, path and state of each generator as plain values; the state is None before the first use."""
+        return [cell.state for cell in self._cells]
+
+    @classmethod
+    def of_states(cls, states: Sequence[Any]) -> RandomStreams:
+        """Continue from :attr:`states`.
+
+        Raises:
+            InputError: these are not the states of generators.
+
+        >>> streams = RandomStreams([4, 5], "scan")
+        >>> later = RandomStreams.of_states(streams.states)
+        >>> [one.random() for one in later] == [one.random() for one in streams]
+        True
+        """
+        return cls._of([_Cell.of(state) for state in states])
+
     @staticmethod
     def _of(cells: list[_Cell]) -> RandomStreams:
         some = RandomStreams(())
@@ -131,6 +121,25 @@ class _Cell:
             self._made = stream(self._seed, *self._path)
         return self._made
 
+    @property
+    def state(self) -> list[Any]:
+        return [self._seed, list(self._path), None if self._made is None else self._made.bit_generator.state]
+
+    @classmethod
+    def of(cls, state: Any) -> _Cell:
+        seed, path, known = state if isinstance(state, list | tuple) and len(state) == 3 else (None, None, None)
+        names = isinstance(path, list | tuple) and all(type(part) in (str, int) for part in path)
+        if type(seed) is not int or not names:
+            raise InputError("the state of a random stream needs its seed, its path, and the state of its generator")
+        cell = cls(seed, tuple(path))
+        if known is not None:
+            cell._made = np.random.Generator(np.random.PCG64(0))
+            try:
+                cell._made.bit_generator.state = known
+            except (ValueError, TypeError, KeyError, OverflowError) as error:
+                raise InputError(f"this is not the state of a random generator: {str(error)[:80]}") from None
+        return cell
+
     def copy(self) -> _Cell:
         return _Cell(self._seed, self._path, copy.deepcopy(self._made))
 
@@ -147,12 +156,13 @@ def stream_states(seeds: Ints, paths: Sequence[Sequence[str | int]]) -> Words:
     True
     """
     texts = [stream_text(*path).encode() for path in paths]
-    width = BLOCK * -(-(PLACES + max(map(len, texts), default=0)) // BLOCK)
+    width = HASH_BLOCK * -(-(PLACES + max(map(len, texts), default=0)) // HASH_BLOCK)
     letters = np.zeros((len(texts), width), dtype=np.uint8)
     for row, text in zip(letters, texts, strict=True):
         row[: len(text)] = np.frombuffer(text, dtype=np.uint8)
     states = np.empty((len(seeds), len(texts), 4), dtype=np.uint64)
-    _seed_all(np.ascontiguousarray(seeds, dtype=np.int64), letters, np.array([*map(len, texts)], np.int64), states)
+    lengths = np.array([*map(len, texts)], dtype=np.int64)
+    _seed_all(np.ascontiguousarray(seeds, dtype=np.int64), letters, lengths, hash_start(DIGEST), states)
     return states
 
 
@@ -198,9 +208,11 @@ def _advance(state: Words) -> None:
 
 
 @kernel
-def _seed_all(seeds: Ints, letters: Bytes, lengths: Ints, states: Words) -> None:
-    text, digits = np.empty(letters.shape[1], dtype=np.uint8), np.empty(PLACES, dtype=np.uint8)
-    work, digest, pool = np.empty(32, dtype=np.uint64), np.empty(8, dtype=np.uint64), np.empty(4, dtype=np.uint64)
+def _seed_all(seeds: Ints, letters: Bytes, lengths: Ints, start: Words, states: Words) -> None:
+    width = letters.shape[1]
+    text, digits = np.empty(width, dtype=np.uint8), np.empty(PLACES, dtype=np.uint8)
+    words, ends = np.empty(width // 8, dtype=np.uint64), np.empty(width // HASH_BLOCK, dtype=np.uint64)
+    digest, pool = np.empty(8, dtype=np.uint64), np.empty(4, dtype=np.uint64)
     for e in range(len(seeds)):
         size = _write_number(seeds[e], digits)
         for k in range(len(lengths)):
@@ -209,7 +221,7 @@ def _seed_all(seeds: Ints, letters: Bytes, lengths: Ints, states: Words) -> None
                 text[i] = digits[i]
             for i in range(lengths[k]):
                 text[size + i] = letters[k, i]
-            _hash(text, size + lengths[k], work, digest)
+            _hash(text, size + lengths[k], start, words, ends, digest)
             _seed(digest, pool, states[e, k])
 
 
@@ -232,46 +244,19 @@ def _write_number(number: int, digits: Bytes) -> int:
 
 
 @kernel
-def _hash(text: Bytes, size: int, v: Words, h: Words) -> None:
-    """Write the words of the BLAKE2b hash of 16 bytes of a text padded with zeros; ``v`` is 32 words of work space."""
-    for i in range(8):
-        h[i] = IV[i]
-    h[0] ^= np.uint64(0x01010000) ^ DIGEST
-    blocks = max(1, -(-size // BLOCK))
+def _hash(text: Bytes, size: int, start: Words, words: Words, lengths: Words, state: Words) -> None:
+    """Write the BLAKE2b hash of a text padded with zeros to ``state``; words and lengths are work space."""
+    blocks = max(1, -(-size // HASH_BLOCK))
+    for i in range(16 * blocks):
+        word = ZERO
+        for k in range(8):
+            word |= np.uint64(text[8 * i + k]) << np.uint64(8 * k)
+        words[i] = word
     for block in range(blocks):
-        last = block == blocks - 1
-        for i in range(8):
-            v[i], v[8 + i] = h[i], IV[i]
-        v[12] ^= np.uint64(size if last else (block + 1) * BLOCK)
-        if last:
-            v[14] ^= LOW64
-        for i in range(16):
-            word = ZERO
-            for k in range(8):
-                word |= np.uint64(text[block * BLOCK + 8 * i + k]) << np.uint64(8 * k)
-            v[16 + i] = word
-        for turn in range(12):
-            for g in range(8):
-                _mix_four(v, g, v[16 + SIGMA[turn % 10, 2 * g]], v[16 + SIGMA[turn % 10, 2 * g + 1]])
-        for i in range(8):
-            h[i] ^= v[i] ^ v[8 + i]
-
-
-@kernel
-def _mix_four(v: Words, g: int, x: Any, y: Any) -> None:
-    a, b, c, d = WAYS[g, 0], WAYS[g, 1], WAYS[g, 2], WAYS[g, 3]
-    v[a] = v[a] + v[b] + x
-    word = v[d] ^ v[a]
-    v[d] = (word >> S32) | (word << S32)
-    v[c] = v[c] + v[d]
-    word = v[b] ^ v[c]
-    v[b] = (word >> S24) | (word << np.uint64(40))
-    v[a] = v[a] + v[b] + y
-    word = v[d] ^ v[a]
-    v[d] = (word >> S16) | (word << np.uint64(48))
-    v[c] = v[c] + v[d]
-    word = v[b] ^ v[c]
-    v[b] = (word >> S63) | (word << S1)
+        lengths[block] = (block + 1) * HASH_BLOCK
+    lengths[blocks - 1] = size
+    state[:] = start
+    hash_blocks(state, words, lengths[:blocks], True)
 
 
 @kernel

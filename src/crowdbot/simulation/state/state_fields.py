@@ -11,8 +11,8 @@ import importlib
 from typing import Any
 
 __all__ = [
+    "AVATARS",
     "ENVIRONMENT_TIME",
-    "MODEL_ARRAYS",
     "constants_of",
     "holder_fields",
     "is_holder",
@@ -21,16 +21,16 @@ __all__ = [
     "value_name",
 ]
 
+AVATARS = "crowdbot.world.crowd.avatars.Avatars"
+"""Stored with the sources that take samples from outside."""
 ENVIRONMENT_TIME = "crowdbot.world.environment_time.EnvironmentTime"
 """Stored as the ticks of the environments: a stored state continues on another clock."""
-MODEL_ARRAYS = ("geom_pos", "geom_quat", "geom_size", "geom_rbound", "geom_solref", "body_mass", "body_invweight0")
-"""Arrays of the model of the engine that change during a run: bodies of people have the poses of their limbs."""
 
 LAST = "readings"
 """A field that refers to robots, which are stored before it."""
 
 HOLDERS = {
-    "crowdbot.simulation.simulation.Simulation": "trial _posed people around _ways_out",
+    "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
     "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control planner timer _warm replayed",
     "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together",
     "crowdbot.world.planar.PlanarWorld": (
@@ -38,17 +38,20 @@ HOLDERS = {
         " heading_jitter substeps latency ghosts joined _models _segments _surfaces"
     ),
     "crowdbot.world.physics.world.PhysicsWorld": (
-        "stage physics_dt _steps _outlined _plane _renderer _mj built engine_model data _contact_reader _movable"
+        "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
     ),
     "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
+    "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader model",
+    "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
+    AVATARS: "agents names sources delay _latest",
     "crowdbot.world.crowd.people_flow.PeopleFlow": "router journeys mixture",
-    "crowdbot.world.crowd.source.Arrivals": "_sources _first_journey _fresh",
-    "crowdbot.world.crowd.source._Queue": "source low size",
+    "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
+    "crowdbot.world.crowd.arrivals._Queues": "sources",
     "crowdbot.world.physics.robot_body.RobotBody": (
         "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay"
     ),
     "crowdbot.world.physics.people_bodies.PeopleBodies": "_model _data step geoms bodies _place _speed _hold",
-    "crowdbot.world.physics.people_motion.PeopleMotion": "afoot agents people row gait radius",
+    "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius",
     "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer",
     "crowdbot.world.physics.contact_events.BodyContactTracker": "_step _window _mass_of _limb_mass_of _heading_of",
 }
@@ -57,6 +60,8 @@ HOLDERS = {
 VALUES = {
     "Bodies": "crowdbot.core.bodies",
     "BodyContactEvent": "crowdbot.world.physics.contact_events",
+    "BodyPose": "crowdbot.humans.body_pose",
+    "BodyShapes": "crowdbot.world.physics.people_bodies",
     "BumperReading": "crowdbot.sensors.bumper",
     "Contact": "crowdbot.world.world",
     "ContactBody": "crowdbot.world.physics.contacts",
@@ -70,6 +75,7 @@ VALUES = {
     "Pending": "crowdbot.world.robots.servo",
     "PointCloud": "crowdbot.sensors.lidar3d",
     "Pose": "crowdbot.core.pose",
+    "PoseTrack": "crowdbot.humans.pose_source",
     "RangeReading": "crowdbot.sensors.range_reading",
     "Reading": "crowdbot.sensors.sensor",
     "RgbImage": "crowdbot.sensors.rgb_camera",
@@ -81,6 +87,7 @@ VALUES = {
     "SpatialPose": "crowdbot.core.pose",
     "StateGroups": "crowdbot.sensors.state_rows",
     "SteeredTwists": "crowdbot.world.robots.ackermann",
+    "TrackBatch": "crowdbot.navigation.track_batch",
     "TrackHistory": "crowdbot.navigation.track_history",
     "TrackedPeople": "crowdbot.sensors.ground_truth_people",
     "Twist": "crowdbot.core.pose",

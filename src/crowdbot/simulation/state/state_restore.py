@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crowdbot.core import Scene
-from crowdbot.world import widen
+from crowdbot.core import InputError, RandomStreams, Scene
 
-from .state_fields import ENVIRONMENT_TIME, holder_fields, is_holder, qualified, value_class
-from .state_tree import CHECKED, SCALARS, StateError, StateMark, engine_arrays, read_engine, value_fields
+from .engine_state import has_engine, read_engine, update_engine, write_engine
+from .state_fields import AVATARS, ENVIRONMENT_TIME, holder_fields, is_holder, qualified, value_class
+from .state_tree import CHECKED, SCALARS, StateError, StateMark, stream_avatars, value_fields
+from .world_structure import add_people, part_worlds
 
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
 
 __all__ = ["restore_state"]
 
-FREE = "_limbs"
-"""A field of arrays whose lengths change during a run."""
-MOST_AGENTS = 1_000_000
+FREE = ("_begin", "_limbs")
+"""Fields of arrays whose lengths change during a run."""
 
 
 def restore_state(simulation: Simulation, state: Mapping[str, Any]) -> None:
@@ -49,13 +49,14 @@ def restore_state(simulation: Simulation, state: Mapping[str, Any]) -> None:
     1
     """
     try:
-        _grow(simulation.world, state)
-        reader = _Reader(state)
+        add_people(simulation.world, state)
+        reader = _Reader(state, stream_avatars(simulation))
         reader.get("simulation", simulation)
         unknown = sorted(set(state) - reader.used)
         if unknown:
             raise StateError(f"the state has a value {unknown[0]!r}, which this trial does not have")
-        for world in getattr(simulation.world, "worlds", [simulation.world]):
+        for _, world in part_worlds(simulation.world):
+            update_engine(world)
             _check_scene(world.scene)
             _check_scene(world._previous)
     except StateError:
@@ -65,10 +66,16 @@ def restore_state(simulation: Simulation, state: Mapping[str, Any]) -> None:
 
 
 class _Reader:
-    """Sets the values of a state in the objects of a new simulation."""
+    """Sets the values of a state in the objects of a new simulation.
 
-    def __init__(self, state: Mapping[str, Any]) -> None:
+    Args:
+        state: the state.
+        streams: names of the avatars whose sources are part of the state.
+    """
+
+    def __init__(self, state: Mapping[str, Any], streams: frozenset[str]) -> None:
         self.state, self.used = state, set[str]()
+        self._streams = streams
         self._known: dict[str, Any] = {}
 
     def get(self, path: str, old: Any = None, fixed: bool = False) -> Any:
@@ -117,6 +124,8 @@ class _Reader:
             return self._time(path, old)
         if kind == "random":
             return _generator(path, content)
+        if kind == "streams":
+            return _streams(path, content, old)
         if kind == "number":
             return np.dtype(content[0]).type(content[1])
         if kind == "dict":
@@ -136,6 +145,8 @@ class _Reader:
 
     def _numbered(self, path: str, count: int, old: Any) -> list[Any]:
         known = old if isinstance(old, list | tuple) else ()
+        if count != len(known) and any(is_holder(part) for part in known):
+            raise StateError(f"{path} has {count} parts, but the trial has {len(known)}")
         return [self.get(f"{path}/{k}", known[k] if k < len(known) else None) for k in range(count)]
 
     def _dict(self, path: str, count: int, old: Any) -> dict[Any, Any]:
@@ -143,6 +154,8 @@ class _Reader:
         for k in range(count):
             key = self.get(f"{path}/{k}/key")
             found[key] = self.get(f"{path}/{k}/value", known.get(key))
+        if any(is_holder(part) for part in known.values()) and found.keys() != known.keys():
+            raise StateError(f"{path} has the parts {sorted(found)}, but the trial has {sorted(known)}")
         return found
 
     def _holder(self, path: str, old: Any) -> Any:
@@ -150,13 +163,20 @@ class _Reader:
             raise StateError(f"{path} is not a part of this trial")
         self._known[path] = old
         for name in holder_fields(old):
-            setattr(old, name, self.get(f"{path}/{name}", getattr(old, name), name != FREE))
-        if hasattr(old, "engine_model"):
-            arrays = engine_arrays(old)
-            found = {name: self.get(f"{path}/engine/{name}", array, True) for name, array in arrays.items()}
-            if not all(np.isfinite(array).all() for array in found.values()):
+            setattr(old, name, self.get(f"{path}/{name}", getattr(old, name), name not in FREE))
+        if has_engine(old):
+            found = self.get(f"{path}/engine", read_engine(old), True)
+            if not np.isfinite(found).all():
                 raise StateError(f"{path}/engine has a value that is not finite")
-            read_engine(old, found)
+            write_engine(old, found)
+        if qualified(type(old)) == AVATARS:
+            old.sources = [
+                tuple(
+                    self.get(f"{path}/sources/{e}/{name}", source) if name in self._streams else source
+                    for name, source in zip(old.names, sources, strict=True)
+                )
+                for e, sources in enumerate(old.sources)
+            ]
         return old
 
     def _value(self, path: str, name: str, old: Any) -> Any:
@@ -205,7 +225,7 @@ def _check_kind(path: str, value: Any, old: Any) -> None:
         fits = isinstance(value, tuple) or hasattr(value, "forward")
     elif isinstance(old, np.ndarray):
         fits = isinstance(value, np.ndarray) or (isinstance(value, float) and path.endswith("/time"))
-    elif isinstance(old, (*SCALARS, list, dict, Scene, np.random.Generator)) or is_holder(old):
+    elif isinstance(old, (*SCALARS, list, dict, Scene, np.random.Generator, RandomStreams)) or is_holder(old):
         fits = type(value) is type(old)
     else:
         fits = not isinstance(value, (*SCALARS, list, dict))
@@ -222,14 +242,14 @@ def _generator(path: str, content: Any) -> np.random.Generator:
     return np.random.Generator(bits)
 
 
-def _grow(world: Any, state: Mapping[str, Any]) -> None:
-    """Add the slots of people whom orders have added."""
-    if hasattr(world, "worlds"):
-        return
-    stored = state.get("simulation/world/_traffic/ids")
-    agents = stored.shape[1] if isinstance(stored, np.ndarray) and stored.ndim == 2 else 0
-    if world.scene.shape[1] < agents <= MOST_AGENTS:
-        widen(world, agents)
+def _streams(path: str, content: Any, old: Any) -> RandomStreams:
+    count = len(old) if isinstance(old, RandomStreams) else -1
+    if not isinstance(content, list) or len(content) != count:
+        raise StateError(f"{path} has not one random stream for each environment of the trial")
+    try:
+        return RandomStreams.of_states(content)
+    except InputError as error:
+        raise StateError(f"{path}: {error}") from None
 
 
 def _check_scene(scene: Scene) -> None:

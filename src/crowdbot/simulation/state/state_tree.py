@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, RandomStreams
 
-from .state_fields import ENVIRONMENT_TIME, MODEL_ARRAYS, holder_fields, is_holder, qualified, value_name
+from .engine_state import has_engine, read_engine
+from .state_fields import AVATARS, ENVIRONMENT_TIME, holder_fields, is_holder, qualified, value_name
+from .world_structure import structure_problem
 
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
 
-__all__ = ["CHECKED", "StateError", "StateMark", "engine_arrays", "read_engine", "state_of", "value_fields"]
+__all__ = ["CHECKED", "StateError", "StateMark", "state_of", "stream_avatars", "value_fields"]
 
 SCALARS = (bool, int, float, str)
 KINDS = "biuf"
@@ -38,8 +40,8 @@ class StateMark(NamedTuple):
 
     Fields:
         kind: ``holder``, ``value``, ``list``, ``tuple``, ``dict``, ``deque``, ``objects``, ``number``, ``random``,
-            ``time`` or ``same``.
-        content: name of the class, number of parts, state of a random generator, or path of the same object.
+            ``streams``, ``time`` or ``same``.
+        content: name of the class, number of parts, state of random generators, or path of the same object.
     """
 
     kind: str
@@ -51,7 +53,7 @@ def state_of(simulation: Simulation) -> dict[str, Any]:
 
     Raises:
         StateError: a part of the state is an object of an unknown class, such as the memory of a navigator that is not
-            made of plain values.
+            made of plain values; or robots or props were added or removed while the simulation ran.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.simulation import Simulation
@@ -61,16 +63,29 @@ def state_of(simulation: Simulation) -> dict[str, Any]:
     >>> state_of(simulation)["simulation/world/environment_time/ticks"].tolist()
     [1]
     """
-    writer = _Writer()
+    problem = structure_problem(simulation)
+    if problem:
+        raise StateError(problem)
+    writer = _Writer(stream_avatars(simulation))
     writer.put("simulation", simulation)
     return writer.found
 
 
-class _Writer:
-    """Collects the values of a state by path."""
+def stream_avatars(simulation: Simulation) -> frozenset[str]:
+    """Return the names of the avatars whose samples come from outside; other sources do not change."""
+    return frozenset(one.name for one in simulation.trial.avatars if one.source == "external")
 
-    def __init__(self) -> None:
+
+class _Writer:
+    """Collects the values of a state by path.
+
+    Args:
+        streams: names of the avatars whose sources are part of the state.
+    """
+
+    def __init__(self, streams: frozenset[str]) -> None:
         self.found: dict[str, Any] = {}
+        self._streams = streams
         self._known: dict[int, tuple[str, Any]] = {}
 
     def put(self, path: str, value: Any) -> None:
@@ -99,6 +114,8 @@ class _Writer:
             self.put(f"{path}/begin", value.begin)
         elif isinstance(value, np.random.Generator) and isinstance(value.bit_generator, np.random.PCG64):
             self.found[path] = StateMark("random", value.bit_generator.state)
+        elif type(value) is RandomStreams:
+            self.found[path] = StateMark("streams", value.states)
         else:
             self._parts(path, value)
 
@@ -115,9 +132,13 @@ class _Writer:
         self.found[path] = StateMark("holder", type(value).__name__)
         for name in holder_fields(value):
             self.put(f"{path}/{name}", getattr(value, name))
-        if hasattr(value, "engine_model"):
-            for name, array in engine_arrays(value).items():
-                self.put(f"{path}/engine/{name}", array)
+        if has_engine(value):
+            self.put(f"{path}/engine", read_engine(value))
+        if qualified(type(value)) == AVATARS:
+            for e, sources in enumerate(value.sources):
+                for name, source in zip(value.names, sources, strict=True):
+                    if name in self._streams:
+                        self.put(f"{path}/sources/{e}/{name}", source)
 
     def _parts(self, path: str, value: Any) -> None:
         kind = type(value)
@@ -153,23 +174,3 @@ def value_fields(kind: type[Any]) -> tuple[str, ...]:
         return tuple(field.name for field in dataclasses.fields(kind))
     names: tuple[str, ...] = kind._fields
     return names
-
-
-def engine_arrays(world: Any) -> dict[str, Any]:
-    """Return the state of the physics engine as arrays."""
-    engine, model = world._mj, world.engine_model
-    spec = engine.mjtState.mjSTATE_INTEGRATION
-    state = np.zeros(engine.mj_stateSize(model, spec))
-    engine.mj_getState(model, world.data, state, spec)
-    return {"state": state} | {name: np.array(getattr(model, name)) for name in MODEL_ARRAYS}
-
-
-def read_engine(world: Any, arrays: dict[str, Any]) -> None:
-    """Set the state of the physics engine, and compute the poses of all bodies."""
-    engine, model, data = world._mj, world.engine_model, world.data
-    for name in MODEL_ARRAYS:
-        getattr(model, name)[:] = arrays[name]
-    engine.mj_setState(model, data, arrays["state"], engine.mjtState.mjSTATE_INTEGRATION)
-    engine.mj_kinematics(model, data)
-    engine.mj_comPos(model, data)
-    engine.mj_comVel(model, data)
