@@ -15,7 +15,7 @@ from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, Remo
 from .orders.trial_order import TrialOrder
 from .overrides import apply_overrides
 from .robot_control import RobotControl
-from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, warn_of_failure
+from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, simulate_variants, warn_of_failure
 from .simulation import Simulation
 from .simulation_run import (
     KEYFRAMES,
@@ -34,6 +34,7 @@ from .state.state_tree import StateError, StateMark, state_of
 from .statistics import EpisodeStatistics, RunSummary, robot_metrics
 from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord
+from .variant_template import VariantTemplate
 from .world_builder import start_scene
 
 __all__ = [
@@ -77,6 +78,7 @@ __all__ = [
     "StopRequest",
     "TrialOrder",
     "UncommandedRobotWarning",
+    "VariantTemplate",
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
@@ -91,6 +93,7 @@ __all__ = [
     "scan_row",
     "simulate",
     "simulate_seeds",
+    "simulate_variants",
     "start_scene",
     "state_of",
     "tracks_of",

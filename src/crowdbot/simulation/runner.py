@@ -18,8 +18,9 @@ from .external_robots import warn_of_missing_source
 from .failure import RunFailure, RunFailureWarning
 from .simulation import Simulation
 from .simulation_run import OrderSource, SimulationRun, Sink, StopRequest
+from .variant_template import VariantTemplate
 
-__all__ = ["catch_interrupt", "run_to_end", "simulate", "simulate_seeds", "warn_of_failure"]
+__all__ = ["catch_interrupt", "run_to_end", "simulate", "simulate_seeds", "simulate_variants", "warn_of_failure"]
 
 Progress = Callable[[float], None]
 
@@ -71,7 +72,14 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
     """
     warn_of_missing_source(trial, ())
     simulation = _checked_simulation(trial, [int(seed) for seed in seeds])
-    logs = [EpisodeLog(trial, int(seed)) for seed in seeds]
+    return _episodes(simulation, [EpisodeLog(trial, int(seed)) for seed in seeds], progress)
+
+
+def _episodes(
+    simulation: Simulation, logs: Sequence[EpisodeLog], progress: Progress | None = None
+) -> tuple[Episode, ...]:
+    """Run all environments to their ends and return their episodes."""
+    trial = simulation.trial
     with catch_interrupt() as stop:
         run = SimulationRun(simulation, [EpisodeLogs(logs)], stop=stop)
         told = -1
@@ -84,9 +92,35 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
                 told = share
                 progress(min(1.0, share / 100.0))
     ends = [end for end in run.ends if end is not None]
-    for end in ends:
-        warn_of_failure_in(trial, end.failure)
+    for log, end in zip(logs, ends, strict=True):
+        warn_of_failure_in(log.trial, end.failure)
     return tuple(log.episode(*end) for log, end in zip(logs, ends, strict=True))
+
+
+def simulate_variants(trials: Sequence[Trial], seeds: Sequence[int]) -> tuple[Episode, ...]:
+    """Run variants of a trial as environments of one simulation, and return the episodes in their order.
+
+    Each episode is bit-identical to a run of its variant alone. Ctrl-C as in :func:`simulate_seeds`.
+
+    Args:
+        trials: variants of the same shape, see :class:`VariantTemplate`.
+        seeds: seed of each variant.
+
+    Raises:
+        InputError: the variants differ in their shape, or there is not one seed for each.
+        TrialError: a variant is impossible with its seed.
+
+    >>> from crowdbot.trials import apply_values, load_trial
+    >>> trial = load_trial("frontal", duration=2.0)
+    >>> variants = [apply_values(trial, {"robot/goal/x": x}) for x in (3, 4)]
+    >>> [one.digest for one in simulate_variants(variants, [1, 1])] == [simulate(one, 1).digest for one in variants]
+    True
+    """
+    for trial, seed in zip(trials, seeds, strict=False):
+        check_trial(trial, int(seed))
+        warn_of_missing_source(trial, ())
+    simulation = Simulation(VariantTemplate(trials), seeds)
+    return _episodes(simulation, [EpisodeLog(trial, int(seed)) for trial, seed in zip(trials, seeds, strict=True)])
 
 
 def _checked_simulation(trial: Trial, seeds: Sequence[int]) -> Simulation:

@@ -71,7 +71,7 @@ class Simulation:
         posed: compute body poses for rendering even if no sensor needs them.
 
     Attributes:
-        trial, seeds: the trial and the seed of each environment.
+        trial, seeds: the trial and the seed of each environment; of variants, the first.
         world: moves people and robots; has the clock.
         around: the world for sensors and cameras.
         robots: state of each robot.
@@ -109,6 +109,10 @@ class Simulation:
         self.robots = [
             RobotControl.of(trial, one, first + k, self.world, self.seeds) for k, one in enumerate(trial.robots)
         ]
+        for k, control in enumerate(self.robots):
+            for e in range(count):
+                goal = self._template.trial_of(e).robots[k].goal
+                control.goal[e], control.tolerance[e] = goal.position, goal.tolerance
         self.former_robots: list[RobotControl] = []
         self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
@@ -280,7 +284,7 @@ class Simulation:
         if self.former_robots or [robot.agent for robot in self.robots] != start:
             raise InputError("robots were added or removed in this simulation; make a new one instead of a restart")
         self._template = self._template.of_trial(self.trial)
-        new = Simulation(self._template, seeds)
+        new = Simulation(self._template.of_environments(index), seeds)
         new.begin()
         kept = np.zeros(self.count, dtype=np.bool_)
         kept[index] = True
@@ -295,6 +299,7 @@ class Simulation:
         index = environment_index(environments, self.count)
         some = copy.copy(self)
         some.seeds = [self.seeds[e] for e in index]
+        some._template = self._template.of_environments(index)
         some.world = select_environments(self.world, index)
         some._set_around()
         some.robots = [robot.select(index) for robot in self.robots]
@@ -312,6 +317,7 @@ class Simulation:
     def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
         index = environment_index(environments, self.count, other.count)
+        self._template = self._template.with_environments(index, other._template)
         self.world = put_environments(self.world, index, other.world)
         self._set_around()
         for mine, new in zip(self.robots, other.robots, strict=True):

@@ -61,6 +61,18 @@ class WorldTemplate:
         """Return this template if it is of this trial, otherwise a new one."""
         return self if trial is self.trial else WorldTemplate(trial, self.posed)
 
+    def trial_of(self, environment: int) -> Trial:
+        """Return the trial of an environment."""
+        return self.trial
+
+    def of_environments(self, environments: Sequence[int] | Ints) -> WorldTemplate:
+        """Return the template of some environments."""
+        return self
+
+    def with_environments(self, environments: Sequence[int] | Ints, other: WorldTemplate) -> WorldTemplate:
+        """Return the template in which some environments are those of another one."""
+        return self
+
     def begin(self, seeds: Sequence[int]) -> tuple[World, InitialPeople]:
         """Return the world of some seeds at its start, and the people of the first seed.
 

@@ -1,0 +1,110 @@
+"""VariantTemplate: the initial worlds of variants of a trial, as environments of one simulation."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+from crowdbot.trials import Crowds, InitialPeople, RandomizedModel, Trial
+from crowdbot.world import World, join_worlds
+
+from .world_template import WorldTemplate
+
+__all__ = ["VariantTemplate"]
+
+
+class VariantTemplate(WorldTemplate):
+    """Makes the initial worlds of variants of the same shape, one for each environment.
+
+    Variants can differ in the parameters of the crowd model, in start zones, speeds and radii of people, and in start
+    and goal of robots. Each environment is bit-identical to a simulation of its variant alone.
+
+    Args:
+        trials: variant of each environment.
+        posed: add bodies of people even if no sensor needs them.
+
+    Raises:
+        InputError: there is no variant, or they differ in anything else, such as the stage.
+
+    >>> from crowdbot.simulation import Simulation
+    >>> from crowdbot.trials import apply_values, load_trial
+    >>> trial = load_trial("frontal")
+    >>> variants = [apply_values(trial, {"crowd/time-horizon": horizon}) for horizon in (1, 2, 4)]
+    >>> simulation = Simulation(VariantTemplate(variants), seeds=[7, 7, 7])
+    >>> for _ in range(60):
+    ...     simulation.advance()
+    >>> len(set(simulation.world.scene.position[:, 0, 1].tolist()))
+    3
+    """
+
+    def __init__(self, trials: Sequence[Trial], posed: bool = False) -> None:
+        self.trials = tuple(trials)
+        if not self.trials:
+            raise InputError("a simulation of variants needs at least one trial")
+        for trial in self.trials[1:]:
+            _check_shape(self.trials[0], trial)
+        super().__init__(self.trials[0], posed)
+        known = {id(trial): WorldTemplate(trial, posed) for trial in self.trials}
+        self._each = [known[id(trial)] for trial in self.trials]
+
+    def of_environments(self, environments: Sequence[int] | NDArray[np.int64]) -> VariantTemplate:
+        """Return the template of some environments."""
+        return VariantTemplate([self.trials[int(e)] for e in environments], self.posed)
+
+    def with_environments(self, environments: Sequence[int] | NDArray[np.int64], other: WorldTemplate) -> WorldTemplate:
+        """Return the template in which some environments have the variants of another one."""
+        trials = list(self.trials)
+        for k, e in enumerate(environments):
+            trials[int(e)] = other.trial_of(k)
+        return VariantTemplate(trials, self.posed)
+
+    def trial_of(self, environment: int) -> Trial:
+        """Return the variant of an environment."""
+        return self.trials[environment]
+
+    def begin(self, seeds: Sequence[int]) -> tuple[World, InitialPeople]:
+        """Return the world of one seed for each variant at its start, and the people of the first.
+
+        Raises:
+            InputError: there is not one seed for each variant.
+            TrialError: people cannot be placed with a seed.
+        """
+        if len(seeds) != len(self.trials):
+            raise InputError(f"{len(seeds)} seeds are given for {len(self.trials)} variants; give one for each")
+        rows = [template.begin([seed]) for template, seed in zip(self._each, seeds, strict=True)]
+        return join_worlds([world for world, _ in rows]), rows[0][1]
+
+
+def _check_shape(first: Trial, other: Trial) -> None:
+    """Raise :class:`InputError` if two variants cannot be environments of one simulation."""
+    one, two = _shared(first), _shared(other)
+    for field in dataclasses.fields(Trial):
+        a, b = getattr(one, field.name), getattr(two, field.name)
+        if field.compare and a != b:
+            raise InputError(
+                f"the variants {first.name!r} and {other.name!r} differ in {field.name}; variants in one simulation can"
+                " differ in parameters of the crowd model, starts, speeds and radii of people, and in start and goal"
+                " of robots"
+            )
+
+
+def _shared(trial: Trial) -> Trial:
+    """Return a trial with fixed values where variants may differ."""
+    changes: dict[str, Any] = {"name": "variant", "about": "", "seed": 0}
+    crowd = trial.crowd
+    if not isinstance(crowd, Crowds | RandomizedModel):
+        changes["crowd"] = type(crowd)()
+    changes["spawners"] = tuple(
+        dataclasses.replace(one, zone=((0, 0), (1, 0), (1, 1)), speed=1.0, radius=0.25) for one in trial.spawners
+    )
+    changes["agents"] = tuple(dataclasses.replace(one, x=0.0, y=0.0, speed=1.0, radius=0.25) for one in trial.agents)
+    changes["robots"] = tuple(
+        dataclasses.replace(one, x=0.0, y=0.0, heading=0.0, goal=dataclasses.replace(one.goal, x=1.0, y=1.0))
+        for one in trial.robots
+    )
+    return dataclasses.replace(trial, **changes)
