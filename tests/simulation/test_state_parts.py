@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from crowdbot.simulation import (
     state_of,
 )
 from crowdbot.trials import Trial, parse_trial
-from crowdbot.world import Robot
+from crowdbot.world import CubeBody, Robot
 
 
 def lab(world: str) -> Trial:
@@ -54,8 +55,8 @@ SEEDS: list[Any] = [3, [1, 2, 3]]
 PLACES = ((1.1, -0.3), (1.3, 0.4), (-3.0, -2.0))
 
 
-def orders(tick: int, e: int) -> list[Order]:
-    """Return the orders of a tick in one environment."""
+def orders(tick: int, e: int, more: bool) -> list[Order]:
+    """Return the orders of a tick in one environment; ``more``: people are added, too."""
     time, found = 0.05 * (tick + 1), list[Order]()
     if tick % 3 != 2:
         found.append(AvatarOrder(avatar="guide", time=time, x=2.0 - 0.7 * time, y=1.0 - 0.5 * time, environment=e))
@@ -63,7 +64,7 @@ def orders(tick: int, e: int) -> list[Order]:
         found.append(JointOrder(robot="pepper", joint="HeadYaw", position=0.3 + 0.1 * e, environment=e))
     if tick == 4:
         found.append(GoalOrder(robot="pepper", x=2.0, y=1.0 + 0.2 * e, tolerance=0.4, environment=e))
-    if tick in (5, 6) or (tick == 7 and e == 1):
+    if more and (tick in (5, 6) or (tick == 7 and e == 1)):
         x, y = PLACES[tick - 5]
         found.append(AddPersonOrder(x=x, y=y, goal_x=-4.0, goal_y=0.0, environment=e))
     if tick == 8:
@@ -76,7 +77,7 @@ def advance(simulation: Simulation, steps: int) -> str:
     found = EpisodeDigest()
     for _ in range(steps):
         for e in range(simulation.count):
-            for order in orders(simulation.tick, e):
+            for order in orders(simulation.tick, e, not simulation.world.walls_fixed):
                 order.check(simulation)
                 order.apply(simulation)
         simulation.advance()
@@ -118,8 +119,24 @@ def test_ghosts_have_engine_states_of_their_own() -> None:
     state = state_of(begun(TRIALS["physics"], 3, 12))
     engines = [path for path in state if path.endswith("/engine")]
     assert engines == ["simulation/world/rigid/ghosts/0/value/engine", "simulation/world/rigid/main/engine"]
-    assert len(state["simulation/world/rigid/people/agent"]) > len(TRIALS["physics"].agents)
     assert np.any(state["simulation/world/rigid/people/agent"] >= 0)
+
+
+def test_people_whom_orders_have_added_to_a_physics_world_have_their_bodies() -> None:
+    trial = dataclasses.replace(TRIALS["physics"], avatars=())
+    first, second = Simulation(trial, 3), Simulation(trial, 3)
+    slots = first.world.rigid.slots  # type: ignore[attr-defined]
+    for x, y in PLACES:
+        AddPersonOrder(x=x, y=y, goal_x=-4.0, goal_y=0.0).apply(first)
+    assert first.world.rigid.slots > slots  # type: ignore[attr-defined]
+    for _ in range(6):
+        first.advance()
+    restore_state(second, decode_state(encode_state(state_of(first))))
+    for _ in range(4):
+        first.advance()
+        second.advance()
+    assert encode_state(state_of(second)) == encode_state(state_of(first))
+    assert first.world.scene.shape == (1, 2 + 2 + 3)
 
 
 @pytest.mark.parametrize("world", TRIALS)
@@ -132,10 +149,8 @@ def test_a_simulation_with_another_structure_has_no_state_and_says_why(world: st
 
 
 def test_a_removed_robot_and_changed_props_of_the_physics_world_have_no_state() -> None:
-    from crowdbot.world import BoxProp
-
     simulation = begun(TRIALS["physics"], 3, 2)
-    name = simulation.world.add_prop(BoxProp(-4.0, -3.0))
+    name = simulation.world.add_prop(CubeBody(-4.0, -3.0))
     with pytest.raises(StateError, match="props were added or removed while the simulation ran"):
         state_of(simulation)
     simulation.world.remove_prop(name)

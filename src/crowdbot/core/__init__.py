@@ -47,8 +47,8 @@ from .version import source_digest
 from .walls import Walls
 
 if TYPE_CHECKING:
-    from .blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .compiling import notify_compiling
+    from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .neighbors import CHUNK, SMALL, Neighbors
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
-        "blake2b": ["HASH_BLOCK", "hash_blocks", "hash_start"],
+        "hashes.blake2b": ["HASH_BLOCK", "hash_blocks", "hash_start"],
         "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],

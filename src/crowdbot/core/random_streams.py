@@ -9,8 +9,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .blake2b import HASH_BLOCK, hash_blocks, hash_start
 from .errors import InputError
+from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
 from .kernels import kernel
 from .random import stream, stream_text
 
@@ -131,7 +131,7 @@ class _Cell:
         names = isinstance(path, list | tuple) and all(type(part) in (str, int) for part in path)
         if type(seed) is not int or not names:
             raise InputError("the state of a random stream needs its seed, its path, and the state of its generator")
-        cell = cls(seed, tuple(path))
+        cell = cls(seed, tuple(path or ()))
         if known is not None:
             cell._made = np.random.Generator(np.random.PCG64(0))
             try:

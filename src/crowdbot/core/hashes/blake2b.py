@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .kernels import kernel
+from crowdbot.core.kernels import kernel
 
 __all__ = ["HASH_BLOCK", "hash_blocks", "hash_start"]
 
