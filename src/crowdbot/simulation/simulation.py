@@ -109,10 +109,7 @@ class Simulation:
         self.robots = [
             RobotControl.of(trial, one, first + k, self.world, self.seeds) for k, one in enumerate(trial.robots)
         ]
-        for k, control in enumerate(self.robots):
-            for e in range(count):
-                goal = self._template.trial_of(e).robots[k].goal
-                control.goal[e], control.tolerance[e] = goal.position, goal.tolerance
+        self._template.set_goals(self.robots)
         self.former_robots: list[RobotControl] = []
         self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
@@ -299,7 +296,7 @@ class Simulation:
         index = environment_index(environments, self.count)
         some = copy.copy(self)
         some.seeds = [self.seeds[e] for e in index]
-        some._template = self._template.of_environments(index)
+        some._take_template(self._template.of_environments(index))
         some.world = select_environments(self.world, index)
         some._set_around()
         some.robots = [robot.select(index) for robot in self.robots]
@@ -317,7 +314,7 @@ class Simulation:
     def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
         index = environment_index(environments, self.count, other.count)
-        self._template = self._template.with_environments(index, other._template)
+        self._take_template(self._template.with_environments(index, other._template))
         self.world = put_environments(self.world, index, other.world)
         self._set_around()
         for mine, new in zip(self.robots, other.robots, strict=True):
@@ -329,6 +326,10 @@ class Simulation:
                 self._contacts[e] = other._contacts[k]
         for name in ("event", "ended", "begun", "_told", "failed", "broken"):
             getattr(self, name)[index] = getattr(other, name)
+
+    def _take_template(self, template: WorldTemplate) -> None:
+        if template is not self._template:
+            self._template, self.trial = template, template.trial
 
     def _robot(self, name: str) -> RobotControl:
         for robot in self.robots:

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.trials import Crowds, InitialPeople, RandomizedModel, Trial
+from crowdbot.trials import Crowds, Distribution, InitialPeople, Points, RandomizedModel, Trial
 from crowdbot.world import World, join_worlds
 
+from .robot_control import RobotControl
 from .world_template import WorldTemplate
 
 __all__ = ["VariantTemplate"]
@@ -67,6 +68,13 @@ class VariantTemplate(WorldTemplate):
         """Return the variant of an environment."""
         return self.trials[environment]
 
+    def set_goals(self, robots: Sequence[RobotControl]) -> None:
+        """Set the goals of robots at the start in each environment."""
+        for k, control in enumerate(robots):
+            for e, trial in enumerate(self.trials):
+                goal = trial.robots[k].goal
+                control.goal[e], control.tolerance[e] = goal.position, goal.tolerance
+
     def begin(self, seeds: Sequence[int]) -> tuple[World, InitialPeople]:
         """Return the world of one seed for each variant at its start, and the people of the first.
 
@@ -99,8 +107,9 @@ def _shared(trial: Trial) -> Trial:
     crowd = trial.crowd
     if not isinstance(crowd, Crowds | RandomizedModel):
         changes["crowd"] = type(crowd)()
+    zone, fixed = Points([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]), Distribution("number", (1.0,))
     changes["spawners"] = tuple(
-        dataclasses.replace(one, zone=((0, 0), (1, 0), (1, 1)), speed=1.0, radius=0.25) for one in trial.spawners
+        dataclasses.replace(one, zone=zone, speed=fixed, radius=fixed) for one in trial.spawners
     )
     changes["agents"] = tuple(dataclasses.replace(one, x=0.0, y=0.0, speed=1.0, radius=0.25) for one in trial.agents)
     changes["robots"] = tuple(

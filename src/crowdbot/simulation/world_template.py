@@ -30,6 +30,7 @@ from crowdbot.trials import (
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
 from .mounted_sensor import spatial
+from .robot_control import RobotControl
 from .world_builder import avatars_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
 
 __all__ = ["WorldTemplate"]
@@ -64,6 +65,9 @@ class WorldTemplate:
     def trial_of(self, environment: int) -> Trial:
         """Return the trial of an environment."""
         return self.trial
+
+    def set_goals(self, robots: Sequence[RobotControl]) -> None:
+        """Set the goals of robots at the start where they differ between environments."""
 
     def of_environments(self, environments: Sequence[int] | Ints) -> WorldTemplate:
         """Return the template of some environments."""
