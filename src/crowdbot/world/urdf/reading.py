@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
-
-import numpy as np
 
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
 
@@ -14,14 +11,13 @@ from .elements import UrdfReader
 from .folders import Folders, robot_folder
 from .joints import read_joint
 from .links import read_link
+from .masses import add_missing_mass
 from .materials import read_materials
-from .model import Joint, Link, LinkInertia, Remark, RobotModel
+from .model import Joint, Link, RobotModel
 
 __all__ = ["read_urdf"]
 
 MOST_LINKS = 2000
-TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
-"""Inertial of a moving link without mass and shape: a ball of 1 gram with a diameter of 16 mm."""
 
 
 def read_urdf(
@@ -93,6 +89,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     reader.materials = read_materials(reader, root)
     reader.notes(root)
     links: dict[str, Link] = {}
+    elements: dict[str, Element] = {}
     joints: dict[str, Joint] = {}
     lines: dict[str, int] = {}
     if len(root.each("link")) > MOST_LINKS:
@@ -100,7 +97,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     for element in root.each("link"):
         link = read_link(reader, element)
         if link is not None and reader.new(element, link.name, links):
-            links[link.name] = link
+            links[link.name], elements[link.name] = link, element
     for element in root.each("joint"):
         joint = read_joint(reader, element)
         if joint is not None and reader.new(element, joint.name, joints):
@@ -114,7 +111,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     first = next(iter(links.keys() - {joint.child for joint in joints.values()}))
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
-    kept = _add_missing_mass(reader, {key: links[key] for key in chain}, ordered)
+    kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
     return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
 
 
@@ -171,28 +168,6 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
             reader.say(
                 at, f"mimics {leader.name!r}; only revolute, continuous and prismatic joints can mimic each other"
             )
-
-
-def _add_missing_mass(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
-    """Return the links, with a small inertial for moving links that have no mass and no fixed links with mass."""
-    robot_body: dict[str, str] = {}
-    heavy: set[str] = set()
-    for name, link in links.items():
-        above = next((joint for joint in joints.values() if joint.child == name), None)
-        robot_body[name] = robot_body[above.parent] if above is not None and above.kind == "fixed" else name
-        if link.inertial is not None:
-            heavy.add(robot_body[name])
-    found = dict(links)
-    for joint in joints.values():
-        name = joint.child
-        if joint.kind != "fixed" and name not in heavy:
-            found[name] = dataclasses.replace(links[name], inertial=TOKEN)
-            text = (
-                f"{reader.place}: <link> {name!r} moves but has neither mass nor shape; its mass is set to "
-                f"{TOKEN.mass:g} kg"
-            )
-            reader.remarks.append(Remark("repaired", text))
-    return found
 
 
 def _sort_outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:
