@@ -7,6 +7,7 @@ import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .new_robot import add_robot_options, convert_robot, is_robot_file
 from .output import note
 from .settings import add_settings, settings
 from .templates import CLASSES, FOLLOW_UP, class_files, robot_files, stage_files, trial_test
@@ -21,7 +22,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("kind", metavar="KIND", choices=KINDS, help=f"one of {', '.join(KINDS)}")
     parser.add_argument(
-        "file", metavar="FILE", type=Path, help="file to write: .py, .geojson (stage), .xml (trial), or folder (robot)"
+        "file",
+        metavar="FILE",
+        type=Path,
+        help="file to write: .py, .geojson (stage), .xml (trial), or folder (robot); or the URDF or xacro file of a robot",
     )
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of the trial")
@@ -43,6 +47,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_settings(group)
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
     group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
+    add_robot_options(parser)
     group = parser.add_argument_group("trial from a recording")
     group.add_argument("--fps", type=float, help="frame rate of the recording in Hz (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
@@ -54,6 +59,8 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
     from crowdbot.trials import trial_xml
 
+    if options.kind == "robot" and is_robot_file(options.file):
+        return convert_robot(options)
     files = _files(options)
     for file in (options.file, *files):
         if file.exists() and not options.force:

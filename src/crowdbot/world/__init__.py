@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
+    from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
     from .urdf import RobotModel, describe, read_urdf
@@ -95,6 +96,7 @@ _LAZY = {
     "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
     "RobotBody": "physics.robot_body",
+    "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
@@ -117,6 +119,7 @@ _LAZY = {
     "describe": "urdf",
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
+    "import_robot": "robots.robot_import",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
     "move_agent": "live_changes",
@@ -172,6 +175,7 @@ __all__ = [
     "ReplayedTrack",
     "Robot",
     "RobotBody",
+    "RobotFolder",
     "RobotModel",
     "Router",
     "SceneCamera",
@@ -194,6 +198,7 @@ __all__ = [
     "describe",
     "environment_seeds",
     "frame",
+    "import_robot",
     "integrate_twist",
     "join_worlds",
     "move_agent",
