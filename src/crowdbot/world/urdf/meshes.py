@@ -46,8 +46,7 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
     data = path.read_bytes()
     if kind == "dae":
         reject_entities(data, path.name)
-    loaded = _load_trimesh(data, kind)
-    loaded.apply_transform(np.diag([*scale, 1.0]))
+    loaded = _load_trimesh(data, kind, scale)
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
     if not len(faces):
         raise InputError("it has no triangles")
@@ -55,8 +54,6 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
     if len(faces) > MOST_TRIANGLES:
         raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise InputError(f"a triangle names the point {faces.max()}, and it holds {len(vertices)} points")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
     return Mesh(source, vertices, faces)
@@ -96,20 +93,32 @@ def _trimesh() -> Any:
     return module
 
 
-def _load_trimesh(data: bytes, kind: str) -> Any:
-    """Return the content of the file as one trimesh, in metres."""
+def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> Any:
+    """Return the content of the file as one trimesh, in metres, with its scale."""
     trimesh = _trimesh()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=None)
+            for part in scene.geometry.values():
+                _check_faces(part)
             meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
             whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
+            _check_faces(whole)
+            whole.apply_scale(_unit(data) if kind == "dae" else 1.0)
+            whole.apply_transform(np.diag([*scale, 1.0]))
+        except InputError:
+            raise
         except Exception as error:  # a broken file causes many kinds of exceptions inside the libraries
             raise InputError(f"it cannot be read as {kind}: {type(error).__name__}: {str(error)[:120]}") from None
-    factor = _unit(data) if kind == "dae" else 1.0
-    whole.apply_scale(factor)
     return whole
+
+
+def _check_faces(part: Any) -> None:
+    """Raise an error if a triangle names a point that does not exist; transformations would fail on it."""
+    faces, count = getattr(part, "faces", None), len(getattr(part, "vertices", ()))
+    if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= count):
+        raise InputError(f"a triangle names the point {faces.max()}, and it holds {count} points")
 
 
 def _unit(data: bytes) -> float:
