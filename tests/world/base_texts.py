@@ -11,7 +11,8 @@ BOX = """
   <collision><origin xyz='0 0 0.2'/><geometry><box size='0.6 0.36 0.2'/></geometry></collision>
 </link>
 <link name='laser'/>
-<joint name='laser_joint' type='fixed'><parent link='base_link'/><child link='laser'/><origin xyz='0.25 0 0.32'/></joint>
+<joint name='laser_joint' type='fixed'>
+  <parent link='base_link'/><child link='laser'/><origin xyz='0.25 0 0.32'/></joint>
 <gazebo reference='laser'><sensor name='scan' type='gpu_ray'><update_rate>20</update_rate>
   <ray><scan><horizontal><samples>181</samples><min_angle>-1.57</min_angle><max_angle>1.57</max_angle></horizontal></scan>
   <range><min>0.1</min><max>12</max></range><noise><type>gaussian</type><stddev>0.01</stddev></noise></ray>
@@ -36,7 +37,8 @@ BOX = """
 CASTOR = """<link name='castor'><inertial><mass value='0.1'/>
   <inertia ixx='0.001' iyy='0.001' izz='0.001' ixy='0' ixz='0' iyz='0'/></inertial>
   <collision><geometry><sphere radius='0.05'/></geometry></collision></link>
-<joint name='castor_joint' type='fixed'><parent link='base_link'/><child link='castor'/><origin xyz='-0.25 0 0.05'/></joint>
+<joint name='castor_joint' type='fixed'>
+  <parent link='base_link'/><child link='castor'/><origin xyz='-0.25 0 0.05'/></joint>
 """
 
 
@@ -45,7 +47,9 @@ def wheels(*rows):
 
 
 PAIR = (("left", 0, 0.2, 0), ("right", 0, -0.2, 0))
-FOUR = tuple((f"{e}_{s}", x, y, 0) for e, x in (("front", 0.2), ("rear", -0.2)) for s, y in (("left", 0.2), ("right", -0.2)))
+FOUR = tuple(
+    (f"{e}_{s}", x, y, 0) for e, x in (("front", 0.2), ("rear", -0.2)) for s, y in (("left", 0.2), ("right", -0.2))
+)
 REAR = (("rear_left", -0.2, 0.2, 0), ("rear_right", -0.2, -0.2, 0))
 STAR = tuple(
     (f"omni{k}", 0.2 * math.cos(a), 0.2 * math.sin(a), a - math.pi / 2)
@@ -72,8 +76,8 @@ BASES = {
     "skid-steer": wheels(*FOUR),
     "mecanum": wheels(*((f"mecanum_{name}", *rest) for name, *rest in FOUR)),
     "omnidirectional": wheels(*STAR),
-    "ackermann": "<xacro:steered name='front_left' x='0.2' y='0.2'/><xacro:steered name='front_right' x='0.2' y='-0.2'/>"
-    + wheels(*REAR),
+    "ackermann": "<xacro:steered name='front_left' x='0.2' y='0.2'/>"
+    "<xacro:steered name='front_right' x='0.2' y='-0.2'/>" + wheels(*REAR),
     "tricycle": "<xacro:steered name='front' x='0.2' y='0'/>" + wheels(*REAR),
     "legged": LEG + FEET,
 }

@@ -36,7 +36,8 @@ def test_points_of_two_coordinates_are_rejected(tmp_path):
 
 
 class _Scene:
-    geometry = {}
+    def __init__(self):
+        self.geometry = {}
 
     def dump(self):
         return [trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]], process=False)]

@@ -62,7 +62,10 @@ def test_the_origin_of_a_car_is_its_rear_axle(tmp_path):
     assert abs(places["rear_left"][0, 3]) < 1e-9
     assert robot.drive.wheelbase == pytest.approx(0.4)
     assert robot.drive.max_steering == 0.5
-    assert sorted(wheel.steering for wheel in robot.wheels if wheel.steering) == ["front_left_steer", "front_right_steer"]
+    assert sorted(wheel.steering for wheel in robot.wheels if wheel.steering) == [
+        "front_left_steer",
+        "front_right_steer",
+    ]
     assert sum(wheel.driven for wheel in robot.wheels) == 2
 
 

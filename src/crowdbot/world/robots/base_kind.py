@@ -98,7 +98,9 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
         InputError: ``kind`` is unknown.
     """
     if kind and kind not in BASE_KINDS:
-        raise InputError(f"the kind of base {kind[:40]!r} must be {', '.join(BASE_KINDS)}{did_you_mean(kind, BASE_KINDS)}")
+        raise InputError(
+            f"the kind of base {kind[:40]!r} must be {', '.join(BASE_KINDS)}{did_you_mean(kind, BASE_KINDS)}"
+        )
     poses = model.poses()
     points = {name: _points(model, name, poses) for name in model.links}
     solid = [rows for rows in points.values() if len(rows)]
@@ -123,7 +125,9 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
 
 def _points(model: RobotModel, name: str, poses: Mapping[str, Floats]) -> Floats:
     link = model.links[name]
-    rows = [transform_points(poses[name] @ part.origin, part.shape.points()) for part in link.collisions or link.visuals]
+    rows = [
+        transform_points(poses[name] @ part.origin, part.shape.points()) for part in link.collisions or link.visuals
+    ]
     return np.concatenate(rows) if rows else np.zeros((0, 3))
 
 

@@ -12,7 +12,8 @@ __all__ = ["DriveParameters", "FoundSensor", "find_sensors", "read_drive_paramet
 
 
 class FoundSensor(NamedTuple):
-    """A sensor: name, link, attributes of ``<sensor>`` in robot.xml, and where it is from; no attributes if left out."""
+    """A sensor: name, link, attributes of ``<sensor>`` in robot.xml,
+    and where it is from; without attributes it is left out."""
 
     name: str
     link: str

@@ -211,7 +211,9 @@ def _expanded(made: RobotFolder, source: Element, model: RobotModel, base: BaseK
         joint.children = [Element("parent", {"link": GROUND_LINK}), Element("child", {"link": model.root})]
         joint.children.append(Element("origin", {"xyz": f"{_number(-base.rear)} 0 0"}))
         root.children.append(joint)
-        made.guess("centre of turning", f"x = {base.rear:.4g} m", "axle of the wheels", f"{GROUND_LINK} in {made.name}.urdf")
+        made.guess(
+            "centre of turning", f"x = {base.rear:.4g} m", "axle of the wheels", f"{GROUND_LINK} in {made.name}.urdf"
+        )
     gliding = [*base.castors, *([] if wheeled else [wheel.link for wheel in base.wheels])]
     for name, link in model.links.items():
         friction = 0.0 if name in gliding or (not wheeled and name in _feet(model, base)) else link.friction
@@ -276,7 +278,8 @@ def _parent_of(model: RobotModel, link: str) -> str:
 def _control(motors: Mapping[str, str]) -> Element:
     """Return <ros2_control> with the command types of joints."""
     rows = [
-        Element("joint", {"name": name}, [Element("command_interface", {"name": kind})]) for name, kind in motors.items()
+        Element("joint", {"name": name}, [Element("command_interface", {"name": kind})])
+        for name, kind in motors.items()
     ]
     return Element("ros2_control", {"name": "motors", "type": "system"}, rows)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from crowdbot.core import InputError, import_optional, reject_entities
 
+from .piece_cache import load_or_compute_pieces
 from .shapes import ConvexPiece, Mesh
 
 __all__ = ["FORMATS", "read_mesh", "with_pieces"]
@@ -20,6 +21,8 @@ FORMATS = ("stl", "dae", "obj", "ply", "glb")
 MOST_BYTES = 64_000_000
 MOST_TRIANGLES = 2_000_000
 MOST_PIECES = 16
+RESOLUTION = 20_000
+"""Number of voxels of the convex decomposition."""
 LOOSE = 1.3
 """If the convex hull exceeds the volume of the mesh by this factor, the mesh is decomposed into convex pieces."""
 
@@ -75,7 +78,7 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
     loose = around > LOOSE * max(volume, 1e-12)
     if method == "hull" or (method == "auto" and not loose):
         return Mesh(mesh.source, mesh.vertices, mesh.faces, (hull,)), ""
-    pieces = _decompose(mesh)
+    pieces = load_or_compute_pieces(mesh, f"V-HACD {MOST_PIECES} {RESOLUTION}", _decompose)
     if pieces:
         return Mesh(mesh.source, mesh.vertices, mesh.faces, pieces), ""
     return (
@@ -163,7 +166,7 @@ def _decompose(mesh: Mesh) -> tuple[ConvexPiece, ...]:
     try:
         from trimesh.decomposition import convex_decomposition
 
-        parts = convex_decomposition(body, maxConvexHulls=MOST_PIECES, resolution=20_000, asyncACD=False)
+        parts = convex_decomposition(body, maxConvexHulls=MOST_PIECES, resolution=RESOLUTION, asyncACD=False)
     except ImportError:
         return ()
     pieces = [_hull(part["vertices"]) for part in parts]

@@ -29,14 +29,14 @@ def read_urdf(
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> RobotModel:
-    """Read a robot from a URDF or xacro file.
+    """Read a robot from a URDF, xacro or SDF file.
 
     Repairs are listed in ``remarks``. A missing or broken mesh is replaced by the other colliders of the link,
     otherwise by its visuals, otherwise by the box of equal inertia. A missing or unphysical inertia is computed from
     mass and shape.
 
     Args:
-        source: the path of a URDF or xacro file, or the XML text itself (it begins with ``<``). Xacro is expanded.
+        source: the path of a URDF, xacro or SDF file, or the XML text itself (it begins with ``<``).
         folder: robot folder; files outside it are not read (default: :func:`crowdbot.world.urdf.robot_folder`, and
             the packages beside it that the file names).
         packages: ROS package folders by name, for ``package://name/...``; files in them may be read, too.

@@ -10,6 +10,7 @@ from crowdbot.core import Element, RobotError, parse_xml, read_bytes
 from crowdbot.world.xacro import expand_xacro, is_xacro
 
 from .folders import Folders, robot_folder
+from .sdf import urdf_of_sdf
 
 __all__ = ["RobotDocument", "parse_robot_file"]
 
@@ -40,7 +41,7 @@ def parse_robot_file(
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> RobotDocument:
-    """Return the elements of a URDF or xacro file; arguments as in :func:`read_urdf`.
+    """Return the elements of a URDF, xacro or SDF file as URDF; arguments as in :func:`read_urdf`.
 
     Raises:
         RobotError: the file is missing, is not XML of a robot, or its xacro has an error.
@@ -58,6 +59,11 @@ def parse_robot_file(
     root = parse_xml(data, place, what="URDF", root="robot", refusal=RobotError)
     beside = None if path is None else path.resolve().parent
     folders = Folders(home, packages, beside, search=folder is None and path is not None)
+    if root.tag in ("sdf", "model", "gazebo"):
+        if arguments:
+            raise RobotError(f"{place}: an SDF file has no argument {next(iter(arguments))[:60]!r}")
+        converted = urdf_of_sdf(root, place)
+        return RobotDocument(converted.root, place, folders, converted.ignored)
     if not is_xacro(root):
         if arguments:
             raise RobotError(f"{place}: it is not a xacro file and has no argument {next(iter(arguments))[:60]!r}")

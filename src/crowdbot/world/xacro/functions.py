@@ -92,6 +92,6 @@ def format_text(text: str, values: Any) -> str:
     if "%" in SPEC.sub("", text):
         raise InputError(f"the format {text[:60]!r} is not supported; use %s, %d, %f or %g")
     try:
-        return text % values
+        return str(text % values)
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"the format {text[:60]!r} does not fit its values: {error}") from None

@@ -55,7 +55,7 @@ def _lines(text: str, place: str) -> list[_Line]:
     lines = text.splitlines()
     if len(lines) > MOST_LINES:
         raise InputError(f"{place} has more than {MOST_LINES} lines, the maximum of a YAML file")
-    found = []
+    found: list[_Line] = []
     for number, line in enumerate(lines, 1):
         plain = _without_comment(line).rstrip()
         if not plain.strip() or (plain.startswith(("---", "%YAML")) and not found):
@@ -175,8 +175,8 @@ class _Reader:
             return self.items(text[1:], depth)
         if text[:1] == "{":
             return self.entries(text[1:], depth)
-        end = re.search(r"[,\]}]", text) if depth else None
-        plain, rest = (text, "") if end is None else (text[: end.start()], text[end.start() :])
+        stop = re.search(r"[,\]}]", text) if depth else None
+        plain, rest = (text, "") if stop is None else (text[: stop.start()], text[stop.start() :])
         return _plain(plain.strip()), rest
 
     def angle(self, text: str, depth: int) -> tuple[Any, str]:
