@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import logging
 import warnings
@@ -49,7 +50,7 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
     data = path.read_bytes()
     if kind == "dae":
         reject_entities(data, path.name)
-    loaded = _load_trimesh(data, kind, scale)
+    loaded, colors = _load_trimesh(data, kind, scale)
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
     if not len(faces):
         raise InputError("it has no triangles")
@@ -59,7 +60,7 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
-    return Mesh(source, vertices, faces)
+    return Mesh(source, vertices, faces, colors=colors if colors is not None and len(colors) == len(faces) else None)
 
 
 def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
@@ -77,12 +78,12 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
     around = hull.solid().volume
     loose = around > LOOSE * max(volume, 1e-12)
     if method == "hull" or (method == "auto" and not loose):
-        return Mesh(mesh.source, mesh.vertices, mesh.faces, (hull,)), ""
+        return dataclasses.replace(mesh, pieces=(hull,)), ""
     pieces = load_or_compute_pieces(mesh, f"V-HACD {MOST_PIECES} {RESOLUTION}", _decompose)
     if pieces:
-        return Mesh(mesh.source, mesh.vertices, mesh.faces, pieces), ""
+        return dataclasses.replace(mesh, pieces=pieces), ""
     return (
-        Mesh(mesh.source, mesh.vertices, mesh.faces, (hull,)),
+        dataclasses.replace(mesh, pieces=(hull,)),
         f"uses its convex hull, {around / max(volume, 1e-12):.1f} times its volume"
         " (install vhacdx for a convex decomposition)",
     )
@@ -96,8 +97,8 @@ def _trimesh() -> Any:
     return module
 
 
-def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> Any:
-    """Return the content of the file as one trimesh, in metres, with its scale."""
+def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> tuple[Any, Any]:
+    """Return the content of the file as one trimesh, in metres, with its scale, and the colours of its triangles."""
     trimesh = _trimesh()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -106,6 +107,7 @@ def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> 
             for part in scene.geometry.values():
                 _check_faces(part)
             meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+            colors = _face_colors(meshes) if kind in ("dae", "glb") else None
             whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
             _check_faces(whole)
             whole.apply_scale(_unit(data) if kind == "dae" else 1.0)
@@ -114,7 +116,18 @@ def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> 
             raise
         except Exception as error:  # a broken file causes many kinds of exceptions inside the libraries
             raise InputError(f"it cannot be read as {kind}: {type(error).__name__}: {str(error)[:120]}") from None
-    return whole
+    return whole, colors
+
+
+def _face_colors(meshes: list[Any]) -> Any:
+    """Return the colours ``[M, 4]`` of the triangles of all parts from their materials, or None without materials."""
+    rows = []
+    for part in meshes:
+        main = np.asarray(getattr(getattr(part.visual, "material", None), "main_color", ()))
+        if main.shape != (4,):
+            return None
+        rows.append(np.tile(main.astype(np.uint8), (len(part.faces), 1)))
+    return np.concatenate(rows) if rows else None
 
 
 def _check_faces(part: Any) -> None:
