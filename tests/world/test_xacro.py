@@ -1,7 +1,5 @@
 """Xacro is expanded without ROS, and never evaluated as Python."""
 
-import time
-
 import pytest
 from real_robots import XACRO
 from xacro_texts import ERRORS, EXPANSIONS, HEAD
@@ -35,13 +33,11 @@ def test_expansions(text, wanted):
 
 @pytest.mark.parametrize(("text", "sentence"), ERRORS)
 def test_what_is_wrong_is_said_with_file_and_line(text, sentence):
-    start = time.perf_counter()
     with pytest.raises(RobotError) as caught:
         expand(text)
     assert sentence in str(caught.value)
     assert str(caught.value).startswith("r.xacro:1: <")
     assert len(caught.value.problems) == 1
-    assert time.perf_counter() - start < 20.0
 
 
 def test_arguments_and_environment_are_given():
@@ -171,12 +167,19 @@ def test_yaml_is_loaded(tmp_path):
     assert row == {"b": "-0.2", "c": "3.0", "d": "1.5707963267948966", "e": "0.001"}
 
 
-def test_yaml_agrees_with_the_reference():
-    yaml = pytest.importorskip("yaml")
-    text = YAML.replace("!degrees ", "").replace("1e-3", "1.0e-3")  # YAML 1.1 takes 1e-3 as a text
-    assert parse_yaml(text, "w.yaml") == yaml.safe_load(text)
-    for more in ("- 1\n- [2, 3]\n-\n  - x\n", "a: 'x: y'\nb: \"# no\"\n", "k:\n- 1\n- 2\nz: 3\n", "3", "{}", ""):
-        assert parse_yaml(more, "m.yaml") == yaml.safe_load(more)
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("- 1\n- [2, 3]\n-\n  - x\n", [1, [2, 3], ["x"]]),
+        ("a: 'x: y'\nb: \"# no\"\n", {"a": "x: y", "b": "# no"}),
+        ("k:\n- 1\n- 2\nz: 3\n", {"k": [1, 2], "z": 3}),
+        ("3", 3),
+        ("{}", {}),
+        ("", None),
+    ],
+)
+def test_forms_of_yaml(text, value):
+    assert parse_yaml(text, "m.yaml") == value
 
 
 @pytest.mark.parametrize(
