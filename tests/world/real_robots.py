@@ -23,7 +23,7 @@ def is_empty(path):
 
 
 XACRO = [path for path in _files("urdf", "xacro") if is_xacro(path)]
-"""Files that must be refused in one sentence, whatever they are called."""
+"""Xacro files, whatever they are called: robots and parts of robots."""
 EMPTY = [path for path in _files("urdf") if not is_xacro(path) and is_empty(path)]
 ROBOTS = tuple(
     str(path.relative_to(FOLDER)) for path in _files("urdf") if not is_xacro(path) and not is_empty(path)

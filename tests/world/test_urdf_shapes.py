@@ -7,7 +7,7 @@ from robot_texts import BALL, joint, link, mesh, robot
 
 from crowdbot.core import MissingExtra, RobotError
 from crowdbot.world import read_urdf
-from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere, meshes, with_pieces
+from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere, meshes, mjcf, with_pieces
 from crowdbot.world.urdf.inertia import unphysical
 
 ROUND = trimesh.creation
@@ -224,3 +224,27 @@ def test_colours(tmp_path):
     assert any("uses the colour 'unknown'" in text for text in model.warnings)
     with pytest.raises(RobotError, match='<color> rgba="1 1" must be 4 numbers'):
         read_urdf(robot("<material name='x'><color rgba='1 1'/></material>", link("a")))
+
+
+def test_colours_of_a_mesh_are_kept_and_a_material_comes_first(tmp_path):
+    scene = trimesh.Scene()
+    for k, color in enumerate(((255, 0, 0, 255), (0, 0, 255, 255))):
+        box = trimesh.creation.box((1.0, 1.0, 1.0 + k))
+        box.visual = trimesh.visual.TextureVisuals(material=trimesh.visual.material.PBRMaterial(baseColorFactor=color))
+        scene.add_geometry(box)
+    scene.export(tmp_path / "two.glb")
+    shown = read_urdf(write(tmp_path, mesh("two.glb")))
+    colors = {geom.attributes["rgba"] for geom in geoms_of(shown)}
+    assert colors == {"1 0 0 1", "0 0 1 1"}
+    painted = mesh("two.glb").replace("</visual>", "<material name='g'><color rgba='0 1 0 1'/></material></visual>")
+    assert {geom.attributes["rgba"] for geom in geoms_of(read_urdf(write(tmp_path, painted)))} == {"0 1 0 1"}
+
+
+def geoms_of(model):
+    """Return the visual geoms of a robot."""
+    found, waiting = [], [mjcf(model, base="fixed").root]
+    while waiting:
+        element = waiting.pop()
+        waiting += element.children
+        found += [element] if element.tag == "geom" and element.attributes.get("group") == "2" else []
+    return found

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
+    from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
     from .urdf import RobotModel, describe, read_urdf
@@ -101,6 +102,7 @@ _LAZY = {
     "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
     "RobotBody": "physics.robot_body",
+    "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
@@ -127,6 +129,7 @@ _LAZY = {
     "frame": "urdf.transforms",
     "free_joints": "robots.joint_motion",
     "give_pose": "crowd.avatars",
+    "import_robot": "robots.robot_import",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
     "move_agent": "live_changes",
@@ -186,6 +189,7 @@ __all__ = [
     "ReplayedTrack",
     "Robot",
     "RobotBody",
+    "RobotFolder",
     "RobotModel",
     "Router",
     "SceneCamera",
@@ -212,6 +216,7 @@ __all__ = [
     "frame",
     "free_joints",
     "give_pose",
+    "import_robot",
     "integrate_twist",
     "join_worlds",
     "move_agent",

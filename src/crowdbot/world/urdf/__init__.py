@@ -6,6 +6,7 @@ from .mjcf import BaseServo, Mjcf, mjcf
 from .model import JOINT_KINDS, Joint, Link, LinkInertia, LinkShape, Mimic, Motor, Remark, RobotModel
 from .reading import read_urdf
 from .report import describe
+from .robot_document import parse_robot_file
 from .shapes import Box, Capsule, ConvexPiece, Cylinder, Mesh, Sphere
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "Sphere",
     "describe",
     "mjcf",
+    "parse_robot_file",
     "read_urdf",
     "robot_folder",
     "with_pieces",

@@ -55,7 +55,8 @@ class UrdfReader:
     def _where(self, element: Element) -> str:
         name = element.attributes.get("name", "")
         named = f" {name[:60]!r}" if name and element.tag in ("link", "joint") else ""
-        return f"{self.place}:{element.line}: <{element.tag[:40]}>{named}"
+        place = getattr(element, "place", "") or self.place  # an element of a xacro file knows its own file
+        return f"{place}:{element.line}: <{element.tag[:40]}>{named}"
 
     def finish(self) -> None:
         """Raise :class:`RobotError` if there are errors."""

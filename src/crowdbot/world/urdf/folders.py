@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from urllib.parse import unquote
 
 from crowdbot.core import InputError, parse_xml
 
-__all__ = ["Folders", "robot_folder"]
+__all__ = ["Folders", "find_package", "robot_folder"]
 
 INNER = ("urdf", "robots")
 """Subfolders of a robot folder that contain the URDF, as in ROS packages."""
 MOST_PACKAGE_BYTES = 100_000
+MOST_ENTRIES = 2000
+"""Maximum number of entries of a folder that is searched for packages."""
 
 
 def robot_folder(urdf: Path) -> Path:
@@ -28,6 +32,26 @@ def robot_folder(urdf: Path) -> Path:
     return here.parent if here.name in INNER else here
 
 
+def find_package(name: str, near: Path) -> Path | None:
+    """Return the folder of a ROS package near another folder, or None.
+
+    Searched are the folder, its three parents, and the folders beside and two levels below these parents if the folder
+    itself is a package. A package is a folder with a ``package.xml`` that has this name.
+    """
+    near = near.resolve()
+    above = [near, *list(near.parents)[:3]]
+    found = next((folder for folder in above if _is_package(folder, name)), None)
+    if found is not None or not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
+        return found
+    if not (near / "package.xml").is_file():
+        return None
+    for parent in list(near.parents)[:2]:
+        for folder in (parent / name, *(inner / name for inner in _folders(parent))):
+            if _is_package(folder, name):
+                return folder
+    return None
+
+
 class Folders:
     """Finds the files referenced by a URDF.
 
@@ -35,23 +59,36 @@ class Folders:
         root: the robot folder.
         packages: ROS package folders by name.
         beside: base folder of relative paths (default: the root).
+        search: whether packages are searched near the robot folder, see :func:`find_package`.
     """
 
-    def __init__(self, root: Path, packages: Mapping[str, Path] | None = None, beside: Path | None = None) -> None:
-        self.root = root.resolve()
+    def __init__(
+        self,
+        root: Path,
+        packages: Mapping[str, Path] | None = None,
+        beside: Path | None = None,
+        search: bool = False,
+    ) -> None:
+        self.root, self.search = root.resolve(), search
         self.beside = self.root if beside is None else beside.resolve()
         self.packages = {name: Path(folder).resolve() for name, folder in (packages or {}).items()}
         self.name = _package_name(self.root)
 
-    def find(self, reference: str) -> Path | None:
+    def find(self, reference: str, beside: Path | None = None) -> Path | None:
         """Return the file of a ``package://`` or ``file://`` URI or a relative path, or None if it does not exist.
+
+        Args:
+            reference: the URI or path.
+            beside: base folder of a relative path (default: that of the folders).
 
         Raises:
             InputError: the scheme is not supported, or the path leaves the folders.
         """
+        if reference.startswith("file://package://"):  # "file://$(find NAME)/..." of a xacro file
+            reference = reference.removeprefix("file://")
         scheme, _, rest = reference.partition("://")
         if not rest and "://" not in reference:
-            candidates = [self.beside / reference]
+            candidates = [(beside or self.beside) / reference]
         elif scheme in ("package", "model"):
             candidates = self._in_packages(rest)
         elif scheme == "file":
@@ -73,6 +110,10 @@ class Folders:
         ``meshes/a.stl``.
         """
         name, _, path = rest.partition("/")
+        if name not in self.packages and self.search:
+            folder = None if self.name == name else find_package(name, self.root)
+            if folder is not None:
+                self.packages[name] = folder.resolve()
         if name in self.packages:
             return [self.packages[name] / path]
         parts = path.split("/")
@@ -94,6 +135,17 @@ class Folders:
                 " move the file into it, or give its package folder"
             )
         return place
+
+
+def _is_package(folder: Path, name: str) -> bool:
+    return (folder / "package.xml").is_file() and _package_name(folder) == name
+
+
+def _folders(parent: Path) -> list[Path]:
+    try:
+        return sorted(inner for inner in itertools.islice(parent.iterdir(), MOST_ENTRIES) if inner.is_dir())
+    except OSError:
+        return []
 
 
 def _package_name(folder: Path) -> str:

@@ -23,6 +23,8 @@ MOST_FACES = 150_000
 """MuJoCo supports at most 200 000 triangles per STL file."""
 MOST_CORNERS = 64
 """Maximum number of vertices of a convex body in contacts; more are slower and not more accurate on a floor."""
+MOST_COLORS = 32
+"""A mesh with more colours is drawn in grey."""
 NOTHING = 1e-30
 """Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
@@ -50,6 +52,7 @@ class Geoms:
         self.model, self.prefix, self.contact = model, prefix, contact
         self.meshes: list[Element] = []
         self.files: dict[str, bytes] = {}
+        self._parts: dict[int, list[tuple[Mesh, tuple[float, float, float, float]]]] = {}
         self._known: dict[tuple[int, bool], list[str]] = {}
 
     def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
@@ -72,10 +75,23 @@ class Geoms:
             geoms += self._parse_shape(
                 part, matrix, f"{self.prefix}{link.name}/{number}", values, gliding or _rolls(part, matrix, axle)
             )
-        for number, part in enumerate(link.visuals):
+        for number, part in enumerate(one for visual in link.visuals for one in self._painted(visual)):
             values = {"group": "2", "contype": "0", "conaffinity": "0", "rgba": row(part.color or GREY)}
             geoms += self._parse_shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
         return geoms
+
+    def _painted(self, part: LinkShape) -> list[LinkShape]:
+        """Return a visual as one shape for each colour of its mesh; a colour in the robot file comes first."""
+        mesh = part.shape
+        if part.color is not None or not isinstance(mesh, Mesh) or mesh.colors is None:
+            return [part]
+        if id(mesh) not in self._parts:
+            colors, which = np.unique(mesh.colors, axis=0, return_inverse=True)
+            if len(colors) > MOST_COLORS:
+                return [part]
+            rows = [(Mesh(mesh.source, mesh.vertices, mesh.faces[which.ravel() == k]), c) for k, c in enumerate(colors)]
+            self._parts[id(mesh)] = [(one, tuple((color / 255.0).tolist())) for one, color in rows]
+        return [LinkShape(one, part.origin, part.name, color) for one, color in self._parts[id(mesh)]]
 
     def _parse_shape(
         self, part: LinkShape, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False

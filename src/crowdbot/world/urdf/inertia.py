@@ -15,7 +15,7 @@ __all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inerti
 
 Floats = NDArray[np.float64]
 DENSITY = 1000.0
-"""Density [kg/m3] of links with a shape but without mass: water, the default of MuJoCo."""
+"""Density [kg/m3] of water, for a mass without shape, and for shapes of a file without any mass."""
 SMALLEST = 1e-12
 TOO_LARGE = 3.0
 """An inertia is reported if it fits a body larger than the shape by this factor."""
@@ -48,8 +48,8 @@ def repair_inertia(
 ) -> tuple[LinkInertia | None, str]:
     """Return a physical inertial, and the repair as the end of a sentence; empty if nothing was repaired.
 
-    A missing mass is computed from the shapes at the density of water. A missing or unphysical inertia is replaced by
-    that of the homogeneous shapes at the given mass, or without shapes by that of a ball of water of this mass.
+    A link without mass has no inertial. A missing or unphysical inertia is replaced by that of the homogeneous shapes
+    at the given mass, or without shapes by that of a ball of water of this mass.
 
     Args:
         mass: given mass [kg]; None or 0 if missing.
@@ -59,12 +59,7 @@ def repair_inertia(
     """
     solid = solid_of(shapes)
     if not mass:
-        if solid is None:
-            return None, ""
-        weight = DENSITY * solid.volume
-        why = "has no inertial" if mass is None else "has no mass"
-        found = LinkInertia(weight, solid.center, solid.inertia(weight))
-        return found, f"{why}; mass {weight:.3g} kg and inertia are computed from its shape at {DENSITY:g} kg/m3"
+        return None, ""
     wrong = "it has no inertia" if tensor is None else unphysical(tensor)
     place = np.zeros(3) if center is None else center
     if not wrong:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import logging
 import warnings
@@ -12,6 +13,7 @@ import numpy as np
 
 from crowdbot.core import InputError, import_optional, reject_entities
 
+from .piece_cache import load_or_compute_pieces
 from .shapes import ConvexPiece, Mesh
 
 __all__ = ["FORMATS", "read_mesh", "with_pieces"]
@@ -20,6 +22,8 @@ FORMATS = ("stl", "dae", "obj", "ply", "glb")
 MOST_BYTES = 64_000_000
 MOST_TRIANGLES = 2_000_000
 MOST_PIECES = 16
+RESOLUTION = 20_000
+"""Number of voxels of the convex decomposition."""
 LOOSE = 1.3
 """If the convex hull exceeds the volume of the mesh by this factor, the mesh is decomposed into convex pieces."""
 
@@ -46,8 +50,7 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
     data = path.read_bytes()
     if kind == "dae":
         reject_entities(data, path.name)
-    loaded = _load_trimesh(data, kind)
-    loaded.apply_transform(np.diag([*scale, 1.0]))
+    loaded, colors = _load_trimesh(data, kind, scale)
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
     if not len(faces):
         raise InputError("it has no triangles")
@@ -55,11 +58,9 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
     if len(faces) > MOST_TRIANGLES:
         raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise InputError(f"a triangle names the point {faces.max()}, and it holds {len(vertices)} points")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
-    return Mesh(source, vertices, faces)
+    return Mesh(source, vertices, faces, colors=colors if colors is not None and len(colors) == len(faces) else None)
 
 
 def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
@@ -77,12 +78,12 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
     around = hull.solid().volume
     loose = around > LOOSE * max(volume, 1e-12)
     if method == "hull" or (method == "auto" and not loose):
-        return Mesh(mesh.source, mesh.vertices, mesh.faces, (hull,)), ""
-    pieces = _decompose(mesh)
+        return dataclasses.replace(mesh, pieces=(hull,)), ""
+    pieces = load_or_compute_pieces(mesh, f"V-HACD {MOST_PIECES} {RESOLUTION}", _decompose)
     if pieces:
-        return Mesh(mesh.source, mesh.vertices, mesh.faces, pieces), ""
+        return dataclasses.replace(mesh, pieces=pieces), ""
     return (
-        Mesh(mesh.source, mesh.vertices, mesh.faces, (hull,)),
+        dataclasses.replace(mesh, pieces=(hull,)),
         f"uses its convex hull, {around / max(volume, 1e-12):.1f} times its volume"
         " (install vhacdx for a convex decomposition)",
     )
@@ -96,20 +97,44 @@ def _trimesh() -> Any:
     return module
 
 
-def _load_trimesh(data: bytes, kind: str) -> Any:
-    """Return the content of the file as one trimesh, in metres."""
+def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> tuple[Any, Any]:
+    """Return the content of the file as one trimesh, in metres, with its scale, and the colours of its triangles."""
     trimesh = _trimesh()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=None)
+            for part in scene.geometry.values():
+                _check_faces(part)
             meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+            colors = _face_colors(meshes) if kind in ("dae", "glb") else None
             whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
+            _check_faces(whole)
+            whole.apply_scale(_unit(data) if kind == "dae" else 1.0)
+            whole.apply_transform(np.diag([*scale, 1.0]))
+        except InputError:
+            raise
         except Exception as error:  # a broken file causes many kinds of exceptions inside the libraries
             raise InputError(f"it cannot be read as {kind}: {type(error).__name__}: {str(error)[:120]}") from None
-    factor = _unit(data) if kind == "dae" else 1.0
-    whole.apply_scale(factor)
-    return whole
+    return whole, colors
+
+
+def _face_colors(meshes: list[Any]) -> Any:
+    """Return the colours ``[M, 4]`` of the triangles of all parts from their materials, or None without materials."""
+    rows = []
+    for part in meshes:
+        main = np.asarray(getattr(getattr(part.visual, "material", None), "main_color", ()))
+        if main.shape != (4,):
+            return None
+        rows.append(np.tile(main.astype(np.uint8), (len(part.faces), 1)))
+    return np.concatenate(rows) if rows else None
+
+
+def _check_faces(part: Any) -> None:
+    """Raise an error if a triangle names a point that does not exist; transformations would fail on it."""
+    faces, count = getattr(part, "faces", None), len(getattr(part, "vertices", ()))
+    if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= count):
+        raise InputError(f"a triangle names the point {faces.max()}, and it holds {count} points")
 
 
 def _unit(data: bytes) -> float:
@@ -154,7 +179,7 @@ def _decompose(mesh: Mesh) -> tuple[ConvexPiece, ...]:
     try:
         from trimesh.decomposition import convex_decomposition
 
-        parts = convex_decomposition(body, maxConvexHulls=MOST_PIECES, resolution=20_000, asyncACD=False)
+        parts = convex_decomposition(body, maxConvexHulls=MOST_PIECES, resolution=RESOLUTION, asyncACD=False)
     except ImportError:
         return ()
     pieces = [_hull(part["vertices"]) for part in parts]

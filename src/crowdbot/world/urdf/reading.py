@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
-from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
+from crowdbot.core import Element, InputError, RobotError, did_you_mean
 
 from .elements import UrdfReader
-from .folders import Folders, robot_folder
 from .joints import read_joint
 from .links import read_link
+from .masses import add_missing_mass
 from .materials import read_materials
-from .model import Joint, Link, LinkInertia, Remark, RobotModel
+from .model import Joint, Link, Remark, RobotModel
+from .robot_document import parse_robot_file
 
 __all__ = ["read_urdf"]
 
 MOST_LINKS = 2000
-TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
-"""Inertial of a moving link without mass and shape: a ball of 1 gram with a diameter of 16 mm."""
 
 
 def read_urdf(
@@ -30,19 +26,24 @@ def read_urdf(
     folder: Path | None = None,
     packages: Mapping[str, Path] | None = None,
     colliders: str = "auto",
+    arguments: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
 ) -> RobotModel:
-    """Read a robot from a URDF.
+    """Read a robot from a URDF, xacro or SDF file.
 
     Repairs are listed in ``remarks``. A missing or broken mesh is replaced by the other colliders of the link,
     otherwise by its visuals, otherwise by the box of equal inertia. A missing or unphysical inertia is computed from
     mass and shape.
 
     Args:
-        source: the path of a URDF file, or the XML text itself (it begins with ``<``).
-        folder: robot folder; files outside it are not read (default: :func:`crowdbot.world.urdf.robot_folder`).
+        source: the path of a URDF, xacro or SDF file, or the XML text itself (it begins with ``<``).
+        folder: robot folder; files outside it are not read (default: :func:`crowdbot.world.urdf.robot_folder`, and
+            the packages beside it that the file names).
         packages: ROS package folders by name, for ``package://name/...``; files in them may be read, too.
         colliders: conversion of meshes to convex shapes: ``auto``, ``hull`` or ``pieces``, see
             :func:`crowdbot.world.urdf.with_pieces`.
+        arguments: values of ``<xacro:arg>`` by name.
+        environment: values of ``$(env)`` and ``$(optenv)`` in xacro; the environment of the process is not read.
 
     Raises:
         RobotError: the URDF has errors; the exception lists all of them in line order.
@@ -54,38 +55,10 @@ def read_urdf(
     """
     if colliders not in ("auto", "hull", "pieces"):
         raise InputError(f"colliders = {colliders!r} must be auto, hull or pieces")
-    if isinstance(source, str) and source.lstrip().startswith("<"):
-        data, place, home, beside = source.encode("utf-8", "replace"), "urdf", folder or Path.cwd(), None
-    else:
-        path = Path(source)
-        data, place = read_bytes(path, "URDF", RobotError), str(path)
-        home, beside = folder or robot_folder(path), path.resolve().parent
-    root = parse_xml(data, place, what="URDF", root="robot", refusal=RobotError)
-    reader = UrdfReader(place, Folders(home, packages, beside), colliders)
-    _check_kind(reader, root)
-    return _robot(reader, root)
-
-
-def _check_kind(reader: UrdfReader, root: Element) -> None:
-    line = _xacro_line(root)
-    if line is not None:
-        raise RobotError(
-            f"{reader.place}:{line}: this is a xacro file; expand it first:"
-            f" xacro {Path(reader.place).name} > robot.urdf"
-        )
-    if root.tag != "robot":
-        raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, expected <robot>")
-
-
-def _xacro_line(root: Element) -> int | None:
-    """Return the line of the first xacro element or expression, or None."""
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
-        if element.tag.startswith("xacro:") or any("${" in value for value in element.attributes.values()):
-            return element.line
-        waiting.extend(reversed(element.children))
-    return None
+    parsed = parse_robot_file(source, folder=folder, packages=packages, arguments=arguments, environment=environment)
+    reader = UrdfReader(parsed.place, parsed.folders, colliders)
+    reader.remarks += [Remark("ignored", sentence) for sentence in parsed.ignored]
+    return _robot(reader, parsed.root)
 
 
 def _robot(reader: UrdfReader, root: Element) -> RobotModel:
@@ -93,6 +66,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     reader.materials = read_materials(reader, root)
     reader.notes(root)
     links: dict[str, Link] = {}
+    elements: dict[str, Element] = {}
     joints: dict[str, Joint] = {}
     lines: dict[str, int] = {}
     if len(root.each("link")) > MOST_LINKS:
@@ -100,7 +74,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     for element in root.each("link"):
         link = read_link(reader, element)
         if link is not None and reader.new(element, link.name, links):
-            links[link.name] = link
+            links[link.name], elements[link.name] = link, element
     for element in root.each("joint"):
         joint = read_joint(reader, element)
         if joint is not None and reader.new(element, joint.name, joints):
@@ -114,7 +88,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     first = next(iter(links.keys() - {joint.child for joint in joints.values()}))
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
-    kept = _add_missing_mass(reader, {key: links[key] for key in chain}, ordered)
+    kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
     return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
 
 
@@ -171,28 +145,6 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
             reader.say(
                 at, f"mimics {leader.name!r}; only revolute, continuous and prismatic joints can mimic each other"
             )
-
-
-def _add_missing_mass(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
-    """Return the links, with a small inertial for moving links that have no mass and no fixed links with mass."""
-    robot_body: dict[str, str] = {}
-    heavy: set[str] = set()
-    for name, link in links.items():
-        above = next((joint for joint in joints.values() if joint.child == name), None)
-        robot_body[name] = robot_body[above.parent] if above is not None and above.kind == "fixed" else name
-        if link.inertial is not None:
-            heavy.add(robot_body[name])
-    found = dict(links)
-    for joint in joints.values():
-        name = joint.child
-        if joint.kind != "fixed" and name not in heavy:
-            found[name] = dataclasses.replace(links[name], inertial=TOKEN)
-            text = (
-                f"{reader.place}: <link> {name!r} moves but has neither mass nor shape; its mass is set to "
-                f"{TOKEN.mass:g} kg"
-            )
-            reader.remarks.append(Remark("repaired", text))
-    return found
 
 
 def _sort_outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:

@@ -156,12 +156,14 @@ class Mesh:
         vertices: vertices ``[N, 3]`` [m].
         faces: triangles ``[M, 3]`` (int).
         pieces: convex bodies for contacts; empty for a visual mesh.
+        colors: colours ``[M, 4]`` of the triangles from the file, 0 to 255, or None.
     """
 
     source: str
     vertices: Floats
     faces: NDArray[np.int64]
     pieces: tuple[ConvexPiece, ...] = ()
+    colors: NDArray[np.uint8] | None = None
 
     def solid(self) -> Solid:
         """Return volume, centre and moments of its convex pieces, or of its bounding box without pieces."""

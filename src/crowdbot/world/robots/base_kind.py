@@ -1,0 +1,247 @@
+"""Recognition of wheels, castors and the kind of base of a robot model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.world.urdf import Cylinder, Joint, RobotModel
+from crowdbot.world.urdf.transforms import transform_points
+
+__all__ = ["BASE_KINDS", "BaseKind", "FoundWheel", "recognize_base"]
+
+Floats = NDArray[np.float64]
+BASE_KINDS = (
+    "differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional", "legged", "planar",
+)  # fmt: skip
+"""Kinds of base; ``planar`` is a base without wheels and legs that are recognized."""
+NEAR_GROUND = 0.03
+"""Height [m] above the lowest point up to which a part stands on the ground."""
+TOUCHES = 0.008
+"""Height [m] above the lowest point up to which a part without wheels touches the ground."""
+PLUGINS = {
+    "skid": "skid-steer", "mecanum": "mecanum", "planar_move": "omnidirectional", "omni": "omnidirectional",
+    "holonomic": "omnidirectional", "ackermann": "ackermann", "tricycle": "tricycle", "diff": "differential",
+}  # fmt: skip
+"""Kinds by a part of the name of a Gazebo plugin or controller."""
+
+
+class FoundWheel(NamedTuple):
+    """A wheel: joint, link, radius [m], centre ``[3]`` and axle ``[3]`` in the root frame, and steering joint."""
+
+    joint: str
+    link: str
+    radius: float
+    center: Floats
+    axle: Floats
+    steering: str
+
+
+class BaseKind(NamedTuple):
+    """What is known of a base.
+
+    Fields:
+        kind: one of :data:`BASE_KINDS`.
+        why: reason, a part of a sentence.
+        wheels: driven and steered wheels.
+        driven: joints of the driven wheels.
+        castors: links that roll or glide on the ground without a motor.
+        legs: joints of legs.
+        ground: height [m] of the lowest point in the root frame.
+    """
+
+    kind: str
+    why: str
+    wheels: tuple[FoundWheel, ...]
+    driven: tuple[str, ...]
+    castors: tuple[str, ...]
+    legs: tuple[str, ...]
+    ground: float
+
+    @property
+    def track(self) -> float:
+        """Distance [m] between the left and right wheels; 0 without wheels."""
+        sides = [float(wheel.center[1]) for wheel in self.wheels]
+        return max(sides) - min(sides) if sides else 0.0
+
+    @property
+    def rear(self) -> float:
+        """Position x [m] of the axle around which the base turns: unsteered wheels, or the middle of all."""
+        fixed = [float(wheel.center[0]) for wheel in self.wheels if not wheel.steering]
+        return sum(fixed) / len(fixed) if fixed else 0.0
+
+    @property
+    def wheelbase(self) -> float:
+        """Distance [m] between steered and other wheels; 0 without steering."""
+        steered = [float(wheel.center[0]) for wheel in self.wheels if wheel.steering]
+        return abs(sum(steered) / len(steered) - self.rear) if steered else 0.0
+
+
+def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str = "") -> BaseKind:
+    """Return wheels and kind of base of a robot.
+
+    A wheel is a rotating joint with a horizontal axle whose round child stands on the ground. Wheels below a vertical
+    joint without limits, or with "cast" in their name, are castors. The kind follows from plugins, otherwise from the
+    number, places and steering joints of the wheels.
+
+    Args:
+        model: the robot.
+        plugins: names of Gazebo plugins and controllers.
+        kind: kind of base, if it is known.
+
+    Raises:
+        InputError: ``kind`` is unknown.
+    """
+    if kind and kind not in BASE_KINDS:
+        raise InputError(
+            f"the kind of base {kind[:40]!r} must be {', '.join(BASE_KINDS)}{did_you_mean(kind, BASE_KINDS)}"
+        )
+    poses = model.poses()
+    points = {name: _points(model, name, poses) for name in model.links}
+    solid = [rows for rows in points.values() if len(rows)]
+    ground = float(min(rows[:, 2].min() for rows in solid)) if solid else 0.0
+    found, castors = [], []
+    for joint in model.movable:
+        wheel = _wheel(model, joint, poses, points[joint.child], ground)
+        if wheel is not None and _is_castor(model, joint):
+            castors.append(joint.child)
+        elif wheel is not None:
+            found.append(wheel)
+    legs = () if found else _legs(model, points, ground)
+    moving = {name for wheel in found for name in _below(model, wheel.link)}
+    for name, rows in points.items():
+        below = len(rows) > 0 and rows[:, 2].min() < ground + TOUCHES
+        if below and name not in moving and name not in castors and not legs:
+            castors.append(name)
+    named, why = (kind, "given") if kind else _kind(found, legs, plugins, model)
+    driven = tuple(wheel.joint for wheel in _driven(found, named))
+    return BaseKind(named, why, tuple(found), driven, tuple(castors), legs, ground)
+
+
+def _points(model: RobotModel, name: str, poses: Mapping[str, Floats]) -> Floats:
+    link = model.links[name]
+    rows = [
+        transform_points(poses[name] @ part.origin, part.shape.points()) for part in link.collisions or link.visuals
+    ]
+    return np.concatenate(rows) if rows else np.zeros((0, 3))
+
+
+def _wheel(
+    model: RobotModel, joint: Joint, poses: Mapping[str, Floats], points: Floats, ground: float
+) -> FoundWheel | None:
+    """Return a wheel if the child of a joint is round about a horizontal axis and stands on the ground."""
+    if joint.kind not in ("continuous", "revolute") or joint.upper - joint.lower < 2.0 * math.pi or len(points) < 4:
+        return None
+    matrix = poses[joint.child]
+    axle, center = matrix[:3, :3] @ joint.axis, matrix[:3, 3]
+    if abs(axle[2]) > 0.2 or points[:, 2].min() > ground + NEAR_GROUND:
+        return None
+    away = points - center
+    along = away @ axle
+    across = np.linalg.norm(away - along[:, None] * axle, axis=1)
+    radius = float(center[2] - points[:, 2].min())
+    if not 0.005 < radius < 2.0 or across.max() > 1.25 * radius:
+        return None
+    up = float(points[:, 2].max() - center[2])
+    if abs(up - radius) > 0.2 * radius:  # it is not round about the axle
+        return None
+    for part in model.links[joint.child].collisions:
+        if isinstance(part.shape, Cylinder) and abs(part.shape.radius - radius) < 0.02 * radius:
+            radius = part.shape.radius
+    return FoundWheel(joint.name, joint.child, radius, center, axle, _steering(model, joint, poses))
+
+
+def _steering(model: RobotModel, joint: Joint, poses: Mapping[str, Floats]) -> str:
+    """Return the joint with a vertical axis and limits above a wheel, or ''."""
+    for above in _above(model, joint):
+        vertical = abs((poses[above.child][:3, :3] @ above.axis)[2]) > 0.8
+        if above.size == 1 and above.kind != "prismatic" and vertical and above.mimic is None:
+            return above.name
+    return ""
+
+
+def _above(model: RobotModel, joint: Joint) -> list[Joint]:
+    """Return the joints between a joint and the root, the nearest first."""
+    parents = {one.child: one for one in model.joints.values()}
+    found, name = [], joint.parent
+    while name in parents:
+        found.append(parents[name])
+        name = parents[name].parent
+    return found
+
+
+def _below(model: RobotModel, link: str) -> set[str]:
+    found = {link}
+    for joint in model.joints.values():
+        if joint.parent in found:
+            found.add(joint.child)
+    return found
+
+
+def _is_castor(model: RobotModel, joint: Joint) -> bool:
+    if any("cast" in name.lower() for name in (joint.name, joint.child)):
+        return True
+    free = [one for one in _above(model, joint) if one.kind == "continuous" and not one.motor.kind]
+    return bool(free) and not joint.motor.kind
+
+
+def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tuple[str, ...]:
+    """Return the joints of chains of at least two rotating joints whose last links are near the ground."""
+    found: dict[str, None] = {}
+    feet = 0
+    for name, rows in points.items():
+        if not len(rows) or rows[:, 2].min() > ground + 2.0 * NEAR_GROUND:
+            continue
+        last = next((joint for joint in model.joints.values() if joint.child == name), None)
+        chain = [] if last is None else [last, *_above(model, last)]
+        turning = [joint for joint in chain if joint.kind in ("revolute", "continuous") and joint.mimic is None]
+        if len(turning) >= 2:
+            feet += 1
+            found |= dict.fromkeys(joint.name for joint in reversed(turning))
+    return tuple(found) if feet >= 2 else ()
+
+
+def _kind(
+    wheels: list[FoundWheel], legs: tuple[str, ...], plugins: tuple[str, ...], model: RobotModel
+) -> tuple[str, str]:
+    """Return the kind of base and the reason."""
+    steered = [wheel for wheel in wheels if wheel.steering]
+    fixed = [wheel for wheel in wheels if not wheel.steering]
+    for plugin in plugins:
+        for word, kind in PLUGINS.items():
+            if word in plugin.lower():
+                several = kind == "differential" and len(wheels) >= 4
+                return ("skid-steer" if several else kind), f"the plugin {plugin[:60]}"
+    if not wheels:
+        return ("legged", f"{len(legs)} joints of legs") if legs else ("planar", "no wheels or legs are recognized")
+    if any("mecanum" in name.lower() for name in (*model.links, *model.joints)):
+        return "mecanum", "wheels with 'mecanum' in their name"
+    if len(fixed) >= 4 and any(len(_below(model, wheel.link)) > 4 for wheel in fixed):
+        return "mecanum", "wheels with rollers"
+    if any(abs(np.cross(wheel.axle, fixed[0].axle)[2]) > 0.3 for wheel in fixed):
+        return "omnidirectional", f"{len(wheels)} wheels with axles in several directions"
+    if steered and not fixed:
+        return "omnidirectional", f"all {len(wheels)} wheels are steered"
+    if steered:
+        kind = "tricycle" if len(steered) == 1 else "ackermann"
+        return kind, f"{len(steered)} steered and {len(fixed)} other wheels"
+    if abs(float(fixed[0].axle[1])) < 0.8:
+        return "planar", "the axles are not across the robot"
+    rows = {round(float(wheel.center[0]) / (0.5 * wheel.radius)) for wheel in fixed}
+    if len(fixed) >= 4 and len(rows) > 1:
+        return "skid-steer", f"{len(fixed)} wheels on {len(rows)} axles"
+    return ("differential", f"{len(fixed)} wheels on one axle") if len(fixed) > 1 else ("planar", "only one wheel")
+
+
+def _driven(wheels: list[FoundWheel], kind: str) -> list[FoundWheel]:
+    """Return the wheels that have motors: in a tricycle the steered one, in a car the others."""
+    if kind == "tricycle":
+        return [wheel for wheel in wheels if wheel.steering]
+    if kind == "ackermann":
+        return [wheel for wheel in wheels if not wheel.steering]
+    return wheels

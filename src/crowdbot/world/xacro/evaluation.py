@@ -1,0 +1,231 @@
+"""Evaluation of expression trees with limits of steps and sizes."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from crowdbot.core import InputError, did_you_mean
+
+from .expression import Tree
+from .functions import ATTRIBUTES, FUNCTIONS, MOST_ITEMS, format_text
+
+__all__ = ["Budget", "Names", "evaluate"]
+
+MOST_STEPS = 1_000_000
+LARGEST = 2.0**1000
+ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "//": operator.floordiv,
+    "%": operator.mod, "**": operator.pow,
+}  # fmt: skip
+COMPARISON: dict[str, Callable[[Any, Any], Any]] = {
+    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+    "in": lambda a, b: a in b, "not in": lambda a, b: a not in b, "is": operator.is_, "is not": operator.is_not,
+}  # fmt: skip
+
+
+MAKERS = ("sign", "binary", "tuple", "list", "dict", "each", "call")
+"""Operations that make new values."""
+
+
+class Names(Protocol):
+    """Names of an expression that are not functions: properties."""
+
+    def get(self, name: str, /) -> Any:
+        """Return the value of a property; raises ``KeyError`` if there is none."""
+
+
+class Budget:
+    """Number of steps that an expansion may still take.
+
+    >>> Budget(2).spend(3)
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: the expansion needs more than 2 steps, the maximum
+    """
+
+    def __init__(self, most: int = MOST_STEPS) -> None:
+        self.most, self.left = most, most
+
+    def spend(self, steps: int = 1) -> None:
+        """Count steps.
+
+        Raises:
+            InputError: none are left.
+        """
+        self.left -= steps
+        if self.left < 0:
+            raise InputError(f"the expansion needs more than {self.most} steps, the maximum")
+
+
+def evaluate(tree: Tree, names: Names, budget: Budget, local: Mapping[str, Any] | None = None) -> Any:
+    """Return the value of an expression tree.
+
+    Args:
+        tree: result of :func:`parse_expression`.
+        names: properties.
+        budget: limit of steps.
+        local: further names, which hide others.
+
+    Raises:
+        InputError: a name is unknown, types do not fit, or a limit is exceeded.
+    """
+    try:
+        return _Evaluation(names, budget, dict(local or {})).of(tree)
+    except InputError:
+        raise
+    except ZeroDivisionError:
+        raise InputError("an expression divides by zero") from None
+    except (KeyError, IndexError) as error:
+        raise InputError(f"there is no item {str(error)[:80]}") from None
+    except (TypeError, ValueError, ArithmeticError, AttributeError, RecursionError, MemoryError) as error:
+        raise InputError(f"an expression has no value: {str(error)[:120]}") from None
+
+
+class _Evaluation:
+    def __init__(self, names: Names, budget: Budget, local: dict[str, Any]) -> None:
+        self.names, self.budget, self.local = names, budget, local
+
+    def of(self, tree: Tree) -> Any:
+        self.budget.spend()
+        found = getattr(self, f"on_{tree[0]}")(*tree[1:])
+        return self.measure(found) if tree[0] in MAKERS else found
+
+    def measure(self, value: Any) -> Any:
+        """Return a new value if it is small enough, and count its size."""
+        if isinstance(value, int) and abs(value) > LARGEST:
+            raise InputError("a number in an expression is too large")
+        if isinstance(value, str | list | tuple | dict):
+            size = _size(value, MOST_ITEMS)
+            if size > MOST_ITEMS:
+                raise InputError(f"an expression makes a text or list longer than {MOST_ITEMS}")
+            self.budget.spend(size // 16)
+        return value
+
+    def on_value(self, value: Any) -> Any:
+        return value
+
+    def on_name(self, name: str) -> Any:
+        if name in self.local:
+            return self.local[name]
+        try:
+            return self.names.get(name)
+        except KeyError:
+            pass
+        if name in FUNCTIONS:
+            return FUNCTIONS[name]
+        raise InputError(f"the name {name[:60]!r} is not defined{did_you_mean(name, FUNCTIONS)}")
+
+    def on_if(self, condition: Tree, yes: Tree, no: Tree) -> Any:
+        return self.of(yes if self.of(condition) else no)
+
+    def on_or(self, one: Tree, other: Tree) -> Any:
+        return self.of(one) or self.of(other)
+
+    def on_and(self, one: Tree, other: Tree) -> Any:
+        return self.of(one) and self.of(other)
+
+    def on_not(self, one: Tree) -> bool:
+        return not self.of(one)
+
+    def on_sign(self, sign: str, one: Tree) -> Any:
+        value = self.of(one)
+        return -value if sign == "-" else +value
+
+    def on_compare(self, first: Tree, *pairs: tuple[str, Tree]) -> bool:
+        left = self.of(first)
+        for sign, tree in pairs:
+            right = self.of(tree)
+            if not COMPARISON[sign](left, right):
+                return False
+            left = right
+        return True
+
+    def on_binary(self, sign: str, one: Tree, other: Tree) -> Any:
+        left, right = self.of(one), self.of(other)
+        if sign == "%" and isinstance(left, str):
+            return format_text(left, right)
+        if sign == "**":
+            return _power(left, right)
+        if sign == "*":
+            for row, count in ((left, right), (right, left)):
+                if isinstance(row, str | list | tuple) and isinstance(count, int) and len(row) * count > MOST_ITEMS:
+                    raise InputError(f"an expression makes a text or list longer than {MOST_ITEMS}")
+        return ARITHMETIC[sign](left, right)
+
+    def on_tuple(self, *rows: Tree) -> tuple[Any, ...]:
+        return tuple(self.of(row) for row in rows)
+
+    def on_list(self, *rows: Tree) -> list[Any]:
+        return [self.of(row) for row in rows]
+
+    def on_dict(self, *rows: tuple[Tree, Tree]) -> dict[Any, Any]:
+        return {self.of(key): self.of(value) for key, value in rows}
+
+    def on_each(self, body: Tree, name: str, source: Tree, condition: Tree | None) -> list[Any]:
+        found, before = [], dict(self.local)
+        for value in self.of(source):
+            self.local[name] = value
+            if condition is None or self.of(condition):
+                found.append(self.of(body))
+        self.local = before
+        return found
+
+    def on_slice(self, *parts: Tree | None) -> slice:
+        return slice(*(None if part is None else self.of(part) for part in parts))
+
+    def on_index(self, one: Tree, index: Tree) -> Any:
+        value = self.of(one)
+        if not isinstance(value, str | list | tuple | dict):
+            raise InputError(f"a {type(value).__name__} has no items")
+        return value[self.of(index)]
+
+    def on_attribute(self, one: Tree, name: str) -> Any:
+        value = self.of(one)
+        if isinstance(value, dict) and name in value:
+            return value[name]
+        for kind, known in ATTRIBUTES.items():
+            if isinstance(value, kind) and name in known:
+                return getattr(value, name)
+        get = getattr(value, "namespace", None)
+        if callable(get):
+            try:
+                return get(name)
+            except KeyError:
+                pass
+        raise InputError(f"{name[:60]!r} is not an attribute that an expression can use")
+
+    def on_call(self, one: Tree, rows: tuple[Tree, ...], named: tuple[tuple[str, Tree], ...]) -> Any:
+        function = self.of(one)
+        if not callable(function):
+            raise InputError(f"a {type(function).__name__} is not a function")
+        values = [self.of(row) for row in rows]
+        for value in values:
+            self.measure(value)
+        found = function(*values, **{name: self.of(tree) for name, tree in named})
+        return found if isinstance(found, str | int | float | dict | list | tuple | None) else list(found)
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    whole = isinstance(base, int) and isinstance(exponent, int) and exponent >= 0
+    if whole and exponent * math.log2(abs(base) + 1) > 1000.0:
+        raise InputError("a power in an expression is too large")
+    found = base**exponent
+    if isinstance(found, complex):
+        raise InputError("a power in an expression is not a real number")
+    return found
+
+
+def _size(value: Any, most: int) -> int:
+    """Return the number of characters and items in a value, including inner ones; counting stops above ``most``."""
+    if isinstance(value, str):
+        return len(value)
+    if not isinstance(value, list | tuple | dict):
+        return 1
+    found = 1
+    for inner in [*value.keys(), *value.values()] if isinstance(value, dict) else value:
+        found += _size(inner, most - found)
+        if found > most:
+            break
+    return found

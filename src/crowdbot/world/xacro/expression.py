@@ -1,0 +1,285 @@
+"""Parser of xacro expressions: a small part of Python's syntax, turned into a tree.
+
+Nothing is evaluated as Python. The tree consists of tuples whose first item names the operation.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from crowdbot.core import InputError
+
+from .tokens import Token, tokens
+
+__all__ = ["Tree", "parse_expression"]
+
+Tree = tuple[Any, ...]
+MOST_DEPTH = 40
+"""Maximum nesting of one expression."""
+COMPARISONS = ("<", ">", "<=", ">=", "==", "!=", "in", "not in", "is", "is not")
+BINARY = (("+", "-"), ("*", "/", "//", "%"))
+CONSTANTS = {"True": True, "False": False, "None": None, "true": True, "false": False}
+RESERVED = ("and", "or", "not", "in", "is", "if", "else", "for", "lambda")
+
+
+def parse_expression(text: str) -> Tree:
+    """Return the tree of an expression.
+
+    Supported are numbers, strings, names, lists, tuples, dictionaries, calls with keywords, indices and slices,
+    attributes, list comprehensions, arithmetic, comparisons, ``and``, ``or``, ``not`` and ``a if condition else b``.
+
+    Raises:
+        InputError: the text is not such an expression.
+
+    >>> parse_expression("1 + a")
+    ('binary', '+', ('value', 1), ('name', 'a'))
+    """
+    parser = _Parser(text)
+    tree = parser.whole()
+    if parser.now.kind != "end":
+        parser.refuse()
+    return tree
+
+
+class _Parser:
+    """Recursive descent over the tokens."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.tokens = text.strip(), tokens(text)
+        self.place, self.depth = 0, 0
+
+    @property
+    def now(self) -> Token:
+        return self.tokens[self.place]
+
+    def refuse(self, wanted: str = "") -> None:
+        """Raise an error at the current token."""
+        shown = self.text if len(self.text) <= 80 else self.text[:77] + "..."
+        found = repr(self.now.text) if self.now.text else "its end"
+        raise InputError(f"the expression {shown!r} is not understood at {found}{wanted}")
+
+    def accept(self, *texts: str) -> str:
+        """Return the current token and advance if it is one of these signs or words; otherwise return ''."""
+        if self.now.kind in ("sign", "name") and self.now.text in texts:
+            self.place += 1
+            return self.tokens[self.place - 1].text
+        return ""
+
+    def expect(self, text: str) -> None:
+        if not self.accept(text):
+            self.refuse(f"; {text!r} is expected")
+
+    def whole(self) -> Tree:
+        """Return an expression or a tuple without brackets."""
+        first = self.conditional()
+        if self.now.text != "," or self.now.kind != "sign":
+            return first
+        rows = [first]
+        while self.accept(","):
+            if self.now.kind == "end":
+                break
+            rows.append(self.conditional())
+        return ("tuple", *rows)
+
+    def conditional(self) -> Tree:
+        self.depth += 1
+        if self.depth > MOST_DEPTH:
+            raise InputError(f"an expression is nested more than {MOST_DEPTH} levels deep")
+        found = self.either()
+        if self.accept("if"):
+            condition = self.either()
+            self.expect("else")
+            found = ("if", condition, found, self.conditional())
+        self.depth -= 1
+        return found
+
+    def either(self) -> Tree:
+        found = self.both()
+        while self.accept("or"):
+            found = ("or", found, self.both())
+        return found
+
+    def both(self) -> Tree:
+        found = self.negation()
+        while self.accept("and"):
+            found = ("and", found, self.negation())
+        return found
+
+    def negation(self) -> Tree:
+        count = 0
+        while self.accept("not"):
+            count += 1
+        found = self.comparison()
+        for _ in range(min(count, 2 + count % 2)):
+            found = ("not", found)
+        return found
+
+    def comparison(self) -> Tree:
+        first = self.binary(0)
+        pairs: list[tuple[str, Tree]] = []
+        while True:
+            sign = self.accept("<", ">", "<=", ">=", "==", "!=", "in", "is")
+            if sign == "is" and self.accept("not"):
+                sign = "is not"
+            elif not sign and self.now.text == "not" and self.tokens[self.place + 1].text == "in":
+                self.place += 2
+                sign = "not in"
+            if not sign:
+                return ("compare", first, *pairs) if pairs else first
+            pairs.append((sign, self.binary(0)))
+
+    def binary(self, level: int) -> Tree:
+        if level == len(BINARY):
+            return self.sign()
+        found = self.binary(level + 1)
+        while self.now.kind == "sign" and (sign := self.accept(*BINARY[level])):
+            found = ("binary", sign, found, self.binary(level + 1))
+        return found
+
+    def sign(self) -> Tree:
+        signs = []
+        while self.now.kind == "sign" and (sign := self.accept("-", "+")):
+            signs.append(sign)
+        if len(signs) > MOST_DEPTH:
+            raise InputError(f"an expression has more than {MOST_DEPTH} signs in a row")
+        found = self.power()
+        for sign in reversed(signs):
+            found = ("sign", sign, found)
+        return found
+
+    def power(self) -> Tree:
+        base = self.postfix()
+        if self.accept("**"):
+            self.depth += 1
+            if self.depth > MOST_DEPTH:
+                raise InputError(f"an expression is nested more than {MOST_DEPTH} levels deep")
+            base = ("binary", "**", base, self.sign())
+            self.depth -= 1
+        return base
+
+    def postfix(self) -> Tree:
+        found, count = self.atom(), 0
+        while self.now.kind == "sign" and (sign := self.accept("(", "[", ".")):
+            count += 1
+            if count > MOST_DEPTH:
+                raise InputError(f"an expression has more than {MOST_DEPTH} calls and indices in a row")
+            if sign == "(":
+                found = self.call(found)
+            elif sign == "[":
+                found = ("index", found, self.subscript())
+                self.expect("]")
+            else:
+                if self.now.kind != "name" or self.now.text.startswith("_"):
+                    self.refuse("; a name is expected after '.'")
+                found = ("attribute", found, self.now.text)
+                self.place += 1
+        return found
+
+    def call(self, function: Tree) -> Tree:
+        rows: list[Tree] = []
+        named: list[tuple[str, Tree]] = []
+        while not self.accept(")"):
+            if rows or named:
+                self.expect(",")
+                if self.accept(")"):
+                    break
+            if self.now.kind == "name" and self.tokens[self.place + 1].text == "=":
+                name = self.now.text
+                self.place += 2
+                named.append((name, self.conditional()))
+            else:
+                rows.append(self.conditional())
+        return ("call", function, tuple(rows), tuple(named))
+
+    def subscript(self) -> Tree:
+        parts: list[Tree | None] = [None]
+        while self.now.text != "]" or self.now.kind != "sign":
+            if self.accept(":"):
+                parts.append(None)
+                if len(parts) > 3:
+                    self.refuse()
+            elif parts[-1] is None:
+                parts[-1] = self.conditional()
+            else:
+                self.refuse("; ']' is expected")
+        if len(parts) > 1:
+            return ("slice", *parts)
+        if parts[0] is None:
+            self.refuse("; an index is expected")
+        return parts[0] or ()
+
+    def atom(self) -> Tree:
+        token = self.now
+        self.place += token.kind != "end"
+        if token.kind == "number":
+            return ("value", _number(token.text))
+        if token.kind == "text":
+            text = token.text[1:-1]
+            while self.now.kind == "text":  # 'a' 'b' is 'ab'
+                text += self.now.text[1:-1]
+                self.place += 1
+            return ("value", text)
+        if token.kind == "name" and token.text not in RESERVED:
+            if token.text.startswith("__"):
+                raise InputError(f"the name {token.text[:40]!r} is not allowed; names do not begin with '__'")
+            return ("value", CONSTANTS[token.text]) if token.text in CONSTANTS else ("name", token.text)
+        if token.kind == "sign" and token.text in ("(", "[", "{"):
+            return {"(": self.brackets, "[": self.row, "{": self.table}[token.text]()
+        self.place -= token.kind != "end"
+        self.refuse()
+        return ()
+
+    def brackets(self) -> Tree:
+        if self.accept(")"):
+            return ("tuple",)
+        rows, single = [self.conditional()], True
+        while self.accept(","):
+            single = False
+            if self.now.text == ")":
+                break
+            rows.append(self.conditional())
+        self.expect(")")
+        return rows[0] if single else ("tuple", *rows)
+
+    def row(self) -> Tree:
+        rows: list[Tree] = []
+        while not self.accept("]"):
+            if rows and self.accept("for"):
+                return self.comprehension(rows)
+            if rows:
+                self.expect(",")
+                if self.accept("]"):
+                    break
+            rows.append(self.conditional())
+        return ("list", *rows)
+
+    def comprehension(self, rows: list[Tree]) -> Tree:
+        if len(rows) != 1 or self.now.kind != "name" or self.now.text in RESERVED:
+            self.refuse()
+        name = self.now.text
+        self.place += 1
+        self.expect("in")
+        source = self.either()
+        condition = self.either() if self.accept("if") else None
+        self.expect("]")
+        return ("each", rows[0], name, source, condition)
+
+    def table(self) -> Tree:
+        rows: list[tuple[Tree, Tree]] = []
+        while not self.accept("}"):
+            if rows:
+                self.expect(",")
+                if self.accept("}"):
+                    break
+            key = self.conditional()
+            self.expect(":")
+            rows.append((key, self.conditional()))
+        return ("dict", *rows)
+
+
+def _number(text: str) -> int | float:
+    if text.isdigit():
+        if len(text) > 300:
+            raise InputError(f"the number {text[:20]}... has too many digits")
+        return int(text)
+    return float(text)

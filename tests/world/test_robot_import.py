@@ -1,0 +1,178 @@
+"""A maker's file becomes a robot folder that runs in both worlds, and everything guessed is listed."""
+
+import numpy as np
+import pytest
+from base_texts import BASES, base_file
+
+from crowdbot.cli import main
+from crowdbot.core import InputError, Scene, Twist
+from crowdbot.models import ORCA
+from crowdbot.world import PhysicsWorld, PlanarWorld, Robot, check_robot, import_robot, read_urdf
+
+
+def convert(folder, text, *words, name="maker"):
+    """Convert a text to a robot folder and return it."""
+    file = folder / f"{name}.urdf.xacro"
+    file.write_text(text)
+    assert main(["new", "robot", str(file), "--out", str(folder / name), *words]) == 0
+    return folder / name
+
+
+@pytest.mark.parametrize("kind", BASES)
+def test_every_kind_of_base_is_recognized_and_runs(tmp_path, capsys, kind):
+    folder = convert(tmp_path, base_file(kind))
+    table = capsys.readouterr().out
+    assert f" {kind} " in table.split("kind of base", 1)[1].splitlines()[0]
+    robot = Robot.load(folder)
+    check_robot(robot)
+    assert robot.model.mass == read_urdf(tmp_path / "maker.urdf.xacro").mass
+    drive = {"ackermann": "AckermannDrive", "tricycle": "AckermannDrive"}.get(kind, "DifferentialDrive")
+    drive = "Omnidirectional" if kind in ("mecanum", "omnidirectional", "legged") else drive
+    assert type(robot.drive).__name__ == drive
+    assert robot.base == ("wheels" if kind in ("differential", "ackermann", "tricycle") else "planar")
+    lidar = robot.mount("scan").sensor
+    assert (lidar.rays, lidar.rate, lidar.range_max, round(lidar.field_of_view, 6)) == (181, 20.0, 12.0, 3.14)
+    assert lidar.noise
+    scene = Scene.of([[0.0, 0.0]], external=[True], heading=[0.0], radius=robot.radius)
+    planar, physics = PlanarWorld(scene, ORCA(), {0: robot.drive}, 0.05), PhysicsWorld(scene, ORCA(), {0: robot}, 0.05)
+    for _ in range(40):
+        flat, solid = planar.step({0: Twist(0.3)}), physics.step({0: Twist(0.3)})
+    assert flat.position[0, 0, 0] > 0.4
+    np.testing.assert_allclose(solid.position[0, 0], flat.position[0, 0], atol=0.12)
+    assert abs(float(solid.heading[0, 0])) < 0.2
+
+
+@pytest.mark.parametrize("kind", ["differential", "skid-steer", "ackermann"])
+def test_the_printed_commands_run(tmp_path, capsys, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "maker.xacro").write_text(base_file(kind))
+    assert main(["new", "robot", "maker.xacro"]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "  crowdbot " in line]
+    assert len(lines) == 3
+    for line in lines:
+        words = line.split("  crowdbot ")[1].split()
+        if words[0] != "render":
+            assert main(words) == 0
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_the_origin_of_a_car_is_its_rear_axle(tmp_path):
+    robot = Robot.load(convert(tmp_path, base_file("ackermann")))
+    places = robot.model.poses()
+    assert abs(places["rear_left"][0, 3]) < 1e-9
+    assert robot.drive.wheelbase == pytest.approx(0.4)
+    assert robot.drive.max_steering == 0.5
+    assert sorted(wheel.steering for wheel in robot.wheels if wheel.steering) == [
+        "front_left_steer",
+        "front_right_steer",
+    ]
+    assert sum(wheel.driven for wheel in robot.wheels) == 2
+
+
+PLUGIN = """<gazebo><plugin name='p' filename='libgazebo_ros_diff_drive.so'><wheel_separation>0.4</wheel_separation>
+<wheel_diameter>0.2</wheel_diameter><max_wheel_torque>7</max_wheel_torque><max_wheel_acceleration>2.5</max_wheel_acceleration>
+<max_linear_velocity>0.6</max_linear_velocity></plugin></gazebo>"""
+
+
+def test_parameters_of_the_drive_plugin_are_taken(tmp_path):
+    text = base_file("differential").replace("</robot>", f"{PLUGIN}</robot>")
+    robot = Robot.load(convert(tmp_path, text))
+    assert (robot.drive.max_speed, robot.drive.max_acceleration) == (0.6, 2.5)
+    assert robot.model.joints["left_joint"].motor.effort == 7.0
+    assert robot.model.joints["left_joint"].motor.kind == "velocity"
+    assert robot.model.links["castor"].friction == 0.0
+
+
+def test_a_plugin_decides_and_an_option_decides_more(tmp_path):
+    file = tmp_path / "r.xacro"
+    plugin = "<gazebo><plugin name='x' filename='libgazebo_ros_planar_move.so'/></gazebo>"
+    file.write_text(base_file("skid-steer").replace("</robot>", f"{plugin}</robot>"))
+    assert import_robot(file, "r").kind == "omnidirectional"
+    assert import_robot(file, "r", kind="mecanum").kind == "mecanum"
+    with pytest.raises(InputError, match=r"kind of base 'mecanom' must be .*did you mean 'mecanum'"):
+        import_robot(file, "r", kind="mecanom")
+
+
+SENSORS = """
+<gazebo reference='laser'>
+  <sensor name='cam' type='camera'><update_rate>15</update_rate><camera><horizontal_fov>1.2</horizontal_fov>
+    <image><width>64</width><height>48</height></image></camera></sensor>
+  <sensor name='deep' type='depth_camera'><camera><image><width>64</width><height>48</height></image>
+    <clip><near>0.2</near><far>5</far></clip></camera></sensor>
+  <sensor name='rings' type='gpu_lidar'><lidar><scan><horizontal><samples>90</samples></horizontal><vertical>
+    <samples>4</samples><min_angle>-0.2</min_angle><max_angle>0.1</max_angle></vertical></scan>
+    <range><min>0.3</min><max>40</max></range></lidar></sensor>
+  <sensor name='imu' type='imu'><update_rate>100</update_rate></sensor>
+  <sensor name='echo' type='sonar'><sonar><min>0.1</min><max>3</max><radius>0.4</radius></sonar></sensor>
+  <sensor name='place' type='gps'/>
+</gazebo>
+"""
+
+
+def test_sensors_of_gazebo_tags(tmp_path, capsys):
+    robot = Robot.load(convert(tmp_path, base_file("differential").replace("</robot>", f"{SENSORS}</robot>")))
+    made = {mount.name: mount.sensor for mount in robot.mounts}
+    kinds = {name: type(sensor).__name__ for name, sensor in made.items()}
+    assert kinds == {"scan": "Lidar2D", "cam": "RGBCamera", "deep": "DepthCamera", "rings": "Lidar3D", "imu": "IMU",
+                     "echo": "Ultrasound"}  # fmt: skip
+    assert (made["cam"].rate, made["cam"].width, made["cam"].field_of_view) == (15.0, 64, 1.2)
+    assert (made["deep"].range_min, made["deep"].range_max) == (0.2, 5.0)
+    assert (len(made["rings"].elevations), made["rings"].columns, made["rings"].range_max) == (4, 90, 40.0)
+    assert made["imu"].rate == 100.0
+    assert (made["echo"].range_max, made["echo"].radius) == (3.0, 0.4)
+    assert "its type is not supported" in capsys.readouterr().out
+
+
+def test_a_folder_is_not_replaced_by_mistake(tmp_path, capsys):
+    folder = convert(tmp_path, base_file("differential"))
+    file = tmp_path / "maker.urdf.xacro"
+    assert main(["new", "robot", str(file), "--out", str(folder)]) == 2
+    assert "already exists" in capsys.readouterr().err
+    assert main(["new", "robot", str(file), "--out", str(folder), "--force"]) == 0
+    other = tmp_path / "mine"
+    other.mkdir()
+    (other / "notes.txt").write_text("keep")
+    assert main(["new", "robot", str(file), "--out", str(other), "--force"]) == 2
+    assert "is not a robot folder and is not replaced" in capsys.readouterr().err
+    assert (other / "notes.txt").read_text() == "keep"
+    assert not list(tmp_path.glob("*.part"))
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--package", "x"], "--package 'x' must be NAME=VALUE"),
+        (["--package", "x=/nowhere"], "must name an existing folder"),
+        (["--arg", "x=1"], "--arg 'x=1' must be NAME:=VALUE"),
+        (["--arg", "x:=1"], "there is no argument 'x'"),
+        (["--out", "a b"], "'a b' is not a valid robot name"),
+    ],
+)
+def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, words, sentence):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "maker.xacro").write_text(base_file("differential"))
+    assert main(["new", "robot", "maker.xacro", *words]) == 2
+    assert sentence in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["maker.xacro"]
+
+
+FOREIGN = {
+    "husky/husky_description/urdf/husky.urdf.xacro": ("skid-steer", 4),
+    "jackal/jackal_description/urdf/jackal.urdf.xacro": ("skid-steer", 4),
+    "kobuki/kobuki_standalone.urdf.xacro": ("differential", 2),
+    "turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf": ("differential", 2),
+    "turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle_pi.urdf": ("differential", 2),
+}
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_real_robots_become_folders(urdf, tmp_path, name):
+    out = tmp_path / "real"
+    assert main(["new", "robot", str(urdf / name), "--out", str(out)]) == 0
+    robot = Robot.load(out)
+    assert robot.model.mass == pytest.approx(read_urdf(urdf / name, colliders="hull").mass, rel=1e-9)
+    kind, count = FOREIGN[name]
+    assert robot.about.startswith(kind)
+    made = import_robot(urdf / name, "real")
+    assert sum(guess.what.startswith("wheel ") for guess in made.guesses) == count
+    check_robot(robot)
