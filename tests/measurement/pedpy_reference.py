@@ -60,7 +60,9 @@ def measure(rows):
     found["voronoi"] = density
     speeds = {}
     for name, border in (
-        ("exclude", Border.BORDER_EXCLUDE), ("adaptive", Border.BORDER_ADAPTIVE), ("single", Border.BORDER_SINGLE_SIDED),
+        ("exclude", Border.BORDER_EXCLUDE),
+        ("adaptive", Border.BORDER_ADAPTIVE),
+        ("single", Border.BORDER_SINGLE_SIDED),
     ):
         speeds[name] = pedpy.compute_individual_speed(
             traj_data=tracks, frame_step=STEP, speed_calculation=border, compute_velocity=True
@@ -96,19 +98,22 @@ def measure(rows):
     found["passages"] = passages
     inside = pedpy.compute_classic_density(traj_data=tracks, measurement_area=between)
     found["passing_density"] = pedpy.compute_passing_density(density_per_frame=inside, frames=passages)
-    found["passing_speed"] = pedpy.compute_passing_speed(
-        frames_in_area=passages, frame_rate=FPS, distance=abs(WIDTH)
-    )
+    found["passing_speed"] = pedpy.compute_passing_speed(frames_in_area=passages, frame_rate=FPS, distance=abs(WIDTH))
     found["neighbors"] = pedpy.compute_neighbors(cells, as_list=False)
     found["neighbor_distance"] = pedpy.compute_neighbor_distance(traj_data=tracks, neighborhood=found["neighbors"])
     data = table.merge(cells, on=["id", "frame"]).merge(single, on=["id", "frame"])
     for density_method, speed_method in (("VORONOI", "ARITHMETIC"), ("CLASSIC", "MEAN")):
         both = pedpy.compute_profiles(
-            data=data, walkable_area=hall, grid_size=GRID, density_method=pedpy.DensityMethod[density_method],
+            data=data,
+            walkable_area=hall,
+            grid_size=GRID,
+            density_method=pedpy.DensityMethod[density_method],
             speed_method=pedpy.SpeedMethod[speed_method],
         )
         found[f"profile_{density_method.lower()}"] = np.mean(both[0], axis=0)
-    return {name: getattr(value, "to_numpy", lambda value=value: value)().astype(float) for name, value in found.items()}
+    return {
+        name: getattr(value, "to_numpy", lambda value=value: value)().astype(float) for name, value in found.items()
+    }
 
 
 if __name__ == "__main__":

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pedpy_reference import AREA, CORNERS, CUT_OFF, FPS, GRID, LINE, PILLAR, STEP, WIDTH
 
 from crowdbot import measurement as measure
 from crowdbot.data import Trajectories
-from pedpy_reference import AREA, CORNERS, CUT_OFF, FPS, GRID, LINE, PILLAR, STEP, WIDTH
 
 FILE = Path(__file__).parents[1] / "reference" / "pedpy" / "two_way.npz"
 
@@ -63,7 +63,9 @@ def test_classic_and_voronoi_density(tracks, cells, pedpy):
     same(measure.compute_voronoi_density(tracks, cells, AREA_), pedpy["voronoi"], ["frame", "density"])
 
 
-@pytest.mark.parametrize(("border", "name"), [("exclude", "exclude"), ("adaptive", "adaptive"), ("single-sided", "single")])
+@pytest.mark.parametrize(
+    ("border", "name"), [("exclude", "exclude"), ("adaptive", "adaptive"), ("single-sided", "single")]
+)
 def test_individual_speed(tracks, pedpy, border, name):
     found = measure.compute_individual_speed(tracks, STEP, border=border)
     same(found, pedpy[f"speed_{name}"], ["id", "frame", "speed", "v_x", "v_y"])

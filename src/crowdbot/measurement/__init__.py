@@ -17,7 +17,7 @@ from .flow import (
     mean_flow,
 )
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
-from .lanes import compute_lane_order, lane_order, walking_direction
+from .lanes import LANE_BAND, compute_lane_order, lane_order, walking_direction
 from .movement import (
     BORDERS,
     compute_individual_acceleration,
@@ -32,18 +32,26 @@ from .neighbors import (
     compute_pair_distribution_function,
 )
 from .passing import compute_frame_range_in_area, compute_passing_density, compute_passing_speed
+from .plots import plot_measurements
 from .profiles import DENSITY_PROFILES, SPEED_PROFILES, Grid, compute_density_profile, compute_speed_profile
+from .rows import select_rows
 from .steady import SteadyState, combine_steady_states, detect_steady_state, steady_threshold
+from .survey import FIGURES, METHODS, MeasurementPlan, Measurements, measure
 from .waves import StopAndGo, compute_stop_and_go, compute_stops, wave_speed
 
 __all__ = [
     "BORDERS",
     "DENSITY_PROFILES",
+    "FIGURES",
+    "LANE_BAND",
+    "METHODS",
     "SPEED_PROFILES",
     "CutOff",
     "Grid",
     "MeasurementArea",
     "MeasurementLine",
+    "MeasurementPlan",
+    "Measurements",
     "StartsMean",
     "SteadyState",
     "StopAndGo",
@@ -82,6 +90,9 @@ __all__ = [
     "lane_order",
     "mean_flow",
     "mean_over_starts",
+    "measure",
+    "plot_measurements",
+    "select_rows",
     "steady_threshold",
     "walking_direction",
     "wave_speed",

@@ -100,9 +100,7 @@ def compute_individual_voronoi_polygons(
     return table(id=tracks.id, frame=tracks.frame, polygon=cells, density=1.0 / shapely.area(cells))
 
 
-def compute_voronoi_density(
-    tracks: Trajectories, polygons: pd.DataFrame, area: MeasurementArea
-) -> pd.DataFrame:
+def compute_voronoi_density(tracks: Trajectories, polygons: pd.DataFrame, area: MeasurementArea) -> pd.DataFrame:
     """Return the Voronoi density of an area in each frame: columns frame, density [1/m2].
 
     ``rho(t) = sum_i A(V_i(t) and M) / A(V_i(t)) / A(M)`` with the Voronoi cells V_i and the area M.

@@ -22,11 +22,13 @@ if TYPE_CHECKING:
 __all__ = ["compute_encounters", "compute_time_to_collision_distribution", "distribution"]
 
 
-def compute_encounters(tracks: Trajectories, velocity: pd.DataFrame, radius: float, reach: float = 10.0) -> pd.DataFrame:
+def compute_encounters(
+    tracks: Trajectories, velocity: pd.DataFrame, radius: float, reach: float = 10.0
+) -> pd.DataFrame:
     """Return all pairs of people in reach in each frame: columns id, other_id, frame, clearance [m], ttc [s].
 
-    ``clearance = |x_j - x_i| - 2 r``. ``ttc`` is the time until two discs of radius r touch at constant velocities: 0 in
-    contact, infinite without a collision.
+    ``clearance = |x_j - x_i| - 2 r``. ``ttc`` is the time until two discs of radius r touch at constant velocities:
+    0 in contact, infinite without a collision.
 
     Args:
         tracks: the recording.
@@ -75,8 +77,8 @@ def compute_time_to_collision_distribution(
 ) -> pd.DataFrame:
     """Return the distribution of times to collision against people who do not interact.
 
-    For people who do not interact, the frames of all rows (with their velocities) are shuffled. A fast decay of g towards
-    small tau shows that people avoid collisions.
+    For people who do not interact, the frames of all rows (with their velocities) are shuffled. A fast decay of g
+    towards small tau shows that people avoid collisions.
 
     Args:
         tracks, velocity, radius: as in :func:`compute_encounters`.
@@ -133,7 +135,9 @@ def distribution(values: Floats, bin_size: float, low: float, high: float) -> pd
     count = np.histogram(known[np.isfinite(known)], edges)[0]
     total = max(len(known), 1)
     below = np.searchsorted(np.sort(known), edges[1:], side="left")
-    return table(value=edges[:-1] + 0.5 * bin_size, count=count, density=count / total / bin_size, cumulative=below / total)
+    return table(
+        value=edges[:-1] + 0.5 * bin_size, count=count, density=count / total / bin_size, cumulative=below / total
+    )
 
 
 def _pairs(tracks: Trajectories, rows: Integers, frame: Integers, reach: float) -> tuple[Integers, Integers]:

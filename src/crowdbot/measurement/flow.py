@@ -6,17 +6,17 @@ into pedestrian flow through bottlenecks, doi 10.1287/trsc.1090.0263.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
 
 from .geometry import MeasurementLine
 from .movement import compute_individual_speed
-from .rows import Floats, Integers, check_metres, every_frame, rows_at, table
+from .rows import Floats, check_metres, every_frame, rows_at, table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,9 +35,7 @@ ON_LINE = 1e-5
 """People nearer to a line than this [m] at the end of a step have not crossed it yet."""
 
 
-def compute_crossing_frames(
-    tracks: Trajectories, line: MeasurementLine, count_on_line: bool = False
-) -> pd.DataFrame:
+def compute_crossing_frames(tracks: Trajectories, line: MeasurementLine, count_on_line: bool = False) -> pd.DataFrame:
     """Return all crossings of a line in either direction: columns id, frame, the first frame behind the line.
 
     Args:
@@ -67,12 +65,13 @@ def compute_n_t(tracks: Trajectories, line: MeasurementLine) -> tuple[pd.DataFra
     The first table has the columns frame, cumulative_pedestrians, time [s] (since the first frame); the second id,
     frame, sorted by frame.
 
-    >>> tracks = Trajectories([1, 2] * 3, [0, 0, 1, 1, 2, 2], [-0.5, -1.5, 0.5, -0.5, 1.5, 0.5], [0.0] * 6, row_rate=1.0)
+    >>> x = [-0.5, -1.5, 0.5, -0.5, 1.5, 0.5]
+    >>> tracks = Trajectories([1, 2] * 3, [0, 0, 1, 1, 2, 2], x, [0.0] * 6, row_rate=1.0)
     >>> compute_n_t(tracks, MeasurementLine((0, -1), (0, 1)))[0].cumulative_pedestrians.tolist()
     [0, 1, 2]
     """
     crossings = compute_crossing_frames(tracks, line)
-    first = crossings.groupby("id", as_index=False).frame.min().sort_values(["frame", "id"], ignore_index=True)
+    first = crossings.groupby("id")["frame"].min().reset_index().sort_values(["frame", "id"], ignore_index=True)
     frames = every_frame(tracks)
     passed = np.searchsorted(first.frame.to_numpy(), frames, side="right")
     time = (frames - frames[0]) / tracks.fps
@@ -192,7 +191,7 @@ def compute_line_flow(
     density = joined.density.to_numpy()
     frames = every_frame(tracks)
     slot = ((joined.frame - frames[0]) // tracks.frame_step).to_numpy()
-    columns: dict[str, Floats | Integers] = {"frame": frames}
+    columns: dict[str, Any] = {"frame": frames}
     for name, values in (("density", density * part), ("speed", orthogonal), ("flow", orthogonal * density)):
         total = np.zeros(len(frames))
         for side in (1, -1):
@@ -204,7 +203,7 @@ def compute_line_flow(
     return table(**columns)
 
 
-def _intersects(start: Floats, end: Floats, line: MeasurementLine) -> np.ndarray:
+def _intersects(start: Floats, end: Floats, line: MeasurementLine) -> NDArray[np.bool_]:
     """Return whether the ways ``[N, 2]`` from start to end meet the line, ends included."""
     import shapely
 

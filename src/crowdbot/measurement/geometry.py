@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories
+from crowdbot.data import Trajectories, walkable_rings
 
 __all__ = ["MeasurementArea", "MeasurementLine", "WalkableArea"]
 
@@ -32,7 +32,7 @@ class MeasurementArea:
     2.0
     """
 
-    corners: Floats
+    corners: ArrayLike
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "corners", _points(self.corners, "a measurement area", 3))
@@ -128,8 +128,8 @@ class WalkableArea:
     11.0
     """
 
-    border: Floats
-    obstacles: Sequence[Floats] = ()
+    border: ArrayLike
+    obstacles: Sequence[ArrayLike] = ()
 
     def __post_init__(self) -> None:
         import shapely
@@ -162,7 +162,7 @@ class WalkableArea:
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """The smallest and largest x and y: x0, y0, x1, y1 [m]."""
-        return tuple(self.polygon.bounds)  # type: ignore[return-value]
+        return tuple(self.polygon.bounds)
 
     def covers(self, position: ArrayLike) -> NDArray[np.bool_]:
         """Return whether points ``[N, 2]`` [m] are inside or on the border."""
@@ -179,18 +179,7 @@ class WalkableArea:
         The largest clockwise ring of ``tracks.walls`` is the border, counter-clockwise rings are obstacles. Without a
         border, it is the box around all positions and ``margin`` [m].
         """
-        rings = [np.asarray(ring, dtype=np.float64) for ring in tracks.walls if len(ring) > 2]
-        borders = [ring for ring in rings if _signed_area(ring) < 0.0]
-        solids = [ring for ring in rings if _signed_area(ring) > 0.0]
-        if borders:
-            return cls(max(borders, key=lambda ring: -_signed_area(ring)), solids)
-        (x0, y0), (x1, y1) = tracks.position.min(axis=0) - margin, tracks.position.max(axis=0) + margin
-        return cls(np.asarray([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]), solids)
-
-
-def _signed_area(ring: Floats) -> float:
-    x, y = ring.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+        return cls(*walkable_rings(tracks, margin))
 
 
 def _points(values: Any, what: str, least: int) -> Floats:

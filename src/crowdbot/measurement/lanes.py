@@ -17,13 +17,13 @@ from .rows import Floats, check_metres, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compute_lane_order", "lane_order", "walking_direction"]
+__all__ = ["LANE_BAND", "compute_lane_order", "lane_order", "walking_direction"]
 
-BAND = 0.3
+LANE_BAND = 0.3
 """Width of the band of a person: lateral distance [m]."""
 
 
-def lane_order(y: Floats, direction: Floats, width: float = BAND) -> float:
+def lane_order(y: Floats, direction: Floats, width: float = LANE_BAND) -> float:
     """Return the order of lanes of two directions: 0 random, 1 complete, NaN without neighbors.
 
     For each person i with m others in its band (lateral distance below ``width``, anywhere along the corridor), phi_i =
@@ -55,7 +55,7 @@ def lane_order(y: Floats, direction: Floats, width: float = BAND) -> float:
 
 
 def compute_lane_order(
-    tracks: Trajectories, axis: str = "x", every: float = 1.0, least: int = 5, width: float = BAND
+    tracks: Trajectories, axis: str = "x", every: float = 1.0, least: int = 5, width: float = LANE_BAND
 ) -> pd.DataFrame:
     """Return the order of lanes over time: columns frame, time [s], order, positive, negative (people each way).
 

@@ -109,7 +109,8 @@ def compute_mean_speed_per_frame(tracks: Trajectories, speed: pd.DataFrame, area
 
     >>> tracks = Trajectories([1, 2, 1, 2], [0, 0, 1, 1], [0.0, 1.0, 1.0, 4.0], [0.0] * 4, row_rate=1.0)
     >>> speed = compute_individual_speed(tracks, 1, border="single-sided")
-    >>> compute_mean_speed_per_frame(tracks, speed, MeasurementArea([(-1, -1), (3, -1), (3, 1), (-1, 1)])).speed.tolist()
+    >>> area = MeasurementArea([(-1, -1), (3, -1), (3, 1), (-1, 1)])
+    >>> compute_mean_speed_per_frame(tracks, speed, area).speed.tolist()
     [2.0, 1.0]
     """
     values = _speed_of_rows(tracks, speed)

@@ -53,9 +53,7 @@ def compute_frame_range_in_area(
     ends = [_pairs_in(id, leave, crossings) for crossings in met]
     kept = (starts[0] & ends[1]) | (starts[1] & ends[0])
     order = np.lexsort((enter[kept], id[kept]))
-    return table(
-        id=id[kept][order], entering_frame=enter[kept][order], leaving_frame=leave[kept][order]
-    ), area
+    return table(id=id[kept][order], entering_frame=enter[kept][order], leaving_frame=leave[kept][order]), area
 
 
 def compute_passing_density(density: pd.DataFrame, passages: pd.DataFrame) -> pd.DataFrame:

@@ -150,7 +150,7 @@ def compute_speed_profile(
         cell, person, area = _overlaps(grid, joined)
         weight = area if method == "voronoi" else np.ones(len(area))
         total = np.bincount(cell, weight * joined.speed.to_numpy()[person], minlength=size)
-        count = np.bincount(cell, weight, minlength=size)
+        count: Floats = np.bincount(cell, weight, minlength=size)
     else:
         joined = tracks.to_frame().merge(speed, on=["id", "frame"])
         place, value = joined[["x", "y"]].to_numpy(), joined.speed.to_numpy()
@@ -184,7 +184,7 @@ def _overlaps(grid: Grid, polygons: pd.DataFrame) -> tuple[Integers, Integers, F
 
 
 def _gaussian(grid: Grid, place: Floats, weight: Floats, width: float) -> Floats:
-    """Return ``sum_i weight_i g(c - x_i)`` at the centers c of the cells, with the two-dimensional Gaussian g [1/m2]."""
+    """Return ``sum_i weight_i g(c - x_i)`` at the centers c of cells, with a Gaussian g [1/m2]."""
     if not width > 0.0:
         raise InputError(f"the width of a Gaussian must be above 0, not {width}")
     sigma = width / (2.0 * math.sqrt(2.0 * math.log(2.0)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from crowdbot.data import Trajectories
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Floats", "Integers", "check_metres", "check_step", "every_frame", "rows_at", "table"]
+__all__ = ["Floats", "Integers", "check_metres", "check_step", "every_frame", "rows_at", "select_rows", "table"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -76,3 +77,21 @@ def rows_at(tracks: Trajectories, frame: Integers, id: Integers | None = None) -
     wanted = np.where(known, rank * span + (frame - tracks.frame[0]), -1)
     index = np.minimum(np.searchsorted(key[order], wanted), len(order) - 1)
     return np.where(key[order][index] == wanted, order[index], -1)
+
+
+def select_rows(tracks: Trajectories, rows: NDArray[np.bool_]) -> Trajectories:
+    """Return the rows ``[N]`` of a recording that are True, with its time base.
+
+    Raises:
+        DataError: no row is left.
+
+    >>> tracks = Trajectories([7, 7, 8], [0, 1, 1], [0.0, 1.0, 5.0], [0.0, 0.0, 0.0], row_rate=1.0)
+    >>> select_rows(tracks, tracks.x < 3.0).ids.tolist()
+    [7]
+    """
+    if not np.any(rows):
+        raise DataError(f"{tracks.name}: no row is left to measure")
+    arrays: dict[str, Any] = {name: getattr(tracks, name)[rows] for name in ("id", "frame", "x", "y")}
+    ids = {int(id) for id in np.unique(arrays["id"])}
+    labels = {id: label for id, label in tracks.labels.items() if id in ids}
+    return dataclasses.replace(tracks, **arrays, robots=tracks.robots & ids, labels=labels, scenes=())

@@ -23,7 +23,7 @@ __all__ = ["SteadyState", "combine_steady_states", "detect_steady_state", "stead
 
 LIMIT = 6.0
 """Range of the normal distribution that is discretised [standard deviations]."""
-NODES = 48
+NODES = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,8 @@ class SteadyState:
         intervals: first and last time of each, ``[M, 2]``, in the units of ``time``.
         statistic: ``[N]`` values of s.
         threshold: threshold of s.
-        mean, deviation, autocorrelation: of the reference process; the autocorrelation is that of two successive values.
+        mean, deviation: of the reference process.
+        autocorrelation: of two successive values of the reference process.
     """
 
     intervals: Floats
@@ -155,7 +156,7 @@ def _levels(up: Floats, down: Floats, s_max: int) -> Floats:
     """
     n = len(up)
     eye = np.eye(n)
-    ratio = [np.empty((0, 0))] * (s_max + 1)  # p_s = ratio_s p_(s-1)
+    ratio: list[Floats] = [np.empty((0, 0))] * (s_max + 1)  # p_s = ratio_s p_(s-1)
     ratio[s_max] = np.linalg.solve(eye - up, up)
     for s in range(s_max - 1, 0, -1):
         ratio[s] = np.linalg.solve(eye - down @ ratio[s + 1], up)
@@ -166,7 +167,7 @@ def _levels(up: Floats, down: Floats, s_max: int) -> Floats:
     for s in range(s_max + 1):
         p = p if s == 0 else ratio[s] @ p
         share[s] = p.sum()
-    return share / share.sum()
+    return np.asarray(share / share.sum())
 
 
 def _nodes(q: float) -> tuple[Floats, Floats]:
@@ -184,10 +185,16 @@ def _quantile(alpha: float) -> float:
 
 
 def _intervals(time: Floats, statistic: Floats, threshold: int, s_max: int) -> Floats:
-    """Return the runs below the threshold, shifted by the reaction times."""
+    """Return the runs below the threshold, shifted by the reaction times; overlapping ones are joined."""
     step = float(time[1] - time[0])
     steady = np.concatenate([[False], statistic < threshold, [False]])
     begin, end = np.flatnonzero(~steady[:-1] & steady[1:]), np.flatnonzero(steady[:-1] & ~steady[1:]) - 1
-    low = time[begin] + step - (s_max - threshold) * step
-    high = time[end] + step - threshold * step
-    return np.stack([low, high], axis=1)[low < high]
+    low = np.maximum(time[begin] + step - (s_max - threshold) * step, time[0])
+    high = np.minimum(time[end] + step - threshold * step, time[-1])
+    merged: list[list[float]] = []
+    for first, last in zip(low.tolist(), high.tolist(), strict=True):
+        if merged and first <= merged[-1][1]:
+            merged[-1][1] = max(last, merged[-1][1])
+        elif first < last:
+            merged.append([first, last])
+    return np.asarray(merged, dtype=np.float64).reshape(-1, 2)

@@ -24,6 +24,8 @@ __all__ = ["StopAndGo", "compute_stop_and_go", "compute_stops", "wave_speed"]
 
 SLOW = 0.1
 """People slower than this [m/s] stand."""
+UNIFORM = 0.01
+"""Without a larger deviation of the mean speeds in cells [m/s], there are no waves."""
 SHORTEST = 0.5
 """Shorter stops [s] are sway."""
 
@@ -101,13 +103,18 @@ def compute_stop_and_go(
 
 
 def wave_speed(
-    tracks: Trajectories, speed: pd.DataFrame, axis: str = "x", cell: float = 0.5, step: float = 0.5, fastest: float = 3.0
+    tracks: Trajectories,
+    speed: pd.DataFrame,
+    axis: str = "x",
+    cell: float = 0.5,
+    step: float = 0.5,
+    fastest: float = 3.0,
 ) -> float:
     """Return the speed of waves of slow walking along a coordinate [m/s], NaN if it is not defined.
 
     Mean speeds in cells of space and time, less their mean, are correlated along lines ``x = c t`` for speeds c from
-    ``-fastest`` to ``fastest``; the c with the largest variance of the sums along lines is returned (slant stack). Cells
-    without people are ignored. At least 5 % of the variance must be explained by the lines.
+    ``-fastest`` to ``fastest``; the c with the largest variance of the sums along lines is returned (slant stack).
+    Cells without people are ignored. At least 5 % of the variance must be explained by the lines.
 
     Args:
         tracks: the recording, all people walking the same way.
@@ -123,7 +130,7 @@ def wave_speed(
         raise InputError("the speed of a wave needs an axis x or y, and cells and a speed above 0")
     field = _field(tracks, speed, axis, cell, step)
     known = ~np.isnan(field)
-    if known.sum() < 20 or np.nanvar(field) <= 0.0:
+    if known.sum() < 20 or np.nanstd(field) < UNIFORM:
         return math.nan
     time, place = np.nonzero(known)
     value = field[known] - np.nanmean(field)
