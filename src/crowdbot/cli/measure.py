@@ -123,7 +123,7 @@ def _run(source: str, options: argparse.Namespace, report: Progress) -> list[Tra
     """Run a trial from several seeds and return its people."""
     import dataclasses
 
-    from crowdbot.simulation import run
+    from crowdbot.recording import run
     from crowdbot.trials import load_trial
 
     trial = load_trial(source, trust=options.trust)
