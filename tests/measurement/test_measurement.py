@@ -275,3 +275,15 @@ def test_wrong_recordings_are_refused():
     speed = measure.compute_individual_speed(tracks, 2)
     with pytest.raises(InputError, match="a position but no speed"):
         measure.compute_mean_speed_per_frame(tracks, speed, MIDDLE)
+
+
+def test_walls_of_a_recording_are_its_walkable_area():
+    border, wall = [(0, 0), (0, 4), (8, 4), (8, 0)], [(4, 0), (4, 3)]
+    pillar = [(1, 1), (2, 1), (2, 2), (1, 2)]
+    walls = tuple(np.asarray(ring, dtype=float) for ring in (border, wall, pillar))
+    tracks = Trajectories([1, 2], [0, 0], [3.9, 4.5], [0.5, 0.5], row_rate=1.0, walls=walls)
+    hall = measure.WalkableArea.of(tracks)
+    assert hall.area == pytest.approx(32.0 - 1.0 - 0.02 * 3.0)
+    cells = measure.compute_individual_voronoi_polygons(tracks, hall)
+    assert cells.polygon[0].bounds[2] < 4.21  # the cell does not reach through the wall
+    assert not cells.polygon[1].contains(cells.polygon[0].centroid)

@@ -28,7 +28,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="runs of each trial, by consecutive seeds (default: 1)",
     )
     add("--methods", nargs="+", default=[], metavar="NAME", help=f"{METHOD_NAMES} (default: all possible)")
-    corners = {"nargs": "+", "type": float, "metavar": "METRES"}
+    corners: dict[str, Any] = {"nargs": "+", "type": float, "metavar": "METRES"}
     add("--area", **corners, help="corners of the measurement area, X Y X Y X Y ... (default: the walkable area)")
     add("--line", nargs=4, type=float, metavar=("X1", "Y1", "X2", "Y2"), help="line for flow (default: none)")
     add("--passage", type=float, metavar="METRES", help="distance of a second line to the left, for passages"

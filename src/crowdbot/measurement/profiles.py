@@ -144,25 +144,32 @@ def compute_speed_profile(
     """
     _check_method(method, SPEED_PROFILES, polygons)
     size = grid.rows * grid.columns
-    if method in ("voronoi", "arithmetic"):
-        assert polygons is not None
-        joined = polygons.merge(speed, on=["id", "frame"])
-        cell, person, area = _overlaps(grid, joined)
-        weight = area if method == "voronoi" else np.ones(len(area))
-        total = np.bincount(cell, weight * joined.speed.to_numpy()[person], minlength=size)
-        count: Floats = np.bincount(cell, weight, minlength=size)
-    else:
+    if method == "gaussian":
         joined = tracks.to_frame().merge(speed, on=["id", "frame"])
-        place, value = joined[["x", "y"]].to_numpy(), joined.speed.to_numpy()
-        if method == "gaussian":
-            total, count = _gaussian(grid, place, value, width), _gaussian(grid, place, np.ones(len(place)), width)
-        else:
-            cell = grid.cell_of(place)
-            inside = cell >= 0
-            total = np.bincount(cell[inside], value[inside], minlength=size)
-            count = np.bincount(cell[inside], minlength=size).astype(np.float64)
+        place = joined[["x", "y"]].to_numpy()
+        total = _gaussian(grid, place, joined.speed.to_numpy(), width)
+        count = _gaussian(grid, place, np.ones(len(place)), width)
+    else:
+        cell, value, weight = _cell_speeds(tracks, grid, speed, polygons, method)
+        total = np.asarray(np.bincount(cell, weight * value, minlength=size))
+        count = np.asarray(np.bincount(cell, weight, minlength=size))
     mean = np.where(count > 0.0, total / np.where(count > 0.0, count, 1.0), np.nan)
     return mean.reshape(grid.rows, grid.columns)
+
+
+def _cell_speeds(
+    tracks: Trajectories, grid: Grid, speed: pd.DataFrame, polygons: pd.DataFrame | None, method: str
+) -> tuple[Integers, Floats, Floats]:
+    """Return cells, the speeds of people in them and their weights."""
+    if method == "mean":
+        joined = tracks.to_frame().merge(speed, on=["id", "frame"])
+        cell = grid.cell_of(joined[["x", "y"]].to_numpy())
+        inside = cell >= 0
+        return cell[inside], joined.speed.to_numpy()[inside], np.ones(int(inside.sum()))
+    assert polygons is not None
+    joined = polygons.merge(speed, on=["id", "frame"])
+    cell, person, area = _overlaps(grid, joined)
+    return cell, joined.speed.to_numpy()[person], area if method == "voronoi" else np.ones(len(area))
 
 
 def _check_method(method: str, known: tuple[str, ...], polygons: Any) -> None:

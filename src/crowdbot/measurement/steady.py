@@ -157,9 +157,9 @@ def _levels(up: Floats, down: Floats, s_max: int) -> Floats:
     n = len(up)
     eye = np.eye(n)
     ratio: list[Floats] = [np.empty((0, 0))] * (s_max + 1)  # p_s = ratio_s p_(s-1)
-    ratio[s_max] = np.linalg.solve(eye - up, up)
+    ratio[s_max] = np.asarray(np.linalg.solve(eye - up, up), dtype=np.float64)
     for s in range(s_max - 1, 0, -1):
-        ratio[s] = np.linalg.solve(eye - down @ ratio[s + 1], up)
+        ratio[s] = np.asarray(np.linalg.solve(eye - down @ ratio[s + 1], up), dtype=np.float64)
     closed = down + down @ ratio[1]
     value, vector = np.linalg.eig(closed)
     p = np.abs(np.real(vector[:, int(np.argmin(np.abs(value - 1.0)))]))

@@ -122,7 +122,7 @@ class MeasurementPlan:
             CutOff(self.cut_off)
 
     @property
-    def chosen(self) -> tuple[str, ...]:
+    def selection(self) -> tuple[str, ...]:
         """The methods that are used, in the order of ``METHODS``."""
         if self.methods:
             return tuple(name for name in METHODS if name in self.methods)
@@ -177,9 +177,9 @@ def measure(tracks: Trajectories, plan: MeasurementPlan | None = None) -> Measur
     people, walkable, notes = _people(tracks, plan)
     step = max(1, round(plan.window / people.dt)) * people.frame_step
     area = plan.area or MeasurementArea(walkable.border)
-    grid = Grid.over(walkable, plan.grid) if "profiles" in plan.chosen else None
+    grid = Grid.over(walkable, plan.grid) if "profiles" in plan.selection else None
     run = _Survey(people, plan, walkable, area, grid, step)
-    for name in plan.chosen:
+    for name in plan.selection:
         getattr(run, f"add_{name}")()
     figures = {
         "people": float(len(people.ids)),

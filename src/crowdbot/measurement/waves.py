@@ -24,6 +24,8 @@ __all__ = ["StopAndGo", "compute_stop_and_go", "compute_stops", "wave_speed"]
 
 SLOW = 0.1
 """People slower than this [m/s] stand."""
+FEWEST = 10
+"""Stops of a recording with waves."""
 UNIFORM = 0.01
 """Without a larger deviation of the mean speeds in cells [m/s], there are no waves."""
 SHORTEST = 0.5
@@ -38,7 +40,7 @@ class StopAndGo:
         share: share of person time at a stop.
         stops_per_minute: stops per minute of a person.
         duration: mean duration of a stop [s]; NaN without stops.
-        wave: speed of the stops along the file [m/s], negative against the walking direction; NaN if unknown.
+        wave: speed of the stops along the axis [m/s]; NaN with fewer than 10 stops or if it is not defined.
     """
 
     share: float
@@ -98,7 +100,7 @@ def compute_stop_and_go(
         share=float(stops.duration.sum() / 60.0 / minutes) if minutes else math.nan,
         stops_per_minute=len(stops) / minutes if minutes else math.nan,
         duration=float(stops.duration.mean()) if len(stops) else math.nan,
-        wave=wave_speed(tracks, speed, axis),
+        wave=wave_speed(tracks, speed, axis) if len(stops) >= FEWEST else math.nan,
     )
 
 

@@ -57,7 +57,9 @@ class _Reader:
 
     def trial(self, root: Element) -> Trial:
         """Return the trial."""
-        walls, people, robots = [], [], []
+        walls: list[Wall] = []
+        people: list[Agent | Spawner] = []
+        robots: list[RobotSpec] = []
         for one in root.children:
             if one.tag == "obstacle":
                 ends = [(number_of(one, f"x{k}"), number_of(one, f"y{k}")) for k in (1, 2)]

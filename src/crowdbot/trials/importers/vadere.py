@@ -84,10 +84,14 @@ class _Reader:
         self.notes[f"the model {model[:40]}: {kind} with its defaults replaces it"] = None
         simulation = scenario.get("attributesSimulation") or {}
         duration = self._number(simulation, "finishTime", 500.0)
-        spawners, sources = [], []
+        spawners: list[Spawner] = []
+        sources: list[SourceSpec] = []
         for k, source in enumerate(self._list("sources")):
             one = self._source(source, k, duration)
-            (spawners if isinstance(one, Spawner) else sources).append(one)  # type: ignore[attr-defined]
+            if isinstance(one, Spawner):
+                spawners.append(one)
+            else:
+                sources.append(one)
         return Trial(
             name=(name.strip() or "imported")[:80],
             about="Imported from Vadere.",
