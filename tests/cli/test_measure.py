@@ -44,10 +44,14 @@ def test_tables_figures_and_plots_are_written(recording, tmp_path, capsys):
 
 
 def test_starts_of_a_trial_have_means_with_intervals(tmp_path, capsys):
-    words = ["measure", "crossing-flows", "--starts", "2", "--methods", "individual", "--json", "--every", "2"]
+    words = ["measure", "crossing-flows", "--starts", "2", "--methods", "individual", "diagram", "--json"]
+    words += ["--out", str(tmp_path), "--no-plots"]
     assert main(words) == 0
     found = json.loads(capsys.readouterr().out)
     assert [one["name"] for one in found["recordings"]] == ["crossing-flows, seed 1", "crossing-flows, seed 2"]
+    with (tmp_path / "diagram-pooled.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert all(float(row["low"]) <= float(row["speed"]) <= float(row["high"]) for row in rows)
     mean = found["mean"]["mean_speed"]
     assert mean["starts"] == 2
     assert mean["low"] <= mean["mean"] <= mean["high"]

@@ -74,7 +74,7 @@ def main(options: argparse.Namespace) -> int:
         note(sentence)
     summary = _summary(found)
     if options.out is not None:
-        summary["files"] = _write(found, summary, options.out)
+        summary["files"] = _write(found, summary, options.out, options.bin)
         if not options.no_plots:
             summary["files"] += [str(file) for file in plot_measurements(found, options.out)]
     if options.json:
@@ -154,11 +154,13 @@ def _summary(found: Sequence[Measurements]) -> dict[str, Any]:
     }
 
 
-def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path) -> list[str]:
+def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path, bins: float) -> list[str]:
     """Write one CSV for each table, with the name of the recording as the first column, and the figures as JSON."""
     import os
 
     import pandas as pd
+
+    from crowdbot.measurement import pool_diagrams
 
     from .output import json_text
 
@@ -169,6 +171,9 @@ def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path) ->
         whole = pd.concat(parts, ignore_index=True)
         text = whole[["recording", *whole.columns.drop("recording")]].to_csv(index=False, lineterminator="\n")
         files.append((out / f"{name}.csv", text))
+    if len(found) > 1 and "diagram-values" in found[0].tables:
+        pooled = pool_diagrams(found, bins)
+        files.append((out / "diagram-pooled.csv", pooled.to_csv(index=False, lineterminator="\n")))
     files.append((out / "measurements.json", json_text(summary) + "\n"))
     for file, text in files:
         draft = file.with_suffix(".part")

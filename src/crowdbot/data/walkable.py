@@ -18,7 +18,7 @@ HALF = 0.01
 def walkable_rings(tracks: TrackTable, margin: float = 1.0) -> tuple[Floats, list[Floats]]:
     """Return the border of the walkable area and its obstacles, as rings ``[N, 2]`` in the units of the recording.
 
-    The largest clockwise ring of ``tracks.walls`` is the border, counter-clockwise rings are obstacles, and walls of two
+    The largest clockwise ring of ``tracks.walls`` is the border, counter-clockwise rings are obstacles, walls of two
     points are obstacles 2 cm wide. Without a border, it is the box around all positions and ``margin``.
 
     >>> from crowdbot.data import Trajectories

@@ -36,7 +36,7 @@ from .plots import plot_measurements
 from .profiles import DENSITY_PROFILES, SPEED_PROFILES, Grid, compute_density_profile, compute_speed_profile
 from .rows import select_rows
 from .steady import SteadyState, combine_steady_states, detect_steady_state, steady_threshold
-from .survey import FIGURES, METHODS, MeasurementPlan, Measurements, measure
+from .survey import FIGURES, METHODS, MeasurementPlan, Measurements, measure, pool_diagrams
 from .waves import StopAndGo, compute_stop_and_go, compute_stops, wave_speed
 
 __all__ = [
@@ -92,6 +92,7 @@ __all__ = [
     "mean_over_starts",
     "measure",
     "plot_measurements",
+    "pool_diagrams",
     "select_rows",
     "steady_threshold",
     "walking_direction",

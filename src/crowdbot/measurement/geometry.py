@@ -176,7 +176,7 @@ class WalkableArea:
     def of(cls, tracks: Trajectories, margin: float = 1.0) -> WalkableArea:
         """Return the walkable area of a recording.
 
-        The largest clockwise ring of ``tracks.walls`` is the border, counter-clockwise rings are obstacles, and walls of
+        The largest clockwise ring of ``tracks.walls`` is the border, counter-clockwise rings are obstacles, walls of
         two points are obstacles 2 cm wide. Without a border, it is the box around all positions and ``margin`` [m].
         """
         return cls(*walkable_rings(tracks, margin))

@@ -88,6 +88,7 @@ def _unity(x: str, y: str) -> Draw:
 
 CURVES: Mapping[str, tuple[str, str, Draw]] = {
     "diagram": ("Voronoi density [1/m²]", "speed [m/s]", _diagram),
+    "diagram-values": ("Voronoi density [1/m²]", "speed [m/s]", _points("density", "speed")),
     "n-t": ("time [s]", "people beyond the line", _steps),
     "passages": ("density during the passage [1/m²]", "speed of the passage [m/s]", _points("density", "speed")),
     "clearance": ("clearance [m]", "frequency [1/m]", _curve("value", "density")),
@@ -130,17 +131,20 @@ def _panels(
 ) -> Path:
     figure = _figure(7.0, 2.0 * len(columns) + 0.4)
     axes = figure.subplots(len(columns), 1, sharex=True)
-    for axis, (label, names) in zip(axes, columns, strict=True):
+    for axis, (unit, names) in zip(axes, columns, strict=True):
         for k, one in enumerate(found):
             table = one.tables[name]
             for style, column in zip(("-", ":"), names, strict=False):
-                kind = f" ({column.replace('_', ' ')})" if len(names) > 1 else ""
-                axis.plot(table.time, table[column], style, color=_color(k), label=one.name + kind, linewidth=1.2)
+                label = one.name if style == "-" else None
+                axis.plot(table.time, table[column], style, color=_color(k), label=label, linewidth=1.2)
             steady = one.tables.get("steady")
             for first, last in [] if steady is None or name != "area" else steady.to_numpy():
                 axis.axvspan(first, last, color=_color(k), alpha=0.12, linewidth=0)
-        axis.set_ylabel(label, fontsize=9)
-        _finish(axis, found, legend=axis is axes[0] or len(names) > 1)
+        axis.set_ylabel(unit, fontsize=9)
+        if names[1:]:
+            title = f"solid: {names[0]}, dotted: {names[1]}".replace("_", " ")
+            axis.set_title(title, fontsize=8, loc="left")
+        _finish(axis, found, legend=axis is axes[0])
     axes[-1].set_xlabel("time [s]")
     return _save(figure, folder / f"{name}.png")
 
@@ -158,7 +162,7 @@ def _profile(one: Measurements, name: str, title: str, folder: Path) -> Path:
     axis.plot(*np.vstack([one.area.corners, np.asarray(one.area.corners)[:1]]).T, color="white", linewidth=1.0)
     if one.line is not None:
         axis.plot(*zip(one.line.start, one.line.end, strict=True), color=COLORS[1], linewidth=1.5)
-    axis.set(xlabel="x [m]", ylabel="y [m]", title=one.name)
+    axis.set(xlabel="x [m]", ylabel="y [m]", title=one.name, xlim=(left, right), ylim=(bottom, top))
     figure.colorbar(image, ax=axis, label=title, shrink=0.9)
     return _save(figure, folder / f"profile-{name}.png")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -34,7 +35,7 @@ from .waves import compute_stop_and_go, compute_stops
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["FIGURES", "METHODS", "MeasurementPlan", "Measurements", "measure"]
+__all__ = ["FIGURES", "METHODS", "MeasurementPlan", "Measurements", "measure", "pool_diagrams"]
 
 METHODS = {
     "individual": "Voronoi density and speed of each person and frame; distribution of accelerations",
@@ -189,6 +190,25 @@ def measure(tracks: Trajectories, plan: MeasurementPlan | None = None) -> Measur
     return Measurements(tracks.name, walkable, area, plan.line, grid, run.tables, figures, (*notes, *run.notes))
 
 
+def pool_diagrams(found: Sequence[Measurements], width: float) -> pd.DataFrame:
+    """Return one fundamental diagram of several recordings or starts, with 95 % intervals over them.
+
+    Args:
+        found: results of :func:`measure` with the method ``diagram``.
+        width: width of the bins [1/m2].
+
+    Raises:
+        InputError: a result lacks the method, or there are none.
+    """
+    parts = [one.tables.get("diagram-values") for one in found]
+    if not parts or any(part is None for part in parts):
+        raise InputError("a pooled fundamental diagram needs results with the method diagram")
+    density, speed = (np.concatenate([part[name].to_numpy() for part in parts if part is not None]) for name in
+                      ("density", "speed"))  # fmt: skip
+    start = np.repeat(np.arange(len(parts)), [0 if part is None else len(part) for part in parts])
+    return compute_fundamental_diagram(density, speed, width, start)
+
+
 def _people(tracks: Trajectories, plan: MeasurementPlan) -> tuple[Trajectories, WalkableArea, list[str]]:
     """Return the people inside the walkable area, this area, and notes on left out rows."""
     walkable = plan.walkable or WalkableArea.of(tracks)
@@ -281,6 +301,7 @@ class _Survey:
     def add_diagram(self) -> None:
         states = self.states
         inside = states[self.area.contains(states[["x", "y"]].to_numpy())]
+        self.tables["diagram-values"] = inside[["id", "frame", "density", "speed"]].reset_index(drop=True)
         self.tables["diagram"] = compute_fundamental_diagram(
             inside.density.to_numpy(), inside.speed.to_numpy(), self.plan.bin, inside.id.to_numpy()
         )
