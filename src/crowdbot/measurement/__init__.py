@@ -32,11 +32,12 @@ from .neighbors import (
     compute_pair_distribution_function,
 )
 from .passing import compute_frame_range_in_area, compute_passing_density, compute_passing_speed
+from .plan import FIGURES, METHODS, MeasurementPlan
 from .plots import plot_measurements
 from .profiles import DENSITY_PROFILES, SPEED_PROFILES, Grid, compute_density_profile, compute_speed_profile
 from .rows import select_rows
 from .steady import SteadyState, combine_steady_states, detect_steady_state, steady_threshold
-from .survey import FIGURES, METHODS, MeasurementPlan, Measurements, measure, pool_diagrams
+from .survey import Measurements, measure, pool_diagrams
 from .waves import StopAndGo, compute_stop_and_go, compute_stops, wave_speed
 
 __all__ = [

@@ -1,7 +1,6 @@
 """Profiles: density, speed and flow on a grid of square cells.
 
-Definitions are those of PedPy (doi 10.5281/zenodo.7194992); Zhang, Seyfried 2014, Comparison of intersecting pedestrian
-flows based on experiments, doi 10.1016/j.physa.2014.03.004, shows such profiles.
+Definitions are those of PedPy (doi 10.5281/zenodo.7194992).
 """
 
 from __future__ import annotations

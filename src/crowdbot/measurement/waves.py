@@ -1,7 +1,6 @@
 """Stop-and-go waves: stops of each person, and the speed at which stops travel through a file of people.
 
-Portz, Seyfried 2011, Analyzing stop-and-go waves by experiment and modeling, doi 10.1007/978-1-4419-9725-8_52; Jiang et
-al. 2014, doi 10.1103/PhysRevE.89.010801 for the trajectories of such waves.
+Portz, Seyfried 2011, Analyzing stop-and-go waves by experiment and modeling, doi 10.1007/978-1-4419-9725-8_52.
 """
 
 from __future__ import annotations
