@@ -164,6 +164,14 @@ def test_a_wave_of_stops_has_its_speed(c):
         assert found.duration == pytest.approx(2.0 / -c, rel=0.25)
 
 
+def test_a_two_way_flow_has_no_wave():
+    one = wave(-0.6)
+    both = np.concatenate([one.id, one.id + 100]), np.tile(one.frame, 2), np.concatenate([one.x, -one.x])
+    tracks = Trajectories(*both, np.repeat([0.0, 1.0], len(one)), row_rate=5.0)
+    speed = measure.compute_individual_speed(tracks, 1, border="single-sided")
+    assert np.isnan(measure.compute_stop_and_go(tracks, speed).wave)
+
+
 def test_steady_walking_has_no_wave_and_no_stop():
     tracks = lattice(speed=1.0)
     speed = measure.compute_individual_speed(tracks, 2, border="single-sided")

@@ -14,6 +14,7 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
 
+from .lanes import walking_direction
 from .rows import Floats, check_metres, rows_at, table
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ class StopAndGo:
         share: share of person time at a stop.
         stops_per_minute: stops per minute of a person.
         duration: mean duration of a stop [s]; NaN without stops.
-        wave: speed of the stops along the axis [m/s]; NaN with fewer than 10 stops or if it is not defined.
+        wave: speed of the stops along the axis [m/s]; NaN with fewer than 10 stops, in two-way flows
+            (fewer than 9 of 10 people walk the same way along the axis), or if it is not defined.
     """
 
     share: float
@@ -99,7 +101,7 @@ def compute_stop_and_go(
         share=float(stops.duration.sum() / 60.0 / minutes) if minutes else math.nan,
         stops_per_minute=len(stops) / minutes if minutes else math.nan,
         duration=float(stops.duration.mean()) if len(stops) else math.nan,
-        wave=wave_speed(tracks, speed, axis) if len(stops) >= FEWEST else math.nan,
+        wave=wave_speed(tracks, speed, axis) if len(stops) >= FEWEST and _one_way(tracks, axis) else math.nan,
     )
 
 
@@ -139,6 +141,14 @@ def wave_speed(
     scores = [_explained(place * cell - c * time * step, value, cell) for c in speeds]
     best = int(np.argmax(scores))
     return float(speeds[best]) if scores[best] > 0.05 * float(np.var(value)) else math.nan
+
+
+def _one_way(tracks: Trajectories, axis: str) -> bool:
+    """Return whether at least 9 of 10 people who move along the axis walk the same way."""
+    side = walking_direction(tracks, tracks.x if axis == "x" else tracks.y)
+    people = side[np.unique(tracks.id, return_index=True)[1]]
+    moving = people[people != 0.0]
+    return len(moving) > 0 and abs(float(moving.mean())) >= 0.8
 
 
 def _field(tracks: Trajectories, speed: pd.DataFrame, axis: str, cell: float, step: float) -> Floats:
