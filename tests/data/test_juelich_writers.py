@@ -1,4 +1,4 @@
-"""Files for JuPedSim, PedPy and PeTrack: read back exactly, and read by PedPy 1.5.1 (tests/measurement)."""
+"""Files for JuPedSim, PedPy and PeTrack are read back exactly."""
 
 import sqlite3
 
