@@ -15,7 +15,7 @@ from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel
 from crowdbot.validation import CHECKS, select_models, validate, write_page
 from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
 from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
-from crowdbot.validation.lanes import LANES, NARROW, lane_order
+from crowdbot.validation.lanes import LANES, NARROW
 from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
 from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
@@ -57,46 +57,6 @@ class Lost(CrowdModel):
 
     def velocity(self, scene, dt, rng=None):
         return np.full(scene.position.shape, np.nan)
-
-
-# Lanes
-
-
-def test_order_is_one_for_lanes_and_nothing_by_chance():
-    rng = stream(1, "lanes")
-    y = rng.uniform(0.0, 4.0, 400)
-    assert lane_order(y, np.where(y < 2.0, 1.0, -1.0)) > 0.8
-    assert lane_order(y, np.ones(400)) == 1.0
-    assert abs(lane_order(y, rng.permutation(np.repeat([1.0, -1.0], 200)))) < 0.05
-    assert np.isnan(lane_order(np.arange(5.0), np.ones(5)))
-
-
-def test_what_chance_would_give_is_the_mean_over_shuffles():
-    rng = stream(2, "lanes")
-    y, side = rng.uniform(0.0, 3.0, 30), np.where(np.arange(30) < 12, 1.0, -1.0)
-    reduced = [lane_order(y, rng.permutation(side)) for _ in range(3000)]
-    assert abs(np.mean(reduced)) < 0.01
-
-
-@settings(deadline=None, max_examples=20)
-@given(st.integers(3, 40), st.integers(0, 10**6))
-def test_order_is_that_of_the_slow_twin(count, seed):
-    rng = stream(seed, "twin")
-    y, side = rng.uniform(0.0, 2.0, count), rng.choice([-1.0, 1.0], count)
-    phi, chance = [], []
-    q = (side.sum() ** 2 - count) / (count * (count - 1))
-    for i in range(count):
-        band = [side[j] for j in range(count) if j != i and abs(y[j] - y[i]) < 0.3]
-        if band:
-            phi.append((sum(band) / len(band)) ** 2)
-            chance.append((1.0 + (len(band) - 1) * q) / len(band))
-    got = lane_order(y, side)
-    if not phi:
-        assert np.isnan(got)
-    elif np.mean(chance) >= 1.0:
-        assert got == 1.0
-    else:
-        assert got == pytest.approx((np.mean(phi) - np.mean(chance)) / (1.0 - np.mean(chance)))
 
 
 # Places and ways

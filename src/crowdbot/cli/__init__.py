@@ -25,6 +25,7 @@ COMMANDS = {
     "repair": "repair the episode file of a killed run",
     "export": "write an episode as a table, Parquet or CSV",
     "experiment": "run trials with participants, instructions and questionnaires",
+    "measure": "measure density, speed and flow in recordings, episodes and trials",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "train": "train a predictor on recordings of people",

@@ -39,7 +39,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--from", dest="source", metavar="TRIAL", help="built-in name or file to copy (default: frontal)"
     )
     begin.add_argument(
-        "--import", dest="original", type=Path, metavar="FILE", help="file of the CrowdBot simulator (2021)"
+        "--import",
+        dest="original",
+        type=Path,
+        metavar="FILE",
+        help="file of Vadere, UMANS, pedsim or the CrowdBot simulator (2021)",
     )
     begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
     group.add_argument(
@@ -160,9 +164,9 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
 
 def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
-    from crowdbot.trials import check_trial, import_original, trial_xml
+    from crowdbot.trials import check_trial, import_trial, trial_xml
 
-    done = import_original(options.original, root=options.root)
+    done = import_trial(options.original, options.root)
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1

@@ -11,6 +11,7 @@ from .readers.ucy import TO_METRES as UCY_TO_METRES
 from .recording import Recording
 from .track_writers import save
 from .trajectories import PrimaryScene, Trajectories
+from .walkable import walkable_rings
 from .windows import Windows
 
 __all__ = [
@@ -36,4 +37,5 @@ __all__ = [
     "save",
     "slice_rows",
     "steady_velocity",
+    "walkable_rings",
 ]

@@ -13,6 +13,7 @@ import numpy as np
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
+from .juelich_writers import write_jupedsim, write_petrack
 from .readers.tables import ROBOT
 from .rows import runs
 from .track_table import PrimaryScene
@@ -29,12 +30,14 @@ def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = N
 
     The formats differ in what they keep: ``parquet`` keeps everything; ``csv`` the rows, their times [s], labels,
     robots, and pixels (as ``x_px``); ``trajnetpp`` the rows, the row rate and the scenes (without scenes, one per 21
-    rows of a track); ``sgan`` (text: frame id x y) the rows only, so loading may need ``fps=tracks.fps``.
+    rows of a track); ``sgan`` (text: frame id x y) the rows only, so loading may need ``fps=tracks.fps``; ``jupedsim``
+    (SQLite of JuPedSim and PedPy) the rows, the row rate and the walkable area, ``petrack`` (text: id frame x y z) the
+    rows and the row rate. The last two number the frames without gaps.
 
     Args:
         tracks: the recording.
-        path: output file; its suffix selects the format: .txt, .csv, .parquet or .ndjson.
-        format: ``sgan``, ``csv``, ``parquet`` or ``trajnetpp`` (default: by the suffix).
+        path: output file; its suffix selects the format: .txt, .csv, .parquet, .ndjson or .sqlite.
+        format: ``sgan``, ``csv``, ``parquet``, ``trajnetpp``, ``jupedsim`` or ``petrack`` (default: by the suffix).
 
     Raises:
         InputError: the format is unknown.
@@ -142,6 +145,8 @@ _WRITERS: dict[str, Callable[[Trajectories, IO[bytes]], None]] = {
     "csv": _write_csv,
     "parquet": _write_parquet,
     "trajnetpp": _write_trajnetpp,
+    "jupedsim": write_jupedsim,
+    "petrack": write_petrack,
 }
-SUFFIXES = {".txt": "sgan", ".csv": "csv", ".parquet": "parquet", ".ndjson": "trajnetpp"}
+SUFFIXES = {".txt": "sgan", ".csv": "csv", ".parquet": "parquet", ".ndjson": "trajnetpp", ".sqlite": "jupedsim"}
 """File suffixes and their formats."""

@@ -20,9 +20,13 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .importers.foreign import import_trial
     from .importers.original import ImportedTrial, import_original, plan_of, trials_of
     from .importers.original_order import Plan
+    from .importers.pedsim import import_pedsim
     from .importers.recording import recorded_trial
+    from .importers.umans import import_umans
+    from .importers.vadere import import_vadere
     from .journey import Direction, Exit, Journey, Point, Portal, Zone
     from .notation import Points, plain
     from .parser import check_trial, parse_trial
@@ -67,9 +71,13 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "importers.foreign": ["import_trial"],
         "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
         "importers.original_order": ["Plan"],
+        "importers.pedsim": ["import_pedsim"],
         "importers.recording": ["recorded_trial"],
+        "importers.umans": ["import_umans"],
+        "importers.vadere": ["import_vadere"],
         "journey": ["Direction", "Exit", "Journey", "Point", "Portal", "Zone"],
         "notation": ["Points", "plain"],
         "parser": ["check_trial", "parse_trial"],
@@ -175,6 +183,10 @@ __all__ = [
     "expand_sweeps",
     "has_kind",
     "import_original",
+    "import_pedsim",
+    "import_trial",
+    "import_umans",
+    "import_vadere",
     "is_area_file",
     "is_code",
     "kind_of",

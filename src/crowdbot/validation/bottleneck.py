@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
+from crowdbot.measurement import MeasurementLine, crossing_times, mean_flow
 from crowdbot.models import CrowdModel
 
 from .literature import SPECIFIC_FLOW
@@ -28,6 +29,7 @@ from .scenario import (
     simulate_open,
     starts,
     stream_of,
+    tracks_of,
 )
 
 __all__ = ["BOTTLENECK", "crossings"]
@@ -103,17 +105,14 @@ BOTTLENECK = Check(
 
 def crossings(walk: CrowdTracks, x: float, e: int = 0) -> Floats:
     """Return the sorted times [s] at which people of environment ``e`` first pass ``x`` [m]."""
-    beyond = (walk.position[:, e, :, 0] > x) & walk.present[:, e]
-    some = np.any(beyond, axis=0)
-    return np.sort(walk.times[np.argmax(beyond, axis=0)[some]])
+    return crossing_times(tracks_of(walk, e), MeasurementLine((x, -HALF - 1.0), (x, HALF + 1.0)))
 
 
 def _flow(times: Floats, people: int, seconds: float) -> tuple[float, int]:
     """Return (n - 1) / (t_n - t_1) for n people; t_n is the time limit if somebody does not pass."""
     if len(times) < 2:
         return 0.0, len(times)
-    last = float(times[-1]) if len(times) == people else seconds
-    return (len(times) - 1) / (last - float(times[0])), len(times)
+    return mean_flow(times, None if len(times) == people else seconds), len(times)
 
 
 def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: float, report: Report) -> CrowdTracks:

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.measurement import lane_order
 from crowdbot.models import CrowdModel
 
 from .corridor import corridor_crowd
 from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, simulate_periodic, stream_of
 
-__all__ = ["LANES", "NARROW", "lane_order"]
+__all__ = ["LANES", "NARROW"]
 
 LENGTH = 12.0
 WIDE, DENSITY, SEEDS = 4.0, 1.0, 4
@@ -20,44 +21,12 @@ WIDE, DENSITY, SEEDS = 4.0, 1.0, 4
 NARROW_WIDTH = 2.0
 NARROW_DENSITIES = (0.5, 1.0, 1.5, 2.0)
 NARROW_SEEDS = 3
-BAND = 0.3
-"""Width of the band of a person: lateral distance [m]."""
 SECONDS, LAST = 60.0, 20.0
 NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
 ORDER = 0.5
 """Minimum lane order; recordings have about 0.5 to 1."""
 JAM = 0.1
 """Speeds below this fraction of the free speed are a jam."""
-
-
-def lane_order(y: Floats, direction: Floats) -> float:
-    """Return the order of lanes of two directions: 0 random, 1 complete, NaN without neighbors.
-
-    For each person i with m others in its band (lateral distance below 0.3 m, anywhere along the corridor), phi_i =
-    (like - unlike)^2 / m^2 (Rex & Löwen 2007). Small bands are ordered by chance. The mean of phi is therefore compared
-    with its expectation for a random permutation of the directions (the reduced order parameter of Nowak &
-    Schadschneider 2012): (mean phi - expected) / (1 - expected). For a band of m this is (1 + (m - 1) q) / m, with q =
-    ((sum of directions)^2 - N) / (N (N - 1)).
-
-    Args:
-        y: ``[N]`` lateral positions [m].
-        direction: ``[N]`` +1 or -1.
-
-    >>> lane_order(np.array([0.0, 0.1, 2.0, 2.1]), np.array([1.0, 1.0, -1.0, -1.0]))
-    1.0
-    """
-    N = len(y)
-    near = np.abs(y[:, None] - y[None, :]) < BAND
-    np.fill_diagonal(near, False)
-    band = near.sum(axis=1)
-    some = band > 0
-    if not np.any(some) or N < 3:
-        return float("nan")
-    m = band[some].astype(np.float64)
-    phi = float(np.mean((near[some] @ direction) ** 2 / m**2))
-    q = (float(direction.sum()) ** 2 - N) / (N * (N - 1))
-    chance = float(np.mean((1.0 + (m - 1.0) * q) / m))
-    return 1.0 if chance >= 1.0 else (phi - chance) / (1.0 - chance)
 
 
 def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.measurement import LANE_BAND
+
 from . import bottleneck, corridor, lanes, single_file
 from .literature import SOURCES, SPECIFIC_FLOW
 from .plots import PLOTS, draw
@@ -30,7 +32,7 @@ DEFINITIONS = {
     f" {corridor.WARM:g} s.",
     "lanes": f"A periodic track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, with 1 person/m2, half of them in each"
     f" direction; free speeds are 1.34 +- 0.26 m/s; mean over {lanes.SEEDS} initial states. Lane order: for each person"
-    f" i with m others at a lateral distance below {lanes.BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
+    f" i with m others at a lateral distance below {LANE_BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
     " phi and its expectation for randomly permuted directions, the lane order is (mean - expectation) / (1 -"
     " expectation): 0 for random directions, 1 for perfect lanes.",
     "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, with {lanes.NARROW_SEEDS} initial states per density. Speed:"

@@ -10,12 +10,23 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data import Trajectories, load
+from crowdbot.measurement import (
+    MeasurementLine,
+    WalkableArea,
+    compute_fundamental_diagram,
+    compute_headways,
+    compute_individual_speed,
+    compute_individual_voronoi_polygons,
+    crossing_times,
+    lane_order,
+    mean_flow,
+    select_rows,
+    walking_direction,
+)
 
-from .lanes import lane_order
 from .literature import line_speed, weidmann_speed
 from .scenario import Floats, Report
 
@@ -23,6 +34,8 @@ __all__ = ["METHODS", "measure_recordings"]
 
 LEAST = 20
 """Minimum number of values of a mean."""
+FAR = 1e3
+"""Half length [m] of lines that end outside all walls."""
 
 METHODS = {
     "single-file": "n56_cam1.csv, 3 m of a ring with 56 people. Density: 2 / (distance between the person ahead and the"
@@ -117,17 +130,10 @@ def _single_file(found: Callable[[str], Trajectories | None]) -> dict[str, Any] 
     tracks = found("n56_cam1.csv")
     if tracks is None:
         return None
-    place = dict(zip(zip(tracks.id.tolist(), tracks.frame.tolist(), strict=True), tracks.x.tolist(), strict=True))
-    step, values = tracks.frame_step, []
-    for frame in np.unique(tracks.frame).tolist():
-        here = tracks.frame == frame
-        order = np.argsort(tracks.x[here])
-        x, id = tracks.x[here][order], tracks.id[here][order]
-        for k in range(1, len(x) - 1):
-            before, after = place.get((id[k], frame - step)), place.get((id[k], frame + step))
-            if before is not None and after is not None:
-                values.append((2.0 / (x[k + 1] - x[k - 1]), abs(after - before) / (2.0 * tracks.dt)))
-    binned = _bins(np.asarray(values), 0.2)
+    gaps = compute_headways(tracks)
+    joined = gaps.merge(compute_individual_speed(tracks, tracks.frame_step, direction=(1.0, 0.0)), on=["id", "frame"])
+    joined = joined[joined.density.notna()]
+    binned = _bins(joined.density.to_numpy(), np.abs(joined.speed.to_numpy()), 0.2)
     return {**binned, "distance": _distance(binned, line_speed)}
 
 
@@ -136,32 +142,26 @@ def _corridors(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | 
     for corridor in CORRIDORS:
         tracks = found(f"{corridor.name}.txt")
         if tracks is not None:
-            runs[corridor.name] = _bins(_voronoi(tracks, corridor.width), 0.5)
+            runs[corridor.name] = _bins(*_voronoi(tracks, corridor.width), 0.5)
     if not runs:
         return None
     pooled = {key: [value for run in runs.values() for value in run[key]] for key in ("density", "speed")}
     return {"runs": runs, "distance": _distance(pooled, weidmann_speed)}
 
 
-def _voronoi(tracks: Trajectories, width: float) -> Floats:
-    """Return density [1/m2] and speed [m/s] of all people in the middle of a section, as rows ``[N, 2]``."""
-    import shapely
-
-    corridor = shapely.box(0.0, -4.0, width, 4.0)
-    place = dict(zip(zip(tracks.id.tolist(), tracks.frame.tolist(), strict=True), tracks.y.tolist(), strict=True))
-    half, values = round(0.5 / tracks.dt) * tracks.frame_step, []
-    for frame in np.unique(tracks.frame)[:: round(0.5 / tracks.dt)].tolist():
-        here = (tracks.frame == frame) & (np.abs(tracks.y) < 4.0)
-        if here.sum() < 3:
-            continue
-        points = tracks.position[here]
-        cells = shapely.voronoi_polygons(shapely.multipoints(points), extend_to=corridor, ordered=True)
-        area = shapely.area(shapely.intersection(shapely.get_parts(cells), corridor))
-        for k, id in enumerate(tracks.id[here].tolist()):
-            before, after = place.get((id, frame - half)), place.get((id, frame + half))
-            if abs(points[k, 1]) < 1.0 and before is not None and after is not None:
-                values.append((1.0 / area[k], abs(after - before) / (2.0 * half / tracks.frame_step * tracks.dt)))
-    return np.asarray(values)
+def _voronoi(tracks: Trajectories, width: float) -> tuple[Floats, Floats]:
+    """Return density ``[N]`` [1/m2] and speed ``[N]`` [m/s] of all people in the middle of a section."""
+    half = round(0.5 / tracks.dt) * tracks.frame_step
+    speed = compute_individual_speed(tracks, half, direction=(0.0, 1.0))
+    frames = np.unique(tracks.frame)[:: round(0.5 / tracks.dt)]
+    inside = np.isin(tracks.frame, frames) & (np.abs(tracks.y) < 4.0) & (tracks.x >= 0.0) & (tracks.x <= width)
+    # the cells of one or two people reach the ends of the section
+    count = np.bincount(tracks.frame[inside] - tracks.frame[0])
+    section = select_rows(tracks, inside & (count[np.minimum(tracks.frame - tracks.frame[0], len(count) - 1)] >= 3))
+    corridor = WalkableArea([(0.0, -4.0), (width, -4.0), (width, 4.0), (0.0, 4.0)])
+    cells = compute_individual_voronoi_polygons(section, corridor)
+    cells = cells[np.abs(section.y) < 1.0].merge(speed, on=["id", "frame"])
+    return cells.density.to_numpy(), np.abs(cells.speed.to_numpy())
 
 
 def _lanes(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | None:
@@ -175,9 +175,7 @@ def _lanes(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | None
 
 def _order(tracks: Trajectories, section: _Section) -> dict[str, Any]:
     along, across = (tracks.y, tracks.x) if section.along_y else (tracks.x, tracks.y)
-    first = np.unique(tracks.id, return_index=True)[1]
-    last = len(tracks) - 1 - np.unique(tracks.id[::-1], return_index=True)[1]
-    side = np.sign(along[last] - along[first])[np.searchsorted(tracks.ids, tracks.id)]
+    side = walking_direction(tracks, along)
     inside = (along > section.low) & (along < section.high)
     rows: list[tuple[float, float, float]] = []
     for frame in np.unique(tracks.frame)[:: round(1.0 / tracks.dt)]:
@@ -203,28 +201,15 @@ def _doors(found: Callable[[str], Trajectories | None]) -> list[dict[str, Any]]:
         tracks = found(door.file)
         if tracks is None:
             continue
-        times = np.sort([t for id in tracks.ids for t in _crossing(tracks, int(id), door.line)])
-        flow = (len(times) - 1) / float(times[-1] - times[0])
+        times = crossing_times(tracks, MeasurementLine((-FAR, door.line), (FAR, door.line)))
+        flow = mean_flow(times)
         flows.append({"file": door.file, "width": door.width, "flow": flow, "people": len(times), "who": door.who})
     return flows
 
 
-def _crossing(tracks: Trajectories, id: int, line: float) -> list[float]:
-    """Return the first time [s] at which a person passes ``line`` [m], as a list that is empty if there is none."""
-    mine = tracks.id == id
-    y: NDArray[np.float64] = tracks.y[mine]
-    over = np.flatnonzero((y[:-1] > line) & (y[1:] <= line))
-    return [float(tracks.time[mine][over[0] + 1])] if len(over) else []
-
-
-def _bins(values: Floats, width: float) -> dict[str, Any]:
-    number = np.floor(values[:, 0] / width).astype(np.int64)
-    kept = [n for n in np.unique(number) if np.sum(number == n) >= LEAST]
-    return {
-        "density": [float((n + 0.5) * width) for n in kept],
-        "speed": [float(values[number == n, 1].mean()) for n in kept],
-        "spread": [float(values[number == n, 1].std()) for n in kept],
-    }
+def _bins(density: Floats, speed: Floats, width: float) -> dict[str, Any]:
+    diagram = compute_fundamental_diagram(density, speed, width, least=LEAST)
+    return {name: diagram[name].tolist() for name in ("density", "speed", "spread")}
 
 
 def _distance(points: dict[str, Any], curve: Callable[[Any], Floats]) -> float:

@@ -195,12 +195,13 @@ def _judge(check: Check, result: dict[str, Any]) -> Verdict:
 
 
 def _key(quick: bool) -> str:
-    """Return a hash of all code that affects results: the core, the models and the checks."""
+    """Return a hash of all code that affects results: the core, the models, the measurements and the checks."""
     sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
     package = Path(__file__).parents[1]
     excluded = ("__init__", "page", "plots", "recording", "run")
     here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in excluded]
-    for path in sorted([*package.glob("core/*.py"), *package.glob("models/*.py"), *here]):
+    others = [path for name in ("core", "models", "measurement") for path in package.glob(f"{name}/*.py")]
+    for path in sorted([*others, *here]):
         sum_.update(path.name.encode() + b"\0" + path.read_bytes())
     return sum_.hexdigest()
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, stream
+from crowdbot.data import Trajectories
 from crowdbot.models import CrowdModel
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "simulate_periodic",
     "starts",
     "stream_of",
+    "tracks_of",
 ]
 
 RADIUS = 0.2
@@ -93,6 +95,21 @@ class CrowdTracks(NamedTuple):
     times: Floats
     position: Floats
     present: Bools
+
+
+def tracks_of(walk: CrowdTracks, e: int = 0) -> Trajectories:
+    """Return the people of environment ``e`` as a recording, frame k at ``times[k]``."""
+    frame, id = np.nonzero(walk.present[:, e])
+    place = walk.position[frame, e, id]
+    return Trajectories(
+        id,
+        frame,
+        place[:, 0],
+        place[:, 1],
+        row_rate=1.0 / float(walk.times[1] - walk.times[0]),
+        frame_step=1,
+        name="crowd",
+    )
 
 
 def stream_of(*path: str | int | float) -> np.random.Generator:

@@ -1,0 +1,311 @@
+"""All measurements of a recording at once: tables, figures and notes."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crowdbot.core import DataError, InputError
+from crowdbot.data import Trajectories
+
+from .density import CutOff, compute_classic_density, compute_individual_voronoi_polygons, compute_voronoi_density
+from .diagram import compute_fundamental_diagram
+from .encounters import compute_encounters, compute_time_to_collision_distribution, distribution
+from .flow import compute_flow, compute_line_flow, compute_n_t, compute_species, crossing_times, mean_flow
+from .geometry import MeasurementArea, MeasurementLine, WalkableArea
+from .lanes import compute_lane_order
+from .movement import (
+    compute_individual_acceleration,
+    compute_individual_speed,
+    compute_mean_speed_per_frame,
+    compute_voronoi_speed,
+)
+from .neighbors import compute_headways, compute_pair_distribution_function
+from .passing import compute_frame_range_in_area, compute_passing_density, compute_passing_speed
+from .plan import MeasurementPlan
+from .profiles import Grid, compute_density_profile, compute_speed_profile
+from .rows import check_metres, select_rows, table
+from .steady import combine_steady_states, detect_steady_state
+from .waves import compute_stop_and_go, compute_stops
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Measurements", "measure", "pool_diagrams"]
+
+
+@dataclass(frozen=True, eq=False)
+class Measurements:
+    """Results of :func:`measure`.
+
+    Fields:
+        name: name of the recording.
+        tables: tables by name, with the columns of the functions that make them.
+        figures: single numbers by name.
+        notes: sentences on what was left out.
+        walkable, area, line: where it was measured.
+        grid: grid of the profiles, or None.
+    """
+
+    name: str
+    walkable: WalkableArea
+    area: MeasurementArea
+    line: MeasurementLine | None
+    grid: Grid | None = None
+    tables: dict[str, pd.DataFrame] = field(default_factory=dict)
+    figures: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def measure(tracks: Trajectories, plan: MeasurementPlan | None = None) -> Measurements:
+    """Return all measurements of the people in a recording; robots are left out.
+
+    Args:
+        tracks: a recording, or ``episode.tracks()`` of a simulation, in metres.
+        plan: methods and settings.
+
+    Raises:
+        InputError: a setting does not fit the recording.
+        DataError: the tracks are in pixels, or there are no people in the walkable area.
+
+    >>> import numpy as np
+    >>> frame, id = np.repeat(np.arange(40), 10), np.tile(np.arange(10), 40)
+    >>> tracks = Trajectories(id, frame, id + frame / 10.0, 0.5 + 0.0 * frame, row_rate=10.0)
+    >>> found = measure(tracks, MeasurementPlan(line=MeasurementLine((9.5, 2), (9.5, -1))))
+    >>> found.figures["flow"], round(found.figures["mean_speed"], 6)
+    (1.0, 1.0)
+    """
+    plan = plan or MeasurementPlan()
+    check_metres(tracks)
+    people, walkable, notes = _people(tracks, plan)
+    step = max(1, round(plan.window / people.dt)) * people.frame_step
+    area = plan.area or MeasurementArea(walkable.border)
+    grid = Grid.over(walkable, plan.grid) if "profiles" in plan.selection else None
+    run = _Survey(people, plan, walkable, area, grid, step)
+    for name in plan.selection:
+        getattr(run, f"add_{name}")()
+    figures = {
+        "people": float(len(people.ids)),
+        "duration": float(people.time[-1]),
+        **{name: float(value) for name, value in run.figures.items()},
+    }
+    return Measurements(tracks.name, walkable, area, plan.line, grid, run.tables, figures, (*notes, *run.notes))
+
+
+def pool_diagrams(found: Sequence[Measurements], width: float) -> pd.DataFrame:
+    """Return one fundamental diagram of several recordings or starts, with 95 % intervals over them.
+
+    Args:
+        found: results of :func:`measure` with the method ``diagram``.
+        width: width of the bins [1/m2].
+
+    Raises:
+        InputError: a result lacks the method, or there are none.
+    """
+    parts = [one.tables.get("diagram-values") for one in found]
+    if not parts or any(part is None for part in parts):
+        raise InputError("a pooled fundamental diagram needs results with the method diagram")
+    density, speed = (np.concatenate([part[name].to_numpy() for part in parts if part is not None]) for name in
+                      ("density", "speed"))  # fmt: skip
+    start = np.repeat(np.arange(len(parts)), [0 if part is None else len(part) for part in parts])
+    return compute_fundamental_diagram(density, speed, width, start)
+
+
+def _people(tracks: Trajectories, plan: MeasurementPlan) -> tuple[Trajectories, WalkableArea, list[str]]:
+    """Return the people inside the walkable area, this area, and notes on left out rows."""
+    walkable = plan.walkable or WalkableArea.of(tracks)
+    person = ~np.isin(tracks.id, sorted(tracks.robots))
+    inside = walkable.covers(tracks.position)
+    notes = []
+    if tracks.robots:
+        notes.append(f"{len(tracks.robots)} robots are not measured")
+    outside = int(np.sum(person & ~inside))
+    if outside:
+        notes.append(f"{outside} of {int(person.sum())} rows are outside the walkable area and are not measured")
+    if not np.any(person & inside):
+        raise DataError(f"{tracks.name}: nobody is inside the walkable area")
+    return select_rows(tracks, person & inside), walkable, notes
+
+
+class _Survey:
+    """Results that several methods share; each method ``add_...`` adds its tables and figures."""
+
+    def __init__(
+        self, people: Trajectories, plan: MeasurementPlan, walkable: WalkableArea, area: MeasurementArea,
+        grid: Grid | None, step: int,
+    ) -> None:  # fmt: skip
+        self.plan, self.walkable, self.area, self.grid, self.step = plan, walkable, area, grid, step
+        self.people = people
+        self.tables: dict[str, Any] = {}
+        self.figures: dict[str, float] = {}
+        self.notes: list[str] = []
+        self.speed = compute_individual_speed(people, step, border="single-sided")
+        if len(self.speed) < len(people):
+            rows = len(people) - len(self.speed)
+            self.notes.append(f"{rows} rows without a second row of the same person have no speed and are not measured")
+            self.people = people = _rows_with(people, self.speed)
+        self.sample = _thin(people, plan.every)
+        self._cells: Any = None
+
+    @property
+    def cells(self) -> Any:
+        """Voronoi cells every ``every`` seconds."""
+        if self._cells is None:
+            cut_off = None if self.plan.cut_off is None else CutOff(self.plan.cut_off)
+            self._cells = compute_individual_voronoi_polygons(self.sample, self.walkable, cut_off)
+        return self._cells
+
+    @property
+    def states(self) -> Any:
+        """Density and speed of each person in each tessellation, with the position."""
+        joined = self.cells.drop(columns="polygon").merge(self.speed, on=["id", "frame"])
+        return joined.merge(self.sample.to_frame(), on=["id", "frame"])
+
+    def add_individual(self) -> None:
+        self.tables["individual"] = self.states[["id", "frame", "time", "x", "y", "density", "speed", "v_x", "v_y"]]
+        self.figures["mean_speed"] = self.speed.speed.mean()
+        found = compute_individual_acceleration(self.people, self.step).acceleration.to_numpy()
+        if len(found):
+            self.tables["acceleration"] = distribution(found, 0.1, 0.0, max(0.2, math.ceil(found.max() * 10.0) / 10.0))
+            self.figures["mean_acceleration"] = found.mean()
+
+    def add_area(self) -> None:
+        sample, speed = self.sample, self.speed
+        classic = compute_classic_density(sample, self.area).density.to_numpy()
+        voronoi = compute_voronoi_density(sample, self.cells, self.area)
+        voronoi_speed = compute_voronoi_speed(sample, speed, self.cells, self.area).speed.to_numpy()
+        density = voronoi.density.to_numpy()
+        time = (voronoi.frame.to_numpy() - self.people.frame[0]) / self.people.fps
+        self.tables["area"] = table(
+            frame=voronoi.frame, time=time, classic_density=classic, voronoi_density=density,
+            mean_speed=compute_mean_speed_per_frame(sample, speed, self.area).speed, voronoi_speed=voronoi_speed,
+            specific_flow=density * voronoi_speed,
+        )  # fmt: skip
+        self.figures |= {"classic_density": classic.mean(), "voronoi_density": density.mean()}
+        self.figures["voronoi_speed"] = voronoi_speed.mean()
+        if self.plan.steady is not None:
+            self._add_steady(time, density, voronoi_speed)
+
+    def _add_steady(self, time: Any, density: Any, speed: Any) -> None:
+        assert self.plan.steady is not None
+        states = [detect_steady_state(time, values, self.plan.steady) for values in (density, speed)]
+        common = combine_steady_states(states)
+        self.tables["steady"] = table(first=common[:, 0], last=common[:, 1])
+        inside = np.zeros(len(time), dtype=np.bool_)
+        for first, last in common:
+            inside |= (time >= first) & (time <= last)
+        if np.any(inside):
+            self.figures |= {"steady_density": density[inside].mean(), "steady_speed": speed[inside].mean()}
+            self.figures["steady_seconds"] = float(np.sum(common[:, 1] - common[:, 0]))
+        else:
+            self.notes.append("density and speed in the area are never steady together")
+
+    def add_diagram(self) -> None:
+        states = self.states
+        inside = states[self.area.contains(states[["x", "y"]].to_numpy())]
+        self.tables["diagram-values"] = inside[["id", "frame", "density", "speed"]].reset_index(drop=True)
+        self.tables["diagram"] = compute_fundamental_diagram(
+            inside.density.to_numpy(), inside.speed.to_numpy(), self.plan.bin, inside.id.to_numpy()
+        )
+        if not len(self.tables["diagram"]):
+            self.notes.append("no bin of the fundamental diagram has 20 values")
+
+    def add_line(self) -> None:
+        line, people = self.plan.line, self.people
+        assert line is not None
+        n_t, first = compute_n_t(people, line)
+        times = crossing_times(people, line)
+        self.tables |= {"n-t": n_t, "crossings": table(id=first.id, frame=first.frame, time=times)}
+        frames = max(1, round(self.plan.interval * people.fps))
+        self.tables["flow"] = compute_flow(people, n_t, first, self.speed, frames)
+        flow = mean_flow(times)
+        self.figures |= {"crossings": len(times), "flow": flow, "specific_flow": flow / line.length}
+        species = compute_species(self.people, self.cells, line, self.step)
+        found = compute_line_flow(self.sample, self.cells, line, self.speed, species)
+        self.tables["line"] = found.assign(time=(found.frame - people.frame[0]) / people.fps)
+        self.figures["line_flow"] = found.flow.mean()
+
+    def add_passing(self) -> None:
+        line, width = self.plan.line, self.plan.passage
+        assert line is not None
+        assert width is not None
+        passages, between = compute_frame_range_in_area(self.people, line, width)
+        density = compute_passing_density(compute_classic_density(self.people, between), passages)
+        speed = compute_passing_speed(self.people, passages, width)
+        self.tables["passages"] = passages.assign(density=density.density, speed=speed.speed)
+        self.figures["passages"] = len(passages)
+
+    def add_profiles(self) -> None:
+        assert self.grid is not None
+        density = compute_density_profile(self.sample, self.grid, self.cells)
+        speed = compute_speed_profile(self.sample, self.grid, self.speed, self.cells)
+        x, y = np.moveaxis(self.grid.centers().reshape(-1, 2), -1, 0)
+        flow = density * speed
+        self.tables["profiles"] = table(x=x, y=y, density=density.ravel(), speed=speed.ravel(), flow=flow.ravel())
+
+    def add_encounters(self) -> None:
+        pairs = compute_encounters(self.sample, _rows_of(self.speed, self.sample), self.plan.radius)
+        gap, ttc = pairs.clearance.to_numpy(), pairs.ttc.to_numpy()
+        self.tables["clearance"] = distribution(gap, 0.1, -2.0 * self.plan.radius, 10.0)
+        self.tables["time-to-collision"] = compute_time_to_collision_distribution(
+            self.sample, _rows_of(self.speed, self.sample), self.plan.radius, seed=self.plan.seed
+        )
+        if len(pairs):
+            borders = np.flatnonzero(np.diff(pairs.frame.to_numpy(), prepend=pairs.frame[0] - 1))
+            nearest = np.minimum.reduceat(gap, borders)
+            self.figures |= {"smallest_clearance": gap.min(), "mean_smallest_clearance": nearest.mean()}
+            self.figures["contact_share"] = float(np.mean(gap < 0.0))
+        if np.any(np.isfinite(ttc)):
+            self.figures["median_time_to_collision"] = float(np.median(ttc[np.isfinite(ttc)]))
+
+    def add_pairs(self) -> None:
+        self.tables["pair-distribution"] = compute_pair_distribution_function(
+            self.sample, 0.1, farthest=5.0, shuffles=4, seed=self.plan.seed
+        )
+
+    def add_lanes(self) -> None:
+        lanes = compute_lane_order(self.people, self.plan.axis, every=self.plan.every)
+        self.tables["lanes"] = lanes
+        if len(lanes) and not lanes.order.isna().all():
+            self.figures["lane_order"] = lanes.order.mean()
+        else:
+            self.notes.append("there are never 5 people in each direction: no order of lanes")
+
+    def add_stops(self) -> None:
+        self.tables["stops"] = compute_stops(self.people, self.speed)
+        found = compute_stop_and_go(self.people, self.speed, axis=self.plan.axis)
+        self.figures |= {"stop_share": found.share, "stops_per_minute": found.stops_per_minute}
+        self.figures |= {"stop_duration": found.duration, "wave_speed": found.wave}
+
+    def add_headways(self) -> None:
+        gaps = compute_headways(self.sample, self.plan.axis).merge(self.speed, on=["id", "frame"])
+        self.tables["headways"] = gaps[["id", "frame", "ahead", "behind", "density", "speed"]]
+        self.tables["file-diagram"] = compute_fundamental_diagram(
+            gaps.density.to_numpy(), gaps.speed.to_numpy(), self.plan.bin, gaps.id.to_numpy()
+        )
+        self.figures["mean_headway"] = gaps.ahead.mean()
+
+
+def _thin(tracks: Trajectories, every: float) -> Trajectories:
+    """Return the rows every ``every`` seconds, with the time base of these rows."""
+    rows = max(1, round(every / tracks.dt))
+    kept = ((tracks.frame - tracks.frame[0]) // tracks.frame_step) % rows == 0
+    kept &= (tracks.frame - tracks.frame[0]) % tracks.frame_step == 0
+    thin = select_rows(tracks, kept)
+    return dataclasses.replace(thin, frame_step=tracks.frame_step * rows, row_rate=tracks.row_rate / rows)
+
+
+def _rows_of(speed: Any, tracks: Trajectories) -> Any:
+    """Return the rows of a table for the people and frames of a recording."""
+    return speed[speed.frame.isin(np.unique(tracks.frame))]
+
+
+def _rows_with(tracks: Trajectories, speed: Any) -> Trajectories:
+    known = set(zip(speed.id.tolist(), speed.frame.tolist(), strict=True))
+    pairs = zip(tracks.id.tolist(), tracks.frame.tolist(), strict=True)
+    return select_rows(tracks, np.asarray([pair in known for pair in pairs]))
