@@ -73,7 +73,7 @@ def edited(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def exact(source: Path, at: float, out: Path, **changes: Any) -> None:
+def check_exact(source: Path, at: float, out: Path, **changes: Any) -> None:
     """Check that a branch from a keyframe has the bytes of one from the beginning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -98,15 +98,15 @@ def test_a_file_has_a_keyframe_every_5_s_and_its_digest_is_that_of_a_run_in_memo
 def test_a_branch_from_a_keyframe_has_the_bytes_of_one_from_the_beginning(
     kind: str, at: float, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    exact(request.getfixturevalue(kind), at, tmp_path)
+    check_exact(request.getfixturevalue(kind), at, tmp_path)
 
 
 def test_a_branch_with_changes_and_a_branch_of_it_too(edited: Path, tmp_path: Path) -> None:
-    exact(edited, 6.0, tmp_path, seed=9, changes={"limits.max-speed": 1.5})
+    check_exact(edited, 6.0, tmp_path, seed=9, changes={"limits.max-speed": 1.5})
     middle = tmp_path / "first.mcap"
     assert min(keyframe_ticks(middle)) * TRIAL.step == pytest.approx(10.0)
     (tmp_path / "again").mkdir()
-    exact(middle, 10.6, tmp_path / "again")
+    check_exact(middle, 10.6, tmp_path / "again")
     assert replay(tmp_path / "again" / "first.mcap").equal
     assert (replay(middle, begin=11.0).equal, replay(middle, begin=11.0).begin) == (True, 10.0)
 
@@ -115,7 +115,7 @@ def test_a_physics_trial_branches_from_a_keyframe(tmp_path: Path) -> None:
     trial = parse_trial(room("physics", LEAN).replace('duration="1"', 'duration="6"'))
     record(trial, out=tmp_path / "episode.mcap")
     assert len(keyframe_ticks(tmp_path / "episode.mcap")) == 1
-    exact(tmp_path / "episode.mcap", 5.4, tmp_path)
+    check_exact(tmp_path / "episode.mcap", 5.4, tmp_path)
 
 
 @pytest.mark.parametrize("kind", ["plain", "edited"])
