@@ -52,7 +52,7 @@ def assert_equal_rows(found: PeopleBatch, expected: list[InitialPeople]) -> None
             assert a.tobytes() == b.tobytes(), name
 
 
-def compare(plan: PlacementPlan, seeds: list[int]) -> None:
+def check_placement(plan: PlacementPlan, seeds: list[int]) -> None:
     known = [place(plan.stage, plan.spawners, plan.robots, seed, plan.agents, plan.recorded) for seed in seeds]
     found = plan.place(seeds)
     wrong = [e for e, (_, problems) in enumerate(known) if problems]
@@ -84,7 +84,7 @@ def test_all_seeds_are_placed_as_one(
         for k, (count, zone) in enumerate(counts)
     ]  # fmt: skip
     agents = [Agent(x=1.0, y=5.0, goal="7,5", radius=0.2)]
-    compare(PlacementPlan.of(stage, spawners, [ROBOT], agents), seeds)
+    check_placement(PlacementPlan.of(stage, spawners, [ROBOT], agents), seeds)
 
 
 @pytest.mark.parametrize("name", ["circle-crossing", "crossing-flows", "four-blocks", "static-crowd", "joining-group"])
@@ -93,14 +93,14 @@ def test_built_in_trials_are_placed_as_one(name: str) -> None:
     plan = PlacementPlan.of(trial.stage, trial.spawners, trial.robots, trial.agents)
     seeds = [*range(20), -3, 2**62]
     assert plan._place_at_once(seeds)[1].all()
-    compare(plan, seeds)
+    check_placement(plan, seeds)
 
 
 def test_points_near_a_limit_are_left_to_the_exact_placement() -> None:
     strip = [(0, 0), (6, 0), (6, 1e-10), (0, 1e-10)]
     plan = PlacementPlan.of(Stage(), [Spawner(count=2, zone=strip, goal=GOAL, radius=0.2)], [])
     assert not plan._place_at_once([0, 1])[1].any()
-    compare(plan, [0, 1])
+    check_placement(plan, [0, 1])
 
 
 def test_too_many_people_are_told_for_the_first_seed() -> None:

@@ -47,7 +47,7 @@ def both(sources: list[PeopleSource], seeds: list[int]) -> tuple[Arrivals, Plain
     return Arrivals(sources, seeds, 0, {}), PlainArrivals(sources, seeds, 0, {})
 
 
-def advance(pair: tuple[Arrivals, PlainArrivals], scenes: list[Scene], time: float, ids: list) -> None:
+def check_step(pair: tuple[Arrivals, PlainArrivals], scenes: list[Scene], time: float, ids: list) -> None:
     """Let people enter both worlds and compare; some agents leave."""
     shape = scenes[0].shape
     gone = np.random.default_rng(int(time * 1000)).random(shape) < 0.1
@@ -72,7 +72,7 @@ def test_the_same_people_enter(
     scenes = [empty, empty]
     ids = [(np.tile(np.arange(30), (count, 1)), np.full(count, 30)) for _ in range(2)]
     for k in range(60):
-        advance(pair, scenes, 0.1 * k, ids)
+        check_step(pair, scenes, 0.1 * k, ids)
         if k in (20, 35, 36):
             new = [*sources[:-1], changed if k == 20 else dataclasses.replace(sources[-1], rate=3.0)]
             for one in pair:
@@ -103,7 +103,7 @@ def test_joined_queues_continue() -> None:
     empty = Scene.of(np.zeros((2, 9, 2)), active=False)
     scenes, ids = [empty, empty], [(np.tile(np.arange(9), (2, 1)), np.full(2, 9)) for _ in range(2)]
     for k in range(20):
-        advance(pair, scenes, 0.1 * k, ids)
+        check_step(pair, scenes, 0.1 * k, ids)
     assert scenes[0].active.any()
 
 

@@ -18,7 +18,7 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
     [
         ("<robot name='r'>\n<link name='a'>\n</robot>", "urdf:3: this is not well-formed XML: mismatched tag"),
         ("<robot", "urdf:1: this is not well-formed XML: unclosed token"),
-        ("<model/>", "urdf:1: the root element is <model>, expected <robot>"),
+        ("<machine/>", "urdf:1: the root element is <machine>, expected <robot>"),
         ("<robot name='r'/>", "urdf:1: <robot> contains no <link>; a robot needs at least one"),
         (robot("<link/>"), "urdf:2: <link> needs the attribute 'name'"),
         (robot(A, A), "urdf:3: <link> 'a' has a name that is already in use"),
