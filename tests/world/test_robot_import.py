@@ -176,3 +176,8 @@ def test_real_robots_become_folders(urdf, tmp_path, name):
     made = import_robot(urdf / name, "real")
     assert sum(guess.what.startswith("wheel ") for guess in made.guesses) == count
     check_robot(robot)
+
+
+def test_a_missing_robot_file_is_told(tmp_path, capsys):
+    assert main(["new", "robot", str(tmp_path / "nothing.urdf.xacro")]) == 2
+    assert "there is no robot file" in capsys.readouterr().err

@@ -213,8 +213,18 @@ def _add_robot_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _is_robot_file(path: Path) -> bool:
-    """Return whether a path is an existing robot file."""
-    return path.is_file() and path.suffix.lower() in ENDINGS
+    """Return whether a path is a robot file to convert, not the name of a new robot folder.
+
+    Raises:
+        InputError: the path ends as a robot file, but there is none.
+    """
+    from crowdbot.core import InputError
+
+    if path.suffix.lower() not in ENDINGS:
+        return False
+    if not path.is_file():
+        raise InputError(f"there is no robot file {path}")
+    return True
 
 
 def _convert_robot(options: argparse.Namespace) -> int:

@@ -115,17 +115,17 @@ class _Queues:
             self.gaps[e, k], self.gap[e, k] = rng.standard_exponential(BLOCK), 0
             self.times[e, k] = _state_of(rng)
 
-    def draw_bodies(self, busy: Bools, e: int, k: int) -> None:
+    def draw_bodies(self, busy: Bools, environment: int, k: int) -> None:
         """Draw speeds and radii of the next people of source ``k``.
 
-        If they can be drawn in advance, in all ``busy`` ``[E, K]`` queues without any, otherwise in environment ``e``,
-        which needs them now.
+        If they can be drawn in advance, in all ``busy`` ``[E, K]`` queues without any, otherwise only in the
+        environment that needs them now.
         """
         some = np.flatnonzero(busy[:, k] & (self.next[:, k] >= self.last[:, k]) & np.isnan(self.body[:, k, 0]))
         both = (self.sources[k].speed, self.sources[k].radius)
         drawn = [n for n, value in enumerate(both) if not isinstance(value, int | float)]
         many = _is_buffered(self.sources[k])
-        some = some if many else np.array([e])
+        some = some if many else np.array([environment])
         self.next[some, k], self.before[some, k] = 0, self.after[some, k]
         self.last[some, k] = count = BLOCK if many else 1
         states = self.after[some, k]
