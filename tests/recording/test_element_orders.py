@@ -20,7 +20,7 @@ from crowdbot.simulation import (
     SimulationRun,
     VelocityOrder,
 )
-from crowdbot.trials import Trial, load_trial, parse_trial
+from crowdbot.trials import Trial, apply_values, load_trial, parse_trial
 from trial_texts import GOOD
 
 WORLDS = ("planar", "physics")
@@ -94,6 +94,27 @@ def test_the_crowd_reacts_to_an_added_robot_and_forgets_a_removed_one(world: str
     assert np.abs(person[0] - person[1]).max() > 0.01
 
 
+def test_a_wall_comes_and_goes_in_the_physics_world(tmp_path: Path) -> None:
+    orders = {
+        6: [AddElementOrder(xml='<wall points="-3.9,-1.5 -3.9,1.5"/>', parent="stage")],
+        30: [RemoveElementOrder(path="stage/wall[3]")],
+    }
+    trial, forces = apply_values(corridor("physics"), {"robot/navigator/type": "straight"}), []
+    with open_run(trial, 1, out=tmp_path / "a.mcap") as running:
+        while running.outcome is None:
+            running.step(orders.get(running.simulation.tick, ()))
+            forces += [(running.simulation.tick, one) for one in running.simulation.world.forces_of(0)]
+            if running.simulation.tick == 30:
+                assert running.simulation.world.scene.position[0, 1, 0] < -3.9 - 0.25
+    assert any(one.second.kind == "wall" and 6 < tick <= 31 for tick, one in forces)
+    assert running.simulation.world.scene.position[0, 1, 0] > -4.15
+    assert running.simulation.trial == trial
+    assert replay(tmp_path / "a.mcap").equal
+    whole = read_episode(tmp_path / "a.mcap")
+    for at in (0.6, 1.8):
+        assert branch(tmp_path / "a.mcap", at=at).digest == whole.digest
+
+
 def test_an_added_wall_stops_people_and_the_scan_sees_it() -> None:
     trial = dataclasses.replace(corridor("planar"), duration=6.0)
     simulation = Simulation(trial, 1)
@@ -137,10 +158,10 @@ def test_impossible_orders_are_explained(order: Any, sentence: str) -> None:
         order.check(simulation)
 
 
-def test_walls_of_the_physics_world_and_many_environments_cannot_change() -> None:
+def test_the_floor_of_the_physics_world_and_many_environments_cannot_change() -> None:
     wall = AddElementOrder(xml='<wall points="1,-1 1,1"/>', parent="stage")
-    with pytest.raises(InputError, match="walls of the stage cannot change in a branch of the physics world"):
-        wall.check(Simulation(corridor("physics"), 1))
+    with pytest.raises(InputError, match="only walls, obstacles and props can change while it runs"):
+        ParameterOrder(path="stage/friction", value="0.5").check(Simulation(corridor("physics"), 1))
     with pytest.raises(InputError, match="use a simulation of one environment"):
         wall.check(Simulation(corridor("planar"), [1, 2]))
 

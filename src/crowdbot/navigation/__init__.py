@@ -5,6 +5,7 @@ from .contract import check_navigator
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .external import ExternalNavigator
+from .hang_watch import HangWatch, HungNavigatorError
 from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -21,6 +22,8 @@ __all__ = [
     "Decisions",
     "DriveLimits",
     "ExternalNavigator",
+    "HangWatch",
+    "HungNavigatorError",
     "Navigator",
     "ORCANavigator",
     "Observation",

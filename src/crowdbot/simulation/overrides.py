@@ -52,7 +52,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
     check_overrides(simulation, trial)
     robots = _match_robots(simulation.robots, trial)
     _change_robots(simulation, robots, trial)
-    _change_props(simulation, trial)
+    _change_stage(simulation, trial)
     pairs = list(zip(simulation.robots, trial.robots, strict=True))
     drives = {control.agent: control.robot.drive for control in simulation.former_robots}
     world.reconfigure(
@@ -94,8 +94,11 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
     """
     old, time = simulation.trial, float(simulation.world.times.max())
     if simulation.world.walls_fixed:
-        if dataclasses.replace(new.stage, props=old.stage.props) != old.stage:
-            raise InputError("the walls of the stage cannot change in a branch of the physics world; props can")
+        parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props")}
+        if dataclasses.replace(new.stage, **parts) != old.stage:
+            raise InputError(
+                "of the stage of the physics world, only walls, obstacles and props can change while it runs"
+            )
         _prop_changes(old, new)
     for name in FIXED:
         if getattr(old, name) != getattr(new, name):
@@ -176,11 +179,13 @@ def _prop_changes(old: Trial, new: Trial) -> tuple[list[int], list[Any]]:
     return removed, rest
 
 
-def _change_props(simulation: Simulation, trial: Trial) -> None:
-    """Remove and add props in the physics world; the walls of a planar world are replaced as a whole."""
+def _change_stage(simulation: Simulation, trial: Trial) -> None:
+    """Change walls and props of the physics world; the walls of a planar world are replaced as a whole."""
     world: Any = simulation.world
-    if not world.walls_fixed:
+    if not world.walls_fixed or trial.stage == simulation.trial.stage:
         return
+    if (trial.stage.walls, trial.stage.obstacles) != (simulation.trial.stage.walls, simulation.trial.stage.obstacles):
+        world.change_walls(trial.stage.as_walls(props=False))
     removed, added = _prop_changes(simulation.trial, trial)
     names = world.prop_names
     for number in removed:

@@ -230,6 +230,13 @@ class RigidWorld(PlanarWorld):
         self._change_stage(without_prop(self.stage, number))
         self._prop_names = without_last([*names[:number], "", *names[number + 1 :]])
 
+    def change_walls(self, walls: Walls) -> None:
+        """Replace the walls, without the outlines of props; see :class:`World`."""
+        self.rigid.change(walls=walls)
+        self.scene = self.scene.replace(walls=walls)
+        self._outlined = add_rings(walls, self.stage.outlines())
+        self._forget()
+
     def embody_person(self, agent: int, environment: int) -> None:
         """Give a new person a body."""
         self.people.grow(self.scene.shape[1], [agent])

@@ -87,25 +87,27 @@ class WorldBodies:
         starts: Mapping[int, RobotStart] | None = None,
         ghosts: Sequence[int] | None = None,
         slots: int | None = None,
+        walls: Walls | None = None,
     ) -> None:
-        """Add and remove bodies; the state of all others is kept to the last bit. None: as before.
+        """Add and remove bodies and walls; the state of all others is kept to the last bit. None: as before.
 
         New robots and movable props come to rest on the floor first.
 
         Raises:
             InputError: a robot has no driven or steered wheels, or a motor does not exist.
         """
-        before = (self.stage, self.starts, self.slots)
+        before = (self.stage, self.starts, self.slots, self.walls)
         ghostly = sorted(self.ghosts if ghosts is None else ghosts)
         try:
             self.stage = self.stage if stage is None else stage
             self.starts = self.starts if starts is None else dict(starts)
             self.slots = self.slots if slots is None else slots
+            self.walls = self.walls if walls is None else walls
             designs = [self._main_design(ghostly), *(self._alone(one) for one in ghostly if one in self.starts)]
             for design in designs:
                 compile_bodies(design)
         except Exception:
-            self.stage, self.starts, self.slots = before
+            self.stage, self.starts, self.slots, self.walls = before
             raise
         self._rebuild(before[0], [one for one in ghostly if one in self.starts])
 
