@@ -5,7 +5,6 @@ from .contract import check_navigator
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .external import ExternalNavigator
-from .hang_watch import HangWatch, HungNavigatorError
 from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -22,8 +21,6 @@ __all__ = [
     "Decisions",
     "DriveLimits",
     "ExternalNavigator",
-    "HangWatch",
-    "HungNavigatorError",
     "Navigator",
     "ORCANavigator",
     "Observation",

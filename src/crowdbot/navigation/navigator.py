@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import inspect
 import math
@@ -15,7 +14,6 @@ from crowdbot.core import InputError, Twist
 
 from .action import Action
 from .decisions import Decisions
-from .hang_watch import HangWatch
 from .navigator_memory import copy_memory
 from .observation import Observation
 from .observation_batch import ObservationBatch
@@ -102,8 +100,7 @@ class Navigator(ABC):
         if type(self).begin is not Navigator.begin:
             for k in range(len(batch)):
                 try:
-                    with self._watch(robot):
-                        memories[k] = self.first_memory(batch.environment(k), robot=robot)
+                    memories[k] = self.first_memory(batch.environment(k), robot=robot)
                 except Exception as error:  # the other environments go on
                     failures[k] = error
         return memories, failures
@@ -143,18 +140,11 @@ class Navigator(ABC):
         for k in rows:
             begin = timer() if timer else 0.0
             try:
-                with self._watch(robot):
-                    action, memory = self.decide(batch.environment(k), decisions.memories[k], robot=robot)
+                action, memory = self.decide(batch.environment(k), decisions.memories[k], robot=robot)
                 decisions.twist[k], decisions.memories[k] = action.twist, memory
             except Exception as error:  # the other environments go on
                 decisions.failures[k] = error
             decisions.seconds[k] = timer() - begin if timer else 0.0
-
-    def _watch(self, robot: str) -> contextlib.AbstractContextManager[Any]:
-        """Return a watch that interrupts a decision which does not return; none for the navigators of crowdbot."""
-        if type(self).__module__.startswith("crowdbot."):
-            return contextlib.nullcontext()
-        return HangWatch(f"navigator {type(self).__name__}" + (f" of robot {robot!r}" if robot else ""))
 
     def _keeps(self, kind: type[Navigator], *names: str) -> bool:
         """Return whether no subclass of ``kind`` overrides these methods, which its batch form replaces."""
