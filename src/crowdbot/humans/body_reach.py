@@ -19,7 +19,7 @@ from crowdbot.core import kernel
 from .asset import shapes
 from .body_pose import PARTS
 from .people import People
-from .posture import Posture
+from .posture import Posture, place_chain
 from .quaternions import limit_rotation, multiply, to_matrix, transpose_times, twist_angle
 from .turns import about, align_frame, cross, unit
 
@@ -74,16 +74,6 @@ def hand_frames() -> Floats:
 
 
 @kernel
-def _place_bones(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
-    for b in range(first, last):
-        p = parents[b]
-        for r in range(3):
-            P[b, r] = P[p, r]
-            for c in range(3):
-                P[b, r] += R[p, r, c] * (head[b, c] - head[p, c])
-
-
-@kernel
 def _highest_pelvis(head: Floats, feet: Floats, reach: float, R: Floats, P: Floats) -> float:
     """Return the largest height of the pelvis [m] at which both legs reach their feet."""
     found = 1e9
@@ -124,7 +114,7 @@ def _lean(goal: Floats, eye: Floats, head: Floats, leg: float, parents: Ints, R:
         most = _highest_pelvis(head, feet, leg, R, P)
         height = min(max(height, DEEP * leg), most)
         P[0, 2] = height
-        _place_bones(1, 6, head, parents, R, P)
+        place_chain(1, 6, head, parents, R, P)
         for r in range(3):
             step[0, r] = goal[r] - P[5, r]
             for c in range(3):
@@ -250,20 +240,20 @@ def _reach(
     if not math.isnan(row[24]):
         _pose_skeleton(row[2], row[27:139].copy().reshape((28, 4)), parents, R)
         P[0] = row[24:27]
-        _place_bones(1, 28, head, parents, R, P)
+        place_chain(1, 28, head, parents, R, P)
         return
     gait, feet = R.copy(), np.empty((2, 3))
     feet[0], feet[1] = P[22], P[26]
     if not math.isnan(row[3]):
         _lean(row[3:10], eye, head, STRETCH * (lengths[0] + lengths[1]), parents, R, P)
-        _place_bones(1, 28, head, parents, R, P)
+        place_chain(1, 28, head, parents, R, P)
         _stand(gait, feet, lengths, frame, R, P)
         for side in range(2):  # hands that are not given hang from the leaning chest
             _follow_chest(7 + 7 * side, gait, R)
     for side in range(2):
         if not math.isnan(row[10 + 7 * side]):
             _reach_hand(side, row[10 + 7 * side : 17 + 7 * side], hands[side], lengths, frame, gait, R, P)
-    _place_bones(1, 28, head, parents, R, P)
+    place_chain(1, 28, head, parents, R, P)
 
 
 @kernel

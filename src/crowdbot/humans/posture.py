@@ -17,7 +17,7 @@ from .measures import Measures
 from .stride import STRIKE, ankle_over, cycle, smooth
 from .turns import about, align_frame, cross, turn_zxy, unit
 
-__all__ = ["Posture", "posture"]
+__all__ = ["Posture", "place_chain", "posture"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -165,7 +165,7 @@ def _pose_leg(
 
 
 @kernel
-def _place_chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
+def place_chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
     """Place bones ``first`` to ``last`` at the ends of their parents."""
     for b in range(first, last):
         p = parents[b]
@@ -203,12 +203,12 @@ def _pose_one(
             hips[f, k] += P[0, k]
         ahead = g.yaw[i] + 0.5 * math.atan2(math.sin(feet[f, 3] - g.yaw[i]), math.cos(feet[f, 3] - g.yaw[i]))
         _pose_leg(hips[f], feet[f], thigh, shank, ahead, frame, f, R, 20 + 4 * f, work)
-    _place_chain(1, 8, head, parents, R, P)
-    _place_chain(13, 15, head, parents, R, P)
+    place_chain(1, 8, head, parents, R, P)
+    place_chain(13, 15, head, parents, R, P)
     for f in range(2):
         pose_arm(g, i, f, vigour, sit, lengths, frame, style, seat, R, P, work)
-    _place_chain(8, 13, head, parents, R, P)
-    _place_chain(15, 28, head, parents, R, P)
+    place_chain(8, 13, head, parents, R, P)
+    place_chain(15, 28, head, parents, R, P)
 
 
 @kernel
