@@ -73,7 +73,7 @@ def test_an_evaluation_continues_and_does_not_depend_on_chunks_and_workers(
 ) -> None:
     import importlib
 
-    module = importlib.import_module("crowdbot.evaluation.evaluate")
+    module = importlib.import_module("crowdbot.evaluation.runner")
     monkeypatch.setattr(module, "CHUNK", 2)
     plan = EvaluationPlan([trial], parse_methods("straight, orca"), seeds=range(5))
 

@@ -1,7 +1,6 @@
 """Evaluation of navigators: many trials, robots and seeds, with intervals, comparisons and requirements."""
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
-from .evaluate import evaluate
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow
 from .junit import junit_xml
@@ -9,10 +8,11 @@ from .method import Method, own_method, parse_methods
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .report import write_report
-from .requirement import Requirement, Verdict, parse_requirement
+from .requirement import Requirement, RequirementVerdict, parse_requirement
 from .result import CellResult, EvaluationResult, load_evaluation
+from .runner import evaluate
 from .statistic import Statistic, parse_statistic
-from .worst_runs import WorstRun, worst_runs
+from .worst_run import WorstRun, worst_runs
 
 __all__ = [
     "CellResult",
@@ -23,9 +23,9 @@ __all__ = [
     "Method",
     "PairedComparison",
     "Requirement",
+    "RequirementVerdict",
     "RunRow",
     "Statistic",
-    "Verdict",
     "WorstRun",
     "bootstrap_interval",
     "correct_p_values",

@@ -14,11 +14,11 @@ from crowdbot.core import CrowdbotError, MissingExtra
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
 from crowdbot.trials import parse_trial
 
-__all__ = ["EvaluationJob", "RunRow", "read_rows", "run_job", "write_rows"]
+__all__ = ["RunJob", "RunRow", "read_rows", "run_job", "write_rows"]
 
 
 @dataclass(frozen=True)
-class EvaluationJob:
+class RunJob:
     """Some seeds of one cell.
 
     Fields:
@@ -60,7 +60,7 @@ class RunRow:
         return self.outcome != "invalid"
 
 
-def run_job(job: EvaluationJob) -> list[RunRow]:
+def run_job(job: RunJob) -> list[RunRow]:
     """Run a job and return a row for each seed.
 
     A seed with which the trial is impossible gives an invalid row; a navigator that raises, hangs or returns NaN gives

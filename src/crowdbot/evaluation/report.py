@@ -17,7 +17,7 @@ from .pareto import pareto_svg
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
 from .statistic import Statistic
-from .worst_runs import WorstRun
+from .worst_run import WorstRun
 
 __all__ = ["write_report"]
 

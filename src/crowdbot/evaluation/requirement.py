@@ -15,12 +15,12 @@ from crowdbot.core import InputError
 from .intervals import Estimate
 from .statistic import Statistic, parse_statistic
 
-__all__ = ["Requirement", "Verdict", "parse_requirement"]
+__all__ = ["Requirement", "RequirementVerdict", "parse_requirement"]
 
 TEXT = re.compile(r"\s*([a-z0-9:_-]+)\s*(<=|>=|<|>)\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(?:@\s*([0-9.]+)\s*%)?\s*")
 
 
-class Verdict(NamedTuple):
+class RequirementVerdict(NamedTuple):
     """Whether a requirement holds for one method in one trial.
 
     Fields:
@@ -52,7 +52,7 @@ class Requirement:
     bound: float
     confidence: float | None
 
-    def judge(self, values: NDArray[np.float64]) -> Verdict:
+    def judge(self, values: NDArray[np.float64]) -> RequirementVerdict:
         """Judge the values of the metric, one for each run.
 
         With a confidence of 95 %, the bound of a one-sided 95 % interval must hold, which is a bound of the two-sided
@@ -74,7 +74,7 @@ class Requirement:
                 f"{name} is {estimate.value:.4g} in {estimate.runs} runs, {side} {seen:.4g} with"
                 f" {100 * self.confidence:g} % confidence, required {self.comparison} {self.bound:g}"
             )
-        return Verdict(bool(holds[self.comparison]), estimate, told)
+        return RequirementVerdict(bool(holds[self.comparison]), estimate, told)
 
 
 def parse_requirement(text: str, metrics: dict[str, object] | None = None) -> Requirement:

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.cli.output import print_table
 
 if TYPE_CHECKING:
-    from crowdbot.evaluation import CellResult, EvaluationResult, PairedComparison, Requirement, Statistic, Verdict
+    from crowdbot.evaluation import (
+        CellResult,
+        EvaluationResult,
+        PairedComparison,
+        Requirement,
+        RequirementVerdict,
+        Statistic,
+    )
 
 MOST_ROWS = 20
 """Largest number of messages of failed or invalid runs that are printed."""
@@ -50,7 +57,7 @@ def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComp
         print_table(f"comparison with {first}", head, rows, caption, words=3)
 
 
-def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, Verdict]]) -> None:
+def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:
     """Print whether the requirements hold."""
     for cell, requirement, verdict in verdicts:
         word = "holds" if verdict.holds else "DOES NOT HOLD"
@@ -75,7 +82,7 @@ def result_values(
     result: EvaluationResult,
     statistics: Sequence[Statistic],
     comparisons: Sequence[PairedComparison],
-    verdicts: Sequence[tuple[CellResult, Requirement, Verdict]],
+    verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]],
 ) -> dict[str, Any]:
     """Return the values of all tables."""
     return {

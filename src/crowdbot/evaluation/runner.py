@@ -9,7 +9,7 @@ from pathlib import Path
 from crowdbot.core import run_saved_jobs, source_digest
 from crowdbot.trials import code_references
 
-from .job import EvaluationJob, RunRow, read_rows, run_job, write_rows
+from .job import RunJob, RunRow, read_rows, run_job, write_rows
 from .plan import EvaluationPlan
 from .result import CellResult, EvaluationResult, provenance
 
@@ -51,7 +51,7 @@ def evaluate(
     ['0 [0, 0.561]', '0 [0, 0.561]']
     """
     jobs = [
-        EvaluationJob(k, cell.xml, cell.variant.folder, tuple(map(int, plan.seeds[begin : begin + CHUNK])), plan.trust)
+        RunJob(k, cell.xml, cell.variant.folder, tuple(map(int, plan.seeds[begin : begin + CHUNK])), plan.trust)
         for k, cell in enumerate(plan.cells)
         for begin in range(0, len(plan.seeds), CHUNK)
     ]
@@ -75,7 +75,7 @@ def evaluate(
     return EvaluationResult(cells, provenance())
 
 
-def _key(job: EvaluationJob) -> str:
+def _key(job: RunJob) -> str:
     """Return a name for the result of a job, which changes with everything that the result depends on."""
     found = hashlib.blake2b(digest_size=12)
     for part in (source_digest(), job.xml, str(job.seeds)):
