@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .robots.predictor import RobotPredictor
+    from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -89,6 +90,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
         "robots.predictor": ["RobotPredictor"],
+        "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -153,6 +155,7 @@ __all__ = [
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
+    "RobotPose",
     "RobotPredictor",
     "RobotSpec",
     "Routing",

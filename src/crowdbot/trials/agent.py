@@ -20,7 +20,7 @@ from .notation import NAME, Points
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource, PoseTrack
 
-__all__ = ["Agent", "AgentParameter", "Avatar"]
+__all__ = ["Agent", "AgentParameter", "Avatar", "find_pose_source", "load_poses"]
 
 MOST_BYTES = 64 << 20
 """Largest size of a file of poses [bytes]."""
@@ -168,7 +168,7 @@ class Avatar:
             found.append((("file",), f"file={quote_value(values['file'])} {error}"))
         try:
             if values.get("function"):
-                _find(values["function"], values["folder"], values["trust"])
+                find_pose_source(values["function"], values["folder"], values["trust"])
         except InputError as error:
             found.append((("function",), f"function={quote_value(values['function'])} {error}"))
         return found
@@ -188,15 +188,14 @@ class Avatar:
             start = BodyPose(self.x, self.y, self.heading)
             return PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
         if self.source == "function":
-            cls: Any = _find(self.function, self.folder, self.trust)
+            cls: Any = find_pose_source(self.function, self.folder, self.trust)
             try:
                 made: PoseSource = cls()
             except TypeError as error:
                 raise InputError(f"{self.function} must be made without arguments: {error}") from None
             return made
         path = resolve_file(self.file, self.folder, self.trust)
-        stamp = path.stat()
-        return _load(path, stamp.st_mtime_ns, stamp.st_size, self.file, self.begin, self.max_speed)
+        return load_poses(path, self.file, self.begin, self.max_speed)
 
     def start_pose(self) -> BodyPose:
         """Return the pose at the beginning of the trial; errors as for :meth:`pose_source`."""
@@ -220,18 +219,24 @@ class Avatar:
         """Return the file of poses, or the files of the code."""
         if self.source == "file":
             return (resolve_file(self.file, self.folder, self.trust),)
-        return sources_of(_find(self.function, self.folder, self.trust)) if self.source == "function" else ()
+        return sources_of(find_pose_source(self.function, self.folder, self.trust)) if self.source == "function" else ()
 
 
-def _find(address: str, folder: Path | None, trust: bool) -> type:
+def find_pose_source(address: str, folder: Path | None, trust: bool) -> type:
+    """Return the :class:`crowdbot.humans.PoseSource` at an address; errors as for :func:`crowdbot.core.find_class`."""
     from crowdbot import humans
 
     return find_class(address, humans, humans.PoseSource, folder=folder, trust=trust)
 
 
+def load_poses(path: Path, name: str, begin: float, max_speed: float) -> PoseTrack:
+    """Return the poses of a file, which is read again only if it has changed; see ``read_pose_file``."""
+    stamp = path.stat()
+    return _load(path, stamp.st_mtime_ns, stamp.st_size, name, begin, max_speed)
+
+
 @functools.lru_cache(maxsize=8)
 def _load(path: Path, changed: int, size: int, name: str, begin: float, max_speed: float) -> PoseTrack:
-    """Return the poses of a file, which is read again only if it has changed."""
     from crowdbot.humans import read_pose_file
 
     return read_pose_file(read_beside(path, MOST_BYTES), name, begin=begin, max_speed=max_speed)

@@ -34,6 +34,7 @@ from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
 from .robots.predictor import RobotPredictor, forecast_problems
+from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
@@ -179,6 +180,7 @@ class RobotSpec:
     )
     goal: RobotGoal = child(about="goal")
     planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
+    pose: RobotPose | None = child(None, about="pose from outside (default: the drive moves the robot)")
     predictor: RobotPredictor | None = child(None, about="predictor of the observation's forecast (default: none)")
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
@@ -218,6 +220,8 @@ class RobotSpec:
             raise InputError(
                 'has a deadline in addition to <navigator type="external"/>, which decides nothing; set its timeout'
             )
+        if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
+            raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
         for problem in rider_problems(self.rider, self.type):

@@ -43,7 +43,7 @@ HOLDERS = {
     "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
     "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader model",
     "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
-    AVATARS: "agents names sources delay _latest",
+    AVATARS: "agents names sources delay robots _latest",
     "crowdbot.world.crowd.people_flow.PeopleFlow": "router journeys mixture",
     "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
     "crowdbot.world.crowd.arrivals._Queues": "sources",
