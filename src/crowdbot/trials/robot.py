@@ -33,6 +33,7 @@ from .fields import FieldProblem, attribute, check, child, children, mounted_fie
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
+from .robots.joint_target import JointTarget, joint_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
@@ -191,6 +192,7 @@ class RobotSpec:
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
+    joints: tuple[JointTarget, ...] = children("joint", about="targets of joints over time", max=1000)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Folder of the robot folder, and whether that may lie outside; not part of the XML."""
@@ -231,6 +233,8 @@ class RobotSpec:
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
         for problem in rider_problems(self.rider, self.type):
+            raise InputError(problem)
+        for problem in joint_problems(self.joints, self.body) if self.joints else ():
             raise InputError(problem)
         for mount in self.sensors:
             links = self.body.model.links
