@@ -112,7 +112,7 @@ def test_a_navigator_moves_joints_within_their_limits(world: str) -> None:
     [
         (
             Point("HeadYow"),
-            "navigator Point of robot 'pepper': pepper has no joint 'HeadYow' .* did you mean 'HeadYaw'",
+            "Point of robot 'pepper': pepper has no joint 'HeadYow' .* did you mean 'HeadYaw'",
         ),
         (Point("WheelB"), "has no joint 'WheelB' that can be moved"),
         (Point(position=math.nan), "returned the target nan for joint 'HeadYaw'; it must be a finite number"),

@@ -232,7 +232,7 @@ class RobotSpec:
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
-        for problem in rider_problems(self.rider, self.type):
+        for problem in rider_problems(self.rider or self.seated, self.body.seat):
             raise InputError(problem)
         for problem in joint_problems(self.joints, self.body) if self.joints else ():
             raise InputError(problem)
@@ -245,15 +245,15 @@ class RobotSpec:
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return the problems of the type and of the rider, independent of other problems of the element."""
-        said: list[FieldProblem] = [
-            ((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))
-        ]
+        said: list[FieldProblem] = []
+        seat = False
         try:
             if values.get("type"):
-                robot_of_type(values["type"], values["folder"], values["trust"])
+                seat = robot_of_type(values["type"], values["folder"], values["trust"]).seat
         except InputError as error:
-            return [(("type",), str(error)), *said]
-        return said
+            said = [(("type",), str(error))]
+            seat = True  # unknown: only the words of the rider are checked
+        return [*said, *(((), one) for one in rider_problems(values.get("rider", ""), seat))]
 
     @property
     def usual(self) -> Mapping[str, Any]:
@@ -290,6 +290,11 @@ class RobotSpec:
         else:
             made = dataclasses.replace(self._kind, drive=self.drive)
         return dataclasses.replace(made, latency=self.latency)
+
+    @property
+    def seated(self) -> str:
+        """Body or kind of the person in the seat: the rider given here, or that of the type; empty for none."""
+        return self.rider or (self._kind.rider if self.type else "")
 
     def frame_of(self, mount: Mount, joints: Mapping[str, float] | None = None) -> Floats:
         """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor).

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["JointTarget", "joint_positions", "joint_problems"]
 
-LINE = r"[^\x00-\x1f]{1,200}"
+LINE = r"\S.{0,199}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -253,7 +253,7 @@ class PeopleBodies:
                 (contact.first, contact.first_part, -1.0),
                 (contact.second, contact.second_part, 1.0),
             ):
-                if party.kind == "person":
+                if party.kind == "person" and party.number in self.agent:  # riders are parts of robots
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
                     row = LIMB_NAMES.index(limb)

@@ -61,8 +61,8 @@ class PhysicsWorld(RigidWorld):
         seed: seed of the crowd, of body shapes and of gaits.
         stage: wall height, floor, props and lights. The crowd avoids fixed props.
         people: bodies of all agents except robots, followed by riders; None samples adults.
-        riders: agents of type ``wheelchair`` with a rider. Riders are visible to sensors, but have neither mass nor
-            contacts.
+        riders: agents with the seat of a ``wheelchair`` that carry a rider. A rider is a rigid part of the robot, with
+            mass and contacts; what another robot does to a rider, it does to a person.
         physics_dt: time step of the engine [s].
         slots: number of people that can have a body at the same time (default: 24, or the number of people if smaller).
         motors: command type of robot joints by agent and joint: ``position``, ``velocity`` or ``effort``.
@@ -203,7 +203,7 @@ class PhysicsWorld(RigidWorld):
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         place, heading = self.scene.position[0].tolist(), self.scene.heading[0].tolist()
         starts = {
-            a: RobotStart(a, robot, place[a][0], place[a][1], heading[a], motors_of(a, motors))
+            a: RobotStart(a, self._with_rider(a, robot), place[a][0], place[a][1], heading[a], motors_of(a, motors))
             for a, robot in sorted(robots.items())
         }
         walls = self.scene.walls
@@ -306,15 +306,20 @@ class PhysicsWorld(RigidWorld):
         for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
+        if self.rigid.links:
+            self.rigid.links.begin(model, data)
         mj.mj_step1(model, data)
         reader.look()
         mj.mj_step2(model, data)
+        if self.rigid.links:
+            self.rigid.links.end(data)
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)
         for contact in contacts:
             if contact.first.kind == "robot" and contact.second.kind in ("robot", "person"):
                 pair = (contact.first.number, contact.second.number)
+                pair = (min(pair), max(pair)) if pair[1] in self.robot_bodies else pair  # a rider belongs to a robot
                 self._touched[pair] = max(self._touched.get(pair, 0.0), contact.depth)
 
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
