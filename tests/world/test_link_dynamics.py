@@ -20,8 +20,8 @@ URDF = """<robot name="probe">
 </link>
 <joint name="slide" type="prismatic"><parent link="base"/><child link="slider"/><origin xyz="0 0 0.6"/>
 <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="5"/></joint>
-<link name="fan"><inertial><mass value="0.5"/><inertia ixx="0.2" iyy="0.2" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial>
-</link>
+<link name="fan"><inertial><mass value="0.5"/><inertia ixx="0.2" iyy="0.2" izz="0.2" ixy="0" ixz="0" iyz="0"/>
+</inertial></link>
 <joint name="spin" type="continuous"><parent link="base"/><child link="fan"/><origin xyz="0 0 0.8"/>
 <axis xyz="0 0 1"/></joint>
 <link name="arm"><inertial><mass value="0.5"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>

@@ -23,7 +23,7 @@ ABOUT_BODY = (
     " random"
 )
 ABOUT_RIDER = (
-    "person in the seat, as the body of a person (default: that of the type, or none); only wheelchairs have a seat"
+    "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
 )
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is chosen at random"
 

@@ -37,13 +37,13 @@ def seat_rider(robot: Robot, people: People, row: int) -> Robot:
     0.0
     """
     person = people.persons[row]
-    return _seated(robot, person.name, int(people.variation[row]), float(people.height[row]))
+    return _seated(robot, person.name, float(people.height[row]))
 
 
 @functools.lru_cache(maxsize=64)
-def _seated(robot: Robot, name: str, variation: int, height: float) -> Robot:
+def _seated(robot: Robot, name: str, height: float) -> Robot:
     """Return the robot with a rider; equal riders give the same robot, so that worlds share its engine model."""
-    people = People.of([name], [variation], [height])
+    people = People.of([name], height=[height])
     gait = Gait(people, 0, seat=[WHEELCHAIR])
     state = gait.start(np.zeros((1, 2)), np.zeros(1), np.zeros((1, 2)), ["sit"])
     found = people.limbs(gait.posture(state))
