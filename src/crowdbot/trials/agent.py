@@ -135,6 +135,13 @@ class Avatar:
     max_speed: float = attribute(
         8.0, about="speed between two samples above which the avatar teleports", unit="m/s", exclusive_min=0.0, max=12.0
     )
+    part_timeout: float = attribute(
+        0.0,
+        about="longest time for which head, hands and skeleton keep their latest sample while others lack them",
+        unit="s",
+        min=0.0,
+        max=10.0,
+    )
     radius: float = attribute(0.25, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     height: float | None = attribute(None, about="stature (default: that of the body)", unit="m", min=0.5, max=2.5)
     body: str = attribute("", about=ABOUT_BODY)
@@ -186,7 +193,10 @@ class Avatar:
             if self.x is None or self.y is None:  # a problem that is reported already
                 raise UnreadableValue("x, y")
             start = BodyPose(self.x, self.y, self.heading)
-            return PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
+            parts = self.part_timeout
+            return PoseTrack.of(
+                [], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed, part_timeout=parts
+            )
         if self.source == "function":
             cls: Any = find_pose_source(self.function, self.folder, self.trust)
             try:
@@ -195,7 +205,8 @@ class Avatar:
                 raise InputError(f"{self.function} must be made without arguments: {error}") from None
             return made
         path = resolve_file(self.file, self.folder, self.trust)
-        return load_poses(path, self.file, self.begin, self.max_speed)
+        track = load_poses(path, self.file, self.begin, self.max_speed)
+        return dataclasses.replace(track, part_timeout=self.part_timeout) if self.part_timeout else track
 
     def start_pose(self) -> BodyPose:
         """Return the pose at the beginning of the trial; errors as for :meth:`pose_source`."""

@@ -53,7 +53,8 @@ def read_link(row: Mapping[str, str]) -> LinkDynamics:
     """
     for problem in attribute_problems(LinkDynamics, dict(row), ()).values():
         raise InputError(problem)
-    return from_attributes(LinkDynamics, dict(row))
+    found: LinkDynamics = from_attributes(LinkDynamics, dict(row))
+    return found
 
 
 def link_problem(link: LinkDynamics, model: RobotModel) -> str:
