@@ -169,6 +169,5 @@ def test_parts_come_at_their_own_rates() -> None:
     assert late.right_hand[:3] == pytest.approx((1.4, -0.2, 2.0))  # it moves with the person
     assert track.at(1.2).right_hand is None
     gap = PoseTrack.of([0.0, 0.5, 1.0], [poses[0], BodyPose(0.5, 0.0), poses[40]], part_timeout=0.2)
-    assert gap.at(0.15).right_hand is not None
-    assert gap.at(0.3).right_hand is None
+    assert gap.at(0.45).right_hand is not None  # the sample before has it
     assert gap.at(0.7).right_hand is None

@@ -22,9 +22,7 @@ ABOUT_BODY = (
     "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); from a list, one is chosen at"
     " random"
 )
-ABOUT_RIDER = (
-    "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
-)
+ABOUT_RIDER = "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is chosen at random"
 
 
