@@ -232,7 +232,7 @@ class RobotSpec:
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
-        for problem in rider_problems(self.rider or self.seated, self.body.seat):
+        for problem in rider_problems(self.rider_kind, self.body.seat):
             raise InputError(problem)
         for problem in joint_problems(self.joints, self.body) if self.joints else ():
             raise InputError(problem)
@@ -292,7 +292,7 @@ class RobotSpec:
         return dataclasses.replace(made, latency=self.latency)
 
     @property
-    def seated(self) -> str:
+    def rider_kind(self) -> str:
         """Body or kind of the person in the seat: the rider given here, or that of the type; empty for none."""
         return self.rider or (self._kind.rider if self.type else "")
 

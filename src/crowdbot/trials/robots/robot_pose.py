@@ -16,7 +16,6 @@ from crowdbot.trials.files.trial_files import resolve_file
 
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource
-    from crowdbot.trials.robot import RobotSpec
 
 __all__ = ["RobotPose", "start_problem"]
 
@@ -112,9 +111,9 @@ class RobotPose:
         return ()
 
 
-def start_problem(robot: RobotSpec) -> Iterator[tuple[Any, str]]:
-    """Yield why the source of the pose of a robot gives none, or begins elsewhere than the robot."""
-    pose = robot.pose
+def start_problem(robot: Any) -> Iterator[tuple[Any, str]]:
+    """Yield why the source of the pose of a robot of a trial gives none, or begins elsewhere than the robot."""
+    pose: RobotPose | None = robot.pose
     if pose is None:
         return
     try:
@@ -133,7 +132,7 @@ def start_problem(robot: RobotSpec) -> Iterator[tuple[Any, str]]:
         )
 
 
-def _start(robot: RobotSpec, pose: RobotPose) -> BodyPose:
+def _start(robot: Any, pose: RobotPose) -> BodyPose:
     from crowdbot.humans import BodyPose
 
     source = pose.source_from(robot.x, robot.y, robot.heading)

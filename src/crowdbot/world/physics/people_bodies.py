@@ -172,9 +172,7 @@ class PeopleBodies:
         for array, before in zip(self.shapes, kept["shapes"], strict=True):
             array[:old] = before
 
-    def take(
-        self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools, firm: Bools | None = None
-    ) -> int:
+    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools, firm: Bools) -> int:
         """Assign bodies to people and return the number of people without a free body.
 
         Args:
@@ -182,7 +180,7 @@ class PeopleBodies:
             mass, radius: masses ``[W]`` [kg] and limb radii ``[W, L]`` [m].
             other: mass of the nearest mover ``[W]`` [kg].
             ahead: whether it is ahead of the person ``[W]``.
-            firm: whether contacts cannot move it ``[W]`` (default: they can).
+            firm: whether contacts cannot move it ``[W]``.
         """
         rank = {int(agent): k for k, agent in enumerate(wanted[: len(self.agent)])}
         gone = np.array([s for s, agent in enumerate(self.agent) if agent >= 0 and int(agent) not in rank], dtype=int)
@@ -194,8 +192,7 @@ class PeopleBodies:
                 self.agent[free.pop(0)] = agent
         for slot in np.flatnonzero(self.agent >= 0):
             k = rank[int(self.agent[slot])]
-            held = firm is not None and bool(firm[k])
-            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]), held)
+            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]), bool(firm[k]))
         return max(0, len(wanted) - len(self.agent))
 
     def agent_of(self, slot: int) -> int:
