@@ -138,3 +138,17 @@ def test_wrong_extensions_are_refused(attributes: str, message: str, tmp_path: P
     with pytest.raises(RobotError) as told:
         Robot.load(tmp_path)
     assert message in str(told.value)
+
+
+def test_a_joint_without_a_motor_moves_to_its_target_and_hits_with_its_speed(tmp_path: Path) -> None:
+    robot = probe(tmp_path, "")
+    scene = Scene.of([[0.0, 0.0], [0.45, 0.45]], external=[True, False])
+    world = PhysicsWorld(scene, ORCA(), {0: robot}, dt=0.05)
+    world.robot_bodies[0].hold("swing", 1.6)
+    found = []
+    for _ in range(40):
+        world.step({0: Twist()})
+        found.append(world.robot_bodies[0].joints()["swing"])
+    assert found[1] == pytest.approx((0.1, 1.0), abs=0.01)  # at the 1 rad/s of its limit
+    assert found[-1] == pytest.approx((1.6, 0.0), abs=1e-6)
+    assert any(event.impact_speed > 0.3 for event in world.contact_events)

@@ -59,6 +59,7 @@ class RigidBodies:
         links = LinkForces(self.robots.values(), self.design.step)
         with self.compiled.borrow() as model:
             for _ in range(steps):
+                links.note(self.data)
                 for body in self.robots.values():
                     body.drive()
                 links.begin(model, self.data)

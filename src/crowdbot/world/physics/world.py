@@ -303,6 +303,8 @@ class PhysicsWorld(RigidWorld):
 
     def _substep(self, share: float, time: float) -> None:
         mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
+        if self.rigid.links:
+            self.rigid.links.note(data)
         for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
