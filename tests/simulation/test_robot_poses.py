@@ -91,6 +91,20 @@ def test_the_scene_has_the_pose_and_the_velocity_of_the_samples(world: str) -> N
     assert pose.position[0].tolist() == scene.position[0, 1].tolist()
 
 
+def test_a_robot_keeps_its_velocity_and_turn_rate_until_the_timeout() -> None:
+    trial = TRIALS["planar"]
+    run = SimulationRun(Simulation(trial))
+    run.step([sample(k * trial.step) for k in (0, 1, 2)])
+    for _ in range(12):
+        run.step()
+        if run.simulation.tick == 6:
+            assert run.simulation.world.twists[1].turn[0] == pytest.approx(0.3)
+    scene = run.simulation.world.scene
+    assert scene.position[0, 1, 0] == pytest.approx(0.5 * (0.1 + 0.25))
+    assert scene.heading[0, 1] == pytest.approx(0.3 * (0.1 + 0.25))
+    assert run.simulation.world.twists[1].turn[0] == 0.0
+
+
 @pytest.mark.parametrize("kind", ["pepper", "turtlebot2", "wheelchair"])
 def test_the_body_of_a_robot_is_where_its_pose_is(kind: str) -> None:
     """Bases that are pulled and bases on wheels, with their height above the floor."""

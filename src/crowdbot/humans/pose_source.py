@@ -83,6 +83,7 @@ class PoseTrack(PoseSource):
         max_speed: speed [m/s] above which a change of position is a teleport.
         part_timeout: longest time [s] for which head, hands and skeleton keep their latest sample while other samples
             lack them: each part comes at its own rate. 0: a sample without a part ends it.
+        turning: whether ``heading`` continues with its last rate, too, during the extrapolation, as that of a robot.
 
     Raises:
         InputError: shapes do not fit, times do not increase, or there is neither a sample nor a start.
@@ -100,6 +101,7 @@ class PoseTrack(PoseSource):
     extrapolation: float = 0.0
     max_speed: float = MAX_SPEED
     part_timeout: float = 0.0
+    turning: bool = False
 
     def __post_init__(self) -> None:
         if self.time.ndim != 1 or self.rows.shape != (len(self.time), ROW):
@@ -162,6 +164,10 @@ class PoseTrack(PoseSource):
             late = max(0.0, time - float(self.time[k]))
             vx, vy = self._velocity(k - 1) if k > 0 else (0.0, 0.0)
             row = shift_row(self.rows[k], *(min(late, self.extrapolation) * one for one in (vx, vy)))
+            if self.turning and k > 0:
+                turn = float(self.rows[k, 2] - self.rows[k - 1, 2])
+                turn -= 2.0 * math.pi * math.floor((turn + math.pi) / (2.0 * math.pi))
+                row[2] += min(late, self.extrapolation) * turn / float(self.time[k] - self.time[k - 1])
             return PoseMotion(row, vx, vy) if late < self.extrapolation - EARLY else PoseMotion(row, 0.0, 0.0)
         velocity = self._velocity(k)
         if velocity == (0.0, 0.0) and np.any(self.rows[k, :2] != self.rows[k + 1, :2]):

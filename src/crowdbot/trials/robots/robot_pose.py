@@ -91,7 +91,8 @@ class RobotPose:
 
         if self.source == "external":
             start = BodyPose(x, y, heading)
-            return PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
+            track = PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
+            return dataclasses.replace(track, turning=True)
         if self.source == "function":
             cls: Any = find_pose_source(self.function, self.folder, self.trust)
             try:
