@@ -24,6 +24,8 @@ PUBLISHED = {  # mass [kg], height [m], and widest extent [m] with the tolerance
     "qolo": (94.7, 1.79, 0.85),
     "turtlebot2": (6.3, 0.42, 0.36),
     "wheelchair": (172.0, 1.22, 1.11),
+    "wheelchair-3d": (172.0, 1.22, 1.11),
+    "wheelchair-rider": (172.0, 1.22, 1.11),
 }
 load = functools.cache(Robot.load)
 
@@ -90,6 +92,8 @@ OWN = {  # what every robot senses with: names of its mounts by kind
         "Infrared": 3,
     },
     "wheelchair": {"Lidar2D": 1, "WheelOdometry": 1, "IMU": 1},
+    "wheelchair-3d": {"Lidar3D": 1, "DepthCamera": 2, "RGBCamera": 1, "WheelOdometry": 1, "IMU": 1},
+    "wheelchair-rider": {"Lidar2D": 1, "WheelOdometry": 1, "IMU": 1},
 }
 
 

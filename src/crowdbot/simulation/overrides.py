@@ -23,7 +23,7 @@ __all__ = ["apply_overrides", "check_overrides"]
 
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "avatars", "journeys")
 """Values of a trial that cannot change during a run."""
-START = ("name", "type", "x", "y", "heading")
+START = ("name", "type", "x", "y", "heading", "pose")
 """Values of a robot that cannot change during a run."""
 
 
@@ -138,6 +138,8 @@ def _check_added_robots(simulation: Any, robots: _Robots) -> None:
     former = {control.robot.name for control in simulation.former_robots}
     scene = simulation.world.scene
     for robot in robots.added:
+        if robot.pose is not None:
+            raise InputError(f"robot {robot.name!r} has <pose>; only robots of the start can be moved from outside")
         if robot.name in former or any(robot.name == control.robot.name for control in robots.removed):
             raise InputError(f"a robot {robot.name!r} was removed from this run; give the new one another name")
         away = np.hypot(*(scene.position - np.array(robot.position)).transpose(2, 0, 1))

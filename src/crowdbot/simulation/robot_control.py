@@ -6,7 +6,7 @@ import copy
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -90,7 +90,8 @@ class RobotControl:
         goal: ``[E, 2]`` current goal [m], which orders can change.
         tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
-        joints: ``[E, J]`` target of each joint [rad or m] that an order has moved, otherwise NaN.
+        joints: ``[E, J]`` target of each joint [rad or m] that has been moved, otherwise NaN.
+        wanted: targets of joints from the latest decisions by environment, until they are applied.
     """
 
     robot: RobotSpec
@@ -110,6 +111,7 @@ class RobotControl:
     goal: Floats
     tolerance: Floats
     joints: Floats
+    wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:
@@ -275,6 +277,9 @@ class RobotControl:
         decided = ~late
         decided[list(failures)] = False
         self.command[environments[decided]] = decisions.twist[decided]
+        self.wanted = {
+            int(environments[k]): decisions.joints[k] for k in np.flatnonzero(decided) if decisions.joints[k]
+        }
         return {int(environments[k]): error for k, error in failures.items()}
 
     def _remember(self, environments: Ints, known: _Known) -> None:

@@ -160,14 +160,23 @@ def script_of(people: InitialPeople) -> ReplayedPeople | None:
     return ReplayedPeople(tracks, release)
 
 
-def avatars_of(trial: Trial, end: int) -> Avatars | None:
-    """Return the avatars of a trial in one environment; their indices end before ``end``."""
-    if not trial.avatars:
+def avatars_of(trial: Trial, end: int, first: int) -> Avatars | None:
+    """Return the avatars of a trial in one environment, and its robots whose pose comes from outside.
+
+    Args:
+        trial: the trial.
+        end: index after that of the last avatar.
+        first: index of the first robot.
+    """
+    led = [(first + k, robot, robot.pose) for k, robot in enumerate(trial.robots) if robot.pose is not None]
+    if not (trial.avatars or led):
         return None
+    count, robots = len(trial.avatars), [agent for agent, _, _ in led]
     sources = [avatar.pose_source() for avatar in trial.avatars]
-    agents = end - len(sources) + np.arange(len(sources))
-    names = [avatar.name for avatar in trial.avatars]
-    return Avatars(agents, names, [sources], [avatar.delay for avatar in trial.avatars])
+    sources += [pose.source_from(robot.x, robot.y, robot.heading) for _, robot, pose in led]
+    names = [avatar.name for avatar in trial.avatars] + [f"robot/{robot.name}" for _, robot, _ in led]
+    delays = [avatar.delay for avatar in trial.avatars] + [pose.delay for _, _, pose in led]
+    return Avatars([*range(end - count, end), *robots], names, [sources], delays, robots)
 
 
 def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:

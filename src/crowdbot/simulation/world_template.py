@@ -135,7 +135,8 @@ class WorldTemplate:
     def _is_alone(self) -> bool:
         """Whether worlds are made one by one: with bodies or avatars, or if people enter a mixture of crowds."""
         mixed = isinstance(self.trial.crowd, Crowds) and bool(self.trial.sources)
-        return self.posed or self._embodied or mixed or bool(self.trial.avatars)
+        led = bool(self.trial.avatars) or any(robot.pose is not None for robot in self.trial.robots)
+        return self.posed or self._embodied or mixed or led
 
     @functools.cached_property
     def _embodied(self) -> bool:
@@ -231,7 +232,7 @@ class WorldTemplate:
             **self._shared,
             "journeys": journeys_of(self.trial, people, agents),
             "script": script_of(people),
-            "avatars": avatars_of(self.trial, len(people) - len(people.walks)),
+            "avatars": avatars_of(self.trial, len(people) - len(people.walks), len(people)),
             "ids": np.concatenate([np.arange(there), -1 - np.arange(agents - there)]),
         }
 

@@ -41,7 +41,9 @@ if TYPE_CHECKING:
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
+    from .robots.joint_target import JointTarget, joint_positions
     from .robots.predictor import RobotPredictor
+    from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -88,7 +90,9 @@ __getattr__, __dir__ = lazy_exports(
         "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
+        "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -135,6 +139,7 @@ __all__ = [
     "Group",
     "ImportedTrial",
     "InitialPeople",
+    "JointTarget",
     "Journey",
     "Light",
     "Limits",
@@ -153,6 +158,7 @@ __all__ = [
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
+    "RobotPose",
     "RobotPredictor",
     "RobotSpec",
     "Routing",
@@ -189,6 +195,7 @@ __all__ = [
     "import_vadere",
     "is_area_file",
     "is_code",
+    "joint_positions",
     "kind_of",
     "load_trial",
     "map_files",

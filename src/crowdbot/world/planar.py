@@ -90,7 +90,7 @@ class PlanarWorld(PlanarLiveChanges):
         ids: identities ``[A]`` or ``[E, A]``, which determine random numbers of each person (default: 0 to A - 1).
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
-        avatars: people whose pose comes from outside; to the crowd model they are external.
+        avatars: people and robots whose pose comes from outside; to the crowd model they are external.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -353,6 +353,14 @@ class PlanarWorld(PlanarLiveChanges):
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         scene, self.twists = move_robots(before, after, self.drives, self.twists, asked, self.dt)
+        return scene if self.avatars is None else self._lead_robots(before, after, scene)
+
+    def _lead_robots(self, before: Scene, led: Scene, after: Scene) -> Scene:
+        """Return the scene with the robots whose pose comes from outside where they are led."""
+        if self.avatars is None:
+            return after
+        scene, twists = self.avatars.lead_robots(before, led, after, self.dt)
+        self.twists = {**self.twists, **twists}
         return scene
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:

@@ -31,7 +31,7 @@ LAST = "readings"
 
 HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
-    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control planner",
+    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control wanted planner",
     "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
     "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together",
     "crowdbot.world.planar.PlanarWorld": (
@@ -42,9 +42,9 @@ HOLDERS = {
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
     ),
     "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
-    "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader model",
+    "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader links model",
     "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
-    AVATARS: "agents names sources delay _latest",
+    AVATARS: "agents names sources delay robots _latest",
     "crowdbot.world.crowd.people_flow.PeopleFlow": "router journeys mixture",
     "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
     "crowdbot.world.crowd.arrivals._Queues": "sources",

@@ -16,11 +16,19 @@ from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import fill_defaults, has_kind, original_element, readable, skip_unreadable
+from crowdbot.trials.partial_element import (
+    fill_defaults,
+    has_kind,
+    is_partial,
+    original_element,
+    readable,
+    skip_unreadable,
+)
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
+from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
@@ -73,6 +81,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     found += [*skip_unreadable(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
     found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
     found += [*skip_unreadable(*(_avatar(one) for one in trial.avatars))]
+    found += [*skip_unreadable(*(start_problem(robot) for _, robot in _mirrored(trial.robots)))]
     if not too_large:
         found += _places(checked)
     return [(original_element(thing), sentence) for thing, sentence in found]
@@ -123,6 +132,11 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
         return
     if not walks:
         yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
+
+
+def _mirrored(robots: Sequence[RobotSpec]) -> Iterator[tuple[int, RobotSpec]]:
+    """Yield the robots with a readable pose from outside."""
+    yield from ((k, robots[k]) for k, pose in readable(robots, "pose") if pose is not None and not is_partial(pose))
 
 
 def _avatar(one: Avatar) -> Problems:

@@ -16,6 +16,7 @@ from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .people_motion import PeopleMotion
+from .rider import RIDER
 from .stage import PhysicsStage, PropBody
 
 __all__ = ["scene_bodies"]
@@ -173,7 +174,7 @@ def _rows_of(robot: Robot) -> dict[str, _Rows]:
     """Return the colliders of a robot by kind, in the frames of their links."""
     found: dict[str, list[tuple[str, Floats, tuple[float, float, float]]]] = {"box": [], "capsule": [], "cylinder": []}
     for name, link in robot.model.links.items():
-        for part in link.collisions:
+        for part in link.collisions if not name.startswith(RIDER) else ():  # riders are among the people
             shape = part.shape
             if isinstance(shape, Box):
                 found["box"].append((name, part.origin, tuple(0.5 * side for side in shape.size)))  # type: ignore[arg-type]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
+from .link_forces import LinkForces
 from .robot_body import RobotBody
 
 __all__ = ["RigidBodies", "copy_state"]
@@ -55,11 +56,15 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
+        links = LinkForces(self.robots.values(), self.design.step)
         with self.compiled.borrow() as model:
             for _ in range(steps):
+                links.note(self.data)
                 for body in self.robots.values():
                     body.drive()
+                links.begin(model, self.data)
                 mj.mj_step(model, self.data)
+                links.end(self.data)
             update_frames(model, self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:

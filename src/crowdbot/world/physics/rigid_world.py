@@ -33,6 +33,7 @@ from .engine_models import RobotStart
 from .mjcf_model import MjcfModel
 from .people_bodies import PeopleBodies
 from .people_motion import PeopleMotion
+from .rider import seat_rider
 from .robot_body import RobotBody
 from .scenery import add_rings
 from .stage import AbsentProp, PhysicsStage, PropBody, without_prop
@@ -151,7 +152,14 @@ class RigidWorld(PlanarWorld):
         """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
         for agent, robot in robots.items():
             if agent not in self.drives or agent in self.robot_bodies:
-                self.robot_body(agent).robot = robot
+                self.robot_body(agent).robot = self._with_rider(agent, robot)
+
+    def _with_rider(self, agent: int, robot: Robot) -> Robot:
+        """Return the robot of an agent with its rider, if it has one."""
+        people = self.people
+        if agent not in people.agents[len(people.afoot) :]:
+            return robot
+        return seat_rider(robot, people.people, int(people.row[agent]))
 
     def copy(self) -> Self:
         """Return an independent world in the same state, on a free clock."""

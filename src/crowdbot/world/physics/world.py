@@ -25,6 +25,7 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
+from .led_robots import LedRobots
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
@@ -60,8 +61,8 @@ class PhysicsWorld(RigidWorld):
         seed: seed of the crowd, of body shapes and of gaits.
         stage: wall height, floor, props and lights. The crowd avoids fixed props.
         people: bodies of all agents except robots, followed by riders; None samples adults.
-        riders: agents of type ``wheelchair`` with a rider. Riders are visible to sensors, but have neither mass nor
-            contacts.
+        riders: agents with the seat of a ``wheelchair`` that carry a rider. A rider is a rigid part of the robot, with
+            mass and contacts; what another robot does to a rider, it does to a person.
         physics_dt: time step of the engine [s].
         slots: number of people that can have a body at the same time (default: 24, or the number of people if smaller).
         motors: command type of robot joints by agent and joint: ``position``, ``velocity`` or ``effort``.
@@ -202,12 +203,12 @@ class PhysicsWorld(RigidWorld):
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         place, heading = self.scene.position[0].tolist(), self.scene.heading[0].tolist()
         starts = {
-            a: RobotStart(a, robot, place[a][0], place[a][1], heading[a], motors_of(a, motors))
+            a: RobotStart(a, self._with_rider(a, robot), place[a][0], place[a][1], heading[a], motors_of(a, motors))
             for a, robot in sorted(robots.items())
         }
         walls = self.scene.walls
         self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
-        self.rigid.people.led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
+        self.rigid.people.led = self._led_people(self.scene)
         self._contact_tracker = BodyContactTracker(
             self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
         )
@@ -234,30 +235,54 @@ class PhysicsWorld(RigidWorld):
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         """Run the engine for a step of the world, and return the scene with the moved bodies."""
+        led = self._led_robots(before, after)
         for agent, robot_bodies in self.robot_bodies.items():
-            if self._at[agent] != (*before.position[0, agent].tolist(), float(before.heading[0, agent])):
+            at_rest = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
+            if self._at[agent] != at_rest and agent not in led.twists:
                 self._put(agent, before)
-            robot_bodies.ask(asked[agent])
+            robot_bodies.ask(led.twists.get(agent, asked[agent]))
         gait, ends = self._prepared(before, after)
         end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
         with self.rigid.engine_steps():
             for k in range(self._steps):
+                led.go(k / self._steps)
                 self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+            led.go(1.0)
         for ghost in self.rigid.ghosts.values():
             ghost.step_alone(self._steps)
+            if led.twists:
+                led.go(1.0)
+                ghost.step_alone(0)  # the frames follow
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
+        scene = self._lead_robots(before, after, scene)
+        for agent in led.twists:
+            self._at[agent] = (*scene.position[0, agent].tolist(), float(scene.heading[0, agent]))
         if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
             gait, ends = self.people.next_state(scene, self.dt), None
         self.people.take(gait, ends)
         return scene
+
+    def _led_people(self, scene: Scene) -> Ints:
+        """Return the agents whose motion comes from outside: avatars, and people on recorded tracks."""
+        led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
+        if self.script is None:
+            return led
+        return np.union1d(led, np.flatnonzero(self.script.follower_mask(scene)[0]))
+
+    def _led_robots(self, before: Scene, after: Scene) -> LedRobots:
+        """Return the motion of the robots whose pose comes from outside."""
+        led = () if self.avatars is None else self.avatars.robots
+        bodies = {agent: body for agent, body in self.robot_bodies.items() if agent in led}
+        return LedRobots(bodies, before, after, self.dt)
 
     def _prepared(self, before: Scene, after: Scene) -> tuple[Any, Floats | None]:
         """Assign bodies to people near movers, and return the states of people after the step."""
         gait = self.people.next_state(after, self.dt)
         ends = self.people.ends_of(gait)
         if len(self._people_bodies.agent):
+            self._people_bodies.led = self._led_people(before)
             self._embody(before)
             way = (after.position[0] - before.position[0]) / self.dt
             start, end = self.people.relative_ends(before), self.people.relative_ends(after, ends)
@@ -268,28 +293,35 @@ class PhysicsWorld(RigidWorld):
         """Assign bodies to people who may come into contact in this step, nearest first."""
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
-        near, mass, ahead = people_near(
-            scene, persons, movers(self.rigid.main.robots, self.stage, self._movable, self.data), NEAR + FAST * self.dt
-        )
+        led = () if self.avatars is None else self.avatars.robots
+        found = movers(self.rigid.main.robots, self.stage, self._movable, self.data, led)
+        near, mass, ahead, firm = people_near(scene, persons, found, NEAR + FAST * self.dt)
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
-            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near]
+            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near], firm[near]
         )
 
     def _substep(self, share: float, time: float) -> None:
         mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
+        if self.rigid.links:
+            self.rigid.links.note(data)
         for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
+        if self.rigid.links:
+            self.rigid.links.begin(model, data)
         mj.mj_step1(model, data)
         reader.look()
         mj.mj_step2(model, data)
+        if self.rigid.links:
+            self.rigid.links.end(data)
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)
         for contact in contacts:
             if contact.first.kind == "robot" and contact.second.kind in ("robot", "person"):
                 pair = (contact.first.number, contact.second.number)
+                pair = (min(pair), max(pair)) if pair[1] in self.robot_bodies else pair  # a rider belongs to a robot
                 self._touched[pair] = max(self._touched.get(pair, 0.0), contact.depth)
 
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:

@@ -17,6 +17,7 @@ from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotMod
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .drive import Drive
+from .link_dynamics import LinkDynamics, link_problem
 from .mount import SensorMount
 from .robot_file import FILE, read_robot_file
 from .servo import CommandDelay
@@ -47,6 +48,9 @@ class Robot:
         wheels: driven and steered wheels.
         posture: joint positions while driving [rad, m]; 0 for joints left out.
         about: description, one line.
+        seat: whether it has the seat of a wheelchair.
+        rider: kind or body of the person in the seat, in trials that name no other; empty for none.
+        links: drag of links, and links that contacts do not move.
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
@@ -63,6 +67,9 @@ class Robot:
     wheels: tuple[Wheel, ...] = ()
     posture: Mapping[str, float] = field(default_factory=dict)
     about: str = ""
+    seat: bool = False
+    rider: str = ""
+    links: tuple[LinkDynamics, ...] = ()
 
     def __post_init__(self) -> None:
         CommandDelay(self.latency)
@@ -80,6 +87,11 @@ class Robot:
             )
         object.__setattr__(self, "footprint", shape)
         self.model.positions(self.posture)
+        for link in self.links:
+            if problem := link_problem(link, self.model):
+                raise InputError(f"Robot: <link> {problem}")
+        if self.rider and not self.seat:
+            raise InputError(f'Robot: rider={self.rider[:60]!r} needs a seat: extends="wheelchair"')
         names = [mount.name for mount in self.mounts]
         for mount in self.mounts:
             if names.count(mount.name) > 1:
@@ -253,7 +265,7 @@ def builtin_robots() -> tuple[str, ...]:
     """Return the names of the built-in robots.
 
     >>> builtin_robots()
-    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair')
+    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair', 'wheelchair-3d', 'wheelchair-rider')
     """
     return tuple(sorted(entry.name for entry in _assets().iterdir() if (entry / FILE).is_file()))
 
