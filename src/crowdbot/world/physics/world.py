@@ -25,7 +25,7 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
-from .led_robots import LedRobots
+from .mirrored_robots import MirroredRobots
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
@@ -235,7 +235,7 @@ class PhysicsWorld(RigidWorld):
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         """Run the engine for a step of the world, and return the scene with the moved bodies."""
-        led = self._led_robots(before, after)
+        led = self._mirrored_robots(before, after)
         for agent, robot_bodies in self.robot_bodies.items():
             at_rest = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
             if self._at[agent] != at_rest and agent not in led.twists:
@@ -271,11 +271,11 @@ class PhysicsWorld(RigidWorld):
             return led
         return np.union1d(led, np.flatnonzero(self.script.follower_mask(scene)[0]))
 
-    def _led_robots(self, before: Scene, after: Scene) -> LedRobots:
+    def _mirrored_robots(self, before: Scene, after: Scene) -> MirroredRobots:
         """Return the motion of the robots whose pose comes from outside."""
         led = () if self.avatars is None else self.avatars.robots
         bodies = {agent: body for agent, body in self.robot_bodies.items() if agent in led}
-        return LedRobots(bodies, before, after, self.dt)
+        return MirroredRobots(bodies, before, after, self.dt)
 
     def _prepared(self, before: Scene, after: Scene) -> tuple[Any, Floats | None]:
         """Assign bodies to people near movers, and return the states of people after the step."""

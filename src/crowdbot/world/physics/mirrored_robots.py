@@ -14,12 +14,12 @@ from crowdbot.world.robots.drive import Twists
 
 from .robot_body import RobotBody
 
-__all__ = ["LedRobots"]
+__all__ = ["MirroredRobots"]
 
 Floats = NDArray[np.float64]
 
 
-class LedRobots:
+class MirroredRobots:
     """Robots of one step of a physics world that are moved along the path to their new pose.
 
     Their base is kinematic: at each engine step it has the pose on this path and the velocity of the motion, which
@@ -38,11 +38,11 @@ class LedRobots:
     def __init__(self, bodies: Mapping[int, RobotBody], before: Scene, after: Scene, dt: float) -> None:
         self.dt = dt
         self.twists: dict[int, Twists] = {}
-        self._bases: list[_LedBase] = []
+        self._bases: list[_MirroredBase] = []
         for agent, body in bodies.items():
             start = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
             end = (*after.position[0, agent].tolist(), float(after.heading[0, agent]))
-            base = _LedBase(body, start, end, dt)
+            base = _MirroredBase(body, start, end, dt)
             self._bases.append(base)
             self.twists[agent] = Twists.of(base.twist, 1)
 
@@ -52,7 +52,7 @@ class LedRobots:
             base.go(share * self.dt)
 
 
-class _LedBase:
+class _MirroredBase:
     """Base of one robot that moves from one pose x, y [m], heading [rad] to another in a time [s]."""
 
     def __init__(
