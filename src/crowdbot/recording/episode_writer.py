@@ -12,8 +12,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-
 from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
 from crowdbot.messages import (
     MeasuredReading,

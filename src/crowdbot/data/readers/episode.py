@@ -1,8 +1,9 @@
 """Episodes, the recordings of trials: MCAP with ROS 2 messages; people and robots become tracks.
 
 The reader uses ``/people`` (people_msgs/msg/People, the name is the id), ``/<robot>/ground_truth/odom``
-(nav_msgs/msg/Odometry of a robot, in the world frame; in files without it every ``.../odom``), and ``walls`` (JSON list of rings) and ``robots`` (ids) of the metadata record
-``crowdbot``. The file of a killed run is read up to its last complete record. Frames number the messages on /people.
+(nav_msgs/msg/Odometry of a robot, in the world frame; in files without it every ``.../odom``), and ``walls`` (JSON list
+of rings) and ``robots`` (ids) of the metadata record ``crowdbot``. The file of a killed run is read up to its last
+complete record. Frames number the messages on /people.
 """
 
 from __future__ import annotations

@@ -76,7 +76,12 @@ def _geometry(shape: Shape) -> Element:
 def _joint(joint: Joint) -> Element:
     rows = [_origin(joint.origin), Element("parent", {"link": joint.parent}), Element("child", {"link": joint.child})]
     rows.append(Element("axis", {"xyz": _row(joint.axis)}))
-    limits = {"lower": joint.lower, "upper": joint.upper, "effort": joint.motor.effort, "velocity": joint.motor.velocity}
+    limits = {
+        "lower": joint.lower,
+        "upper": joint.upper,
+        "effort": joint.motor.effort,
+        "velocity": joint.motor.velocity,
+    }
     finite = {name: repr(float(value)) for name, value in limits.items() if math.isfinite(value)}
     if finite and joint.kind in ("revolute", "prismatic"):
         rows.append(Element("limit", {"effort": "1000.0", "velocity": "1000.0", **finite}))
