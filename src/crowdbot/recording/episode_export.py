@@ -40,7 +40,7 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     * ``scans``: beam: sensor, its x, y, heading in the world, angle [rad], range [m], and hit: id of the person or
       robot, -1 nothing, -2 a wall;
     * ``joints``: joint: robot, joint, position [rad or m] and velocity;
-    * ``transforms``: transform of ``/tf`` and ``/tf_static``: parent, child, x, y, z [m] and the rotation qw, qx, qy, qz;
+    * ``transforms``: transform of ``/tf`` and ``/tf_static``: parent, child, x, y, z [m], qw, qx, qy, qz;
     * ``contacts``: contact: robot, other, clearance [m];
     * ``forces`` and ``collisions``, of the physics world: the two bodies, the body part, force [N], ...;
     * readings of other sensors, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of

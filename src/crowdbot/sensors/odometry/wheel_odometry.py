@@ -168,14 +168,13 @@ class WheelOdometry(Sensor):
     ) -> tuple[Floats, Floats, NDArray[np.int64]]:
         """Return motion, distances and counts ``[E, 3]`` of a left and a right wheel that roll with the base."""
         geometry = None if view.wheels is None else view.wheels.geometry
-        track, track_error = _believed(self.track, TRACK, 0.0 if geometry is None else geometry.track)
-        radius, radius_error = _believed(
-            self.wheel_radius, RADIUS, 0.0 if geometry is None else float(np.mean(geometry.radius))
-        )
+        true_track, true_radius = (0.0, 0.0) if geometry is None else (geometry.track, float(np.mean(geometry.radius)))
+        track, true_track = _lengths(self.track, TRACK, true_track, self.track_scale)
+        radius, true_radius = _lengths(self.wheel_radius, RADIUS, true_radius)
         forward, left, turn = arc_between(planar_pose(state.pose), here)
-        half = 0.5 * (track * track_error) * self.track_scale * turn
+        half = 0.5 * true_track * turn
         way = np.stack([(forward - half) / self.left_scale, (forward + half) / self.right_scale, left], axis=1)
-        way[:, :2] /= radius_error
+        way[:, :2] *= radius / true_radius
         if self.slip > 0.0:
             way = way + self.slip * np.sqrt(np.abs(way)) * normals(way.shape, rng)
         way[:, 2] *= self.holonomic
@@ -236,13 +235,14 @@ class WheelOdometry(Sensor):
         return 2.0 * math.pi * radius / self.ticks_per_turn if self.ticks_per_turn else 0.0
 
 
-def _believed(given: float | None, default: float, true: float) -> tuple[float, float]:
-    """Return the length that a robot believes, and the true one over it; ``true`` is 0 if it is not known."""
+def _lengths(given: float | None, default: float, true: float, scale: float = 1.0) -> tuple[float, float]:
+    """Return the length that a robot believes, and the true one; ``true`` is 0 if it is not known."""
     if true <= 0.0:
-        return (default if given is None else given), 1.0
+        believed = default if given is None else given
+        return believed, believed * scale
     if given is None:
-        return true, 1.0
-    return given, 1.0 if math.isclose(given, true, rel_tol=SAME) else true / given
+        return true / scale, true
+    return given / scale, given if math.isclose(given, true, rel_tol=SAME) else true
 
 
 def _mean_of_sides(values: NDArray[Any], geometry: WheelGeometry) -> list[Floats]:
