@@ -277,8 +277,8 @@ def test_a_branch_has_the_frames_at_its_start(tmp_path: Path) -> None:
     before, after = (dict(rows["/tf"])[stamp].transforms for rows in (whole.messages, part))
     rows = [{row.child_frame_id: repr(row.transform) for row in found} for found in (before, after)]
     assert {name for name in rows[0] if rows[0][name] != rows[1][name]} <= {
-        "one/wheel_left_link",
-        "one/wheel_right_link",
+        "one/wheel_left",
+        "one/wheel_right",
     }
     assert rows[0]["one/odom"] != rows[0]["two/odom"]
     assert [now for now, _ in part["/tf_static"]] == [stamp]

@@ -42,8 +42,8 @@ class LinkFrames:
     >>> from crowdbot.trials import RobotGoal
     >>> spec = RobotSpec(name="bot", type="turtlebot2", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
     >>> frames = LinkFrames(spec)
-    >>> frames.odom, frames.base, frames.names["wheel_left_link"]
-    ('bot/odom', 'bot/base_link', 'bot/wheel_left_link')
+    >>> frames.odom, frames.base, frames.names["wheel_left"]
+    ('bot/odom', 'bot/base_link', 'bot/wheel_left')
     """
 
     robot: RobotSpec

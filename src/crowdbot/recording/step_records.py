@@ -247,12 +247,13 @@ def _pose_in_map(poses: Poses, frame: str) -> Pose:
     Raises:
         ValueError: the frame is not below the map.
     """
-    chain, name = [], frame
+    chain: list[tuple[float, float, float]] = []
+    name = frame
     while name != MAP:
         if name not in poses or len(chain) > len(poses):
             raise ValueError(f"frame {frame!r} is not in {MAP!r}")
-        name, *place = poses[name]
-        chain.append(place)
+        name, x, y, heading = poses[name]
+        chain.append((x, y, heading))
     pose = Pose.of(chain[-1][:2], chain[-1][2])
     for place in reversed(chain[:-1]):
         pose = pose.offset(*place)

@@ -191,8 +191,9 @@ class WheelOdometry(Sensor):
     ) -> tuple[Floats, Floats, NDArray[np.int64], tuple[Floats, Floats]]:
         """Return motion, distances and counts ``[E, 3]`` from the angles of wheels, and angles and distances."""
         geometry, angle = wheels.geometry, np.asarray(wheels.angle)
-        same = state.angle is not None and state.angle.shape == angle.shape
-        before, distance = (state.angle, state.distance) if same else (angle, np.zeros_like(angle))
+        before, distance = angle, np.zeros_like(angle)
+        if state.angle is not None and state.distance is not None and state.angle.shape == angle.shape:
+            before, distance = state.angle, state.distance
         radius = self._radii(geometry)
         way = (angle - before) * radius
         if self.slip > 0.0:
