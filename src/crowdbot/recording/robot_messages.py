@@ -166,7 +166,7 @@ def relative(frame: Pose, pose: Pose) -> Pose:
     """Return a pose of the map in another frame, E = 1.
 
     >>> relative(Pose.of((1.0, 0.0), math.pi / 2), Pose.of((1.0, 2.0), 0.0)).position.round(3).tolist()
-    [[2.0, -0.0]]
+    [[2.0, 0.0]]
     """
     if frame is HERE:
         return pose
