@@ -40,7 +40,7 @@ def wheel_geometry(robot: Robot) -> WheelGeometry | None:
     places = [poses[robot.model.joints[wheel.joint].child][:2, 3] for wheel in wheels]
     speeds = [robot.wheel_speeds(twist) for twist in TWISTS]
     rolling = np.array([[speed[wheel.joint] for speed in speeds] for wheel in wheels])
-    position: Floats = np.round(np.array(places, dtype=np.float64), 12)
+    position = np.array([[round(float(value), 12) for value in place] for place in places])
     radius = np.array([wheel.radius for wheel in wheels])
     steered = np.array([bool(wheel.steering) for wheel in wheels])
     if steered.any():  # a steered wheel turns towards the motion; its own row is that of straight ahead
