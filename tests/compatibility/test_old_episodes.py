@@ -22,8 +22,11 @@ SENSORS = {
     "wheel-odometry",
 }  # fmt: skip
 """Every sensor of the earlier version, with the words of its trial files."""
-CHANGED = "all-sensors-physics"
-"""0.1.0 ignored the latency of a robot without a type in the physics world; see CHANGELOG."""
+CHANGED = {
+    "all-sensors-physics": "0.1.0 ignored the latency of a robot without a type in the physics world",
+    "pepper-physics": "odometry of its robot with wheels was the true pose in the physics world",
+}
+"""Episodes that do not replay with the same digest, and why; see CHANGELOG."""
 DRAWN = "camera"
 """The episode with a colour camera; another graphics library draws other shades."""
 RENAMED = {
@@ -82,7 +85,7 @@ def test_an_old_episode_replays(name: str) -> None:
     assert (found.software, found.complete) == ("crowdbot 0.1.0", old["complete"])
     assert f"(made with crowdbot 0.1.0{'' if found.complete else ', killed before its end'})" in str(found)
     assert found.outcomes == (old["outcome"], old["outcome"])
-    if name == CHANGED:
+    if name in CHANGED:
         assert not found.equal
     elif SAME_MACHINE:
         assert (found.equal, found.replayed) == (True, old["digest"]), str(found)

@@ -18,8 +18,10 @@ __all__ = [
     "ENDING",
     "END_KEYS",
     "FORMAT",
+    "GROUND_TRUTH",
     "KEYS",
     "METADATA",
+    "ODOM",
     "ORDERS",
     "TWIST",
     "as_json",
@@ -47,6 +49,8 @@ ORDERS = "/crowdbot/orders"
 """Topic of the orders from outside, as JSON."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
+GROUND_TRUTH, ODOM = "/ground_truth/odom", "/odom"
+"""Topics of the true pose of a robot, after its name: of today, and of files before."""
 
 
 def versions() -> dict[str, str]:

@@ -58,9 +58,11 @@ if TYPE_CHECKING:
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
+    from .robots.robot_description import robot_description
     from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
+    from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
@@ -132,6 +134,7 @@ _LAZY = {
     "import_robot": "robots.robot_import",
     "integrate_twist": "robots.drive",
     "join_worlds": "environments",
+    "joint_states": "robots.wheel_encoders",
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
     "permitted_speed": "physics.body_region_limits",
@@ -142,13 +145,17 @@ _LAZY = {
     "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
     "remove_person": "live_changes",
+    "robot_description": "robots.robot_description",
     "roll_pitch_yaw": "urdf.transforms",
     "scene_bodies": "physics.colliders",
     "select_environments": "environments",
+    "simulated_body": "robots.wheel_encoders",
     "slot_of": "live_changes",
     "step_environments": "environments",
     "take_arrays": "crowd.environment_rows",
     "two_body_force": "physics.body_region_limits",
+    "wheel_geometry": "robots.wheel_encoders",
+    "wheel_rotation": "robots.wheel_encoders",
     "widen": "planar_live_changes",
 }
 
@@ -219,6 +226,7 @@ __all__ = [
     "import_robot",
     "integrate_twist",
     "join_worlds",
+    "joint_states",
     "move_agent",
     "move_joint",
     "permitted_speed",
@@ -229,13 +237,17 @@ __all__ = [
     "redirect_person",
     "region_of",
     "remove_person",
+    "robot_description",
     "roll_pitch_yaw",
     "scene_bodies",
     "select_environments",
+    "simulated_body",
     "slot_of",
     "step_environments",
     "take_arrays",
     "two_body_force",
+    "wheel_geometry",
+    "wheel_rotation",
     "widen",
 ]
 

@@ -33,7 +33,7 @@ HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
     "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control wanted planner",
     "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
-    "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together",
+    "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together wheels",
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"
         " heading_jitter substeps latency ghosts joined _models _segments _surfaces"
@@ -71,8 +71,8 @@ VALUES = {
     "Gaits": "crowdbot.humans.feet",
     "ImuReading": "crowdbot.sensors.imu",
     "ImuState": "crowdbot.sensors.imu",
-    "Odometry": "crowdbot.sensors.odometry",
-    "OdometryState": "crowdbot.sensors.odometry",
+    "Odometry": "crowdbot.sensors.odometry.wheel_odometry",
+    "OdometryState": "crowdbot.sensors.odometry.wheel_odometry",
     "Pending": "crowdbot.world.robots.servo",
     "PointCloud": "crowdbot.sensors.lidar3d",
     "Pose": "crowdbot.core.pose",
