@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .robots.predictor import RobotPredictor
+    from .robots.reaction import ReactionSpec, robot_reactions
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -89,6 +90,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
         "robots.predictor": ["RobotPredictor"],
+        "robots.reaction": ["ReactionSpec", "robot_reactions"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -150,6 +152,7 @@ __all__ = [
     "Points",
     "Portal",
     "RandomizedModel",
+    "ReactionSpec",
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
@@ -210,6 +213,7 @@ __all__ = [
     "resolve_file",
     "restore_old_names",
     "robot_place_problem",
+    "robot_reactions",
     "schema",
     "skip_unreadable",
     "trial_remarks",

@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from .planar import PlanarWorld
     from .planar_environments import planar_world
     from .planar_live_changes import widen
+    from .reactions.reaction import REACTIONS, RobotReaction
+    from .reactions.robot_reactions import RobotReactions, reaction_codes
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -97,6 +99,7 @@ _LAZY = {
     "PolygonZone": "crowd.waypoint",
     "PortalTransfer": "crowd.portal",
     "PropBody": "physics.stage",
+    "REACTIONS": "reactions.reaction",
     "Renderer": "rendering.renderer",
     "ReplayedPeople": "crowd.replay",
     "ReplayedTrack": "crowd.replay",
@@ -104,6 +107,8 @@ _LAZY = {
     "RobotBody": "physics.robot_body",
     "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
+    "RobotReaction": "reactions.reaction",
+    "RobotReactions": "reactions.robot_reactions",
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
@@ -138,6 +143,7 @@ _LAZY = {
     "planar_world": "planar_environments",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
+    "reaction_codes": "reactions.robot_reactions",
     "read_urdf": "urdf",
     "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
@@ -154,6 +160,7 @@ _LAZY = {
 
 __all__ = [
     "BODY_REGION_LIMITS",
+    "REACTIONS",
     "AckermannDrive",
     "Avatars",
     "BodyContactEvent",
@@ -191,6 +198,8 @@ __all__ = [
     "RobotBody",
     "RobotFolder",
     "RobotModel",
+    "RobotReaction",
+    "RobotReactions",
     "Router",
     "SceneCamera",
     "SensorMount",
@@ -225,6 +234,7 @@ __all__ = [
     "planar_world",
     "put_environments",
     "quaternion",
+    "reaction_codes",
     "read_urdf",
     "redirect_person",
     "region_of",
