@@ -21,6 +21,7 @@ __all__ = [
     "KEYS",
     "METADATA",
     "ORDERS",
+    "REACTION_TOPIC",
     "TWIST",
     "as_json",
     "from_json",
@@ -47,6 +48,8 @@ ORDERS = "/crowdbot/orders"
 """Topic of the orders from outside, as JSON."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
+REACTION_TOPIC = "/crowdbot/reactions"
+"""Topic of the reactions to robots that are in force, as JSON: ids of people by kind of reaction."""
 
 
 def versions() -> dict[str, str]:

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
+    from .importers.hunavsim import import_hunavsim
     from .importers.original import ImportedTrial, import_original, plan_of, trials_of
     from .importers.original_order import Plan
     from .importers.pedsim import import_pedsim
@@ -72,7 +74,9 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
+        "importers.hunavsim": ["import_hunavsim"],
         "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
         "importers.original_order": ["Plan"],
         "importers.pedsim": ["import_pedsim"],
@@ -185,6 +189,8 @@ __all__ = [
     "expand_spawners",
     "expand_sweeps",
     "has_kind",
+    "import_dxf",
+    "import_hunavsim",
     "import_original",
     "import_pedsim",
     "import_trial",

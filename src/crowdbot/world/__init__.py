@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from .planar_environments import planar_world
     from .planar_live_changes import widen
     from .reactions.reaction import REACTIONS, RobotReaction
-    from .reactions.robot_reactions import RobotReactions, reaction_codes
+    from .reactions.robot_reactions import RobotReactions, people_by_reaction, reaction_codes
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -139,6 +139,7 @@ _LAZY = {
     "join_worlds": "environments",
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
+    "people_by_reaction": "reactions.robot_reactions",
     "permitted_speed": "physics.body_region_limits",
     "planar_world": "planar_environments",
     "put_environments": "environments",
@@ -230,6 +231,7 @@ __all__ = [
     "join_worlds",
     "move_agent",
     "move_joint",
+    "people_by_reaction",
     "permitted_speed",
     "planar_world",
     "put_environments",

@@ -20,7 +20,7 @@ from crowdbot.world.crowd.person_random import uniform
 from .reaction import REACTIONS, RobotReaction
 from .reaction_kernel import choose_motion, update_states
 
-__all__ = ["REACTION", "REACTION_STATE", "RobotReactions", "reaction_codes"]
+__all__ = ["REACTION", "REACTION_STATE", "RobotReactions", "people_by_reaction", "reaction_codes"]
 
 Floats = NDArray[np.float64]
 Step = Callable[[Scene, float], Scene]
@@ -203,6 +203,23 @@ def reaction_codes(scene: Scene) -> NDArray[np.int8] | None:
     if state is None:
         return None
     return np.where(scene.active, state[..., 0], 0.0).astype(np.int8)
+
+
+def people_by_reaction(scene: Scene, ids: NDArray[np.int64]) -> dict[str, list[int]] | None:
+    """Return the ids of the people with a reaction in force, by kind; None in a world without reactions.
+
+    Args:
+        scene: scene with E = 1.
+        ids: ``[A]`` identities.
+
+    >>> people_by_reaction(Scene.of([[0.0, 0.0]]), np.array([7])) is None
+    True
+    """
+    codes = reaction_codes(scene)
+    if codes is None:
+        return None
+    kinds = sorted({int(code) for code in codes[0].tolist()} - {0})
+    return {REACTIONS[code]: np.sort(ids[codes[0] == code]).tolist() for code in kinds}
 
 
 def _view(scene: Scene, kind: str, robots: Sequence[int]) -> Scene:
