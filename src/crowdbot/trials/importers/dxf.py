@@ -6,6 +6,7 @@ space are read, in the unit of ``$INSUNITS``.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -36,7 +37,7 @@ KINDS = ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE")
 PARTS = ("VERTEX", "SEQEND")
 
 
-class Group(NamedTuple):
+class DxfGroup(NamedTuple):
     """A group code with its value."""
 
     code: int
@@ -45,13 +46,13 @@ class Group(NamedTuple):
 
 
 @dataclass
-class Entity:
+class DxfEntity:
     """An entity or a table entry: its kind, its groups, and the vertices of a polyline."""
 
     kind: str
     line: int
-    groups: list[Group] = field(default_factory=list)
-    vertices: list[Entity] = field(default_factory=list)
+    groups: list[DxfGroup] = field(default_factory=list)
+    vertices: list[DxfEntity] = field(default_factory=list)
 
     def text(self, code: int, otherwise: str = "") -> str:
         """Return the first value of a group code."""
@@ -89,7 +90,7 @@ def import_dxf(path: str | Path, layers: Collection[str] = (), unit: str = "") -
     return ImportedTrial(((path.stem, reader.trial(layers)),), tuple(reader.notes))
 
 
-def _read(path: Path) -> list[Group]:
+def _read(path: Path) -> list[DxfGroup]:
     if not path.is_file():
         raise TrialError(f"there is no DXF file {path}")
     try:
@@ -108,7 +109,7 @@ def _read(path: Path) -> list[Group]:
     return list(_groups(path, text.replace("\r\n", "\n").split("\n")))
 
 
-def _groups(path: Path, lines: Sequence[str]) -> Iterator[Group]:
+def _groups(path: Path, lines: Sequence[str]) -> Iterator[DxfGroup]:
     for k in range(0, len(lines) - 1, 2):
         try:
             code = int(lines[k])
@@ -116,14 +117,14 @@ def _groups(path: Path, lines: Sequence[str]) -> Iterator[Group]:
             raise TrialError(f"{path}:{k + 1}: {lines[k].strip()[:40]!r} is not a group code of DXF") from None
         if code == 0 and lines[k + 1].strip() == "EOF":
             return
-        yield Group(code, lines[k + 1], k + 2)
+        yield DxfGroup(code, lines[k + 1], k + 2)
     raise TrialError(f"{path} ends without EOF: it is not a complete DXF file")
 
 
 class _Reader:
     """Converts a drawing, and notes what is not imported."""
 
-    def __init__(self, path: Path, groups: list[Group], unit: str) -> None:
+    def __init__(self, path: Path, groups: list[DxfGroup], unit: str) -> None:
         self.path = path
         self.notes: dict[str, None] = {}
         sections = _sections(path, groups)
@@ -169,13 +170,13 @@ class _Reader:
             end=End(goal=False, collision=False),
         )
 
-    def _unit(self, header: list[Group], unit: str) -> float:
+    def _unit(self, header: list[DxfGroup], unit: str) -> float:
         """Return the unit of the drawing [m]."""
         if unit:
             if unit not in UNITS:
                 raise TrialError(f"the unit {unit[:20]!r} is unknown; units are {', '.join(UNITS)}")
             return UNITS[unit]
-        for name, value in zip(header, header[1:], strict=False):
+        for name, value in itertools.pairwise(header):
             if name.code == 9 and name.value.strip() == "$INSUNITS":
                 number = int(self._number(value))
                 if number in INSUNITS:
@@ -185,12 +186,12 @@ class _Reader:
         self.notes["the file has no unit: coordinates are metres"] = None
         return 1.0
 
-    def _is_hidden(self, layer: Entity) -> bool:
+    def _is_hidden(self, layer: DxfEntity) -> bool:
         flags, color = (next((g for g in layer.groups if g.code == code), None) for code in (70, 62))
         frozen = flags is not None and int(self._number(flags)) & 1
         return bool(frozen) or (color is not None and self._number(color) < 0.0)
 
-    def _ring(self, one: Entity) -> Ring:
+    def _ring(self, one: DxfEntity) -> Ring:
         """Return the points of an entity [m]; a closed one ends at its first point. Empty if it cannot be a wall."""
         if one.kind == "LINE":
             points = [(self._value(one, 10), self._value(one, 20)), (self._value(one, 11), self._value(one, 21))]
@@ -206,7 +207,7 @@ class _Reader:
         begin, end = (0.0, 360.0) if one.kind == "CIRCLE" else (self._value(one, 50), self._value(one, 51))
         return self._points(one, arc_points(center, radius, begin, end, self.scale), side)
 
-    def _polyline(self, one: Entity) -> list[tuple[float, float]]:
+    def _polyline(self, one: DxfEntity) -> list[tuple[float, float]]:
         """Return the points of a polyline, with arcs for its bulges."""
         flags = int(self._value(one, 70, 0.0))
         if one.kind == "POLYLINE":
@@ -226,7 +227,7 @@ class _Reader:
                     rows[-1] = (x, value, bulge) if group.code == 20 else (x, y, value)
         return bulge_points(rows, bool(flags & 1), self.scale)
 
-    def _side(self, one: Entity) -> float:
+    def _side(self, one: DxfEntity) -> float:
         """Return 1, -1 for an entity that is drawn from below, 0 for one that is not horizontal."""
         x, y, z = (self._value(one, code, otherwise) for code, otherwise in ((210, 0.0), (220, 0.0), (230, 1.0)))
         if abs(x) > 1e-6 or abs(y) > 1e-6:
@@ -234,7 +235,7 @@ class _Reader:
             return 0.0
         return -1.0 if z < 0.0 else 1.0
 
-    def _points(self, one: Entity, points: Sequence[tuple[float, float]], side: float) -> Ring:
+    def _points(self, one: DxfEntity, points: Sequence[tuple[float, float]], side: float) -> Ring:
         found: list[tuple[float, float]] = []
         for x, y in points:
             spot = (round(side * x * self.scale, 6), round(y * self.scale, 6))
@@ -247,7 +248,7 @@ class _Reader:
             raise TrialError(f"{self.path}: the walls have more than {MOST_CORNERS} corners; choose layers")
         return tuple(found)
 
-    def _value(self, one: Entity, code: int, otherwise: float | None = None) -> float:
+    def _value(self, one: DxfEntity, code: int, otherwise: float | None = None) -> float:
         found = next((group for group in one.groups if group.code == code), None)
         if found is None:
             if otherwise is None:
@@ -255,7 +256,7 @@ class _Reader:
             return otherwise
         return self._number(found)
 
-    def _number(self, group: Group) -> float:
+    def _number(self, group: DxfGroup) -> float:
         try:
             value = float(group.value)
         except ValueError:
@@ -265,10 +266,10 @@ class _Reader:
         return value
 
 
-def _sections(path: Path, groups: list[Group]) -> dict[str, list[Group]]:
+def _sections(path: Path, groups: list[DxfGroup]) -> dict[str, list[DxfGroup]]:
     """Return the groups of each section."""
-    found: dict[str, list[Group]] = {}
-    now: list[Group] | None = None
+    found: dict[str, list[DxfGroup]] = {}
+    now: list[DxfGroup] | None = None
     for k, group in enumerate(groups):
         if group.code == 0 and group.value.strip() == "SECTION":
             name = groups[k + 1].value.strip() if k + 1 < len(groups) and groups[k + 1].code == 2 else ""
@@ -282,13 +283,13 @@ def _sections(path: Path, groups: list[Group]) -> dict[str, list[Group]]:
     return found
 
 
-def _entities(path: Path, groups: list[Group]) -> list[Entity]:
+def _entities(path: Path, groups: list[DxfGroup]) -> list[DxfEntity]:
     """Return the entities of a section; vertices belong to their polyline."""
-    found: list[Entity] = []
-    now: Entity | None = None
+    found: list[DxfEntity] = []
+    now: DxfEntity | None = None
     for group in groups:
         if group.code == 0:
-            now = Entity(group.value.strip(), group.line)
+            now = DxfEntity(group.value.strip(), group.line)
             if now.kind not in PARTS:
                 found.append(now)
             elif found and now.kind == "VERTEX" and found[-1].kind == "POLYLINE":
