@@ -11,7 +11,7 @@ Ring = tuple[tuple[float, float], ...]
 
 DEVIATION = 0.01
 """Largest distance [m] between an arc and its chords."""
-MOST_CHORDS = 64
+MOST_CHORDS = 512
 LEAST_CHORDS = 8
 """Number of chords of a full circle."""
 

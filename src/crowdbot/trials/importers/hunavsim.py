@@ -161,9 +161,9 @@ class _Reader:
         if duration > 0.0:
             found["duration"] = min(86_400.0, duration)
         if slow > 0.0 and kind in ("scared", "curious"):
-            found["speed"] = min(1.3, slow / speed)
+            found["speed"] = min(1.3, round(slow / speed, 6))
         if far > 0.0 and kind in ("curious", "block"):
-            found["gap"] = min(100.0, max(0.0, far - radius - ROBOT_RADIUS))
+            found["gap"] = min(100.0, max(0.0, round(far - radius - ROBOT_RADIUS, 6)))
         return found
 
     def _block(self, values: Mapping[Any, Any], key: Any, what: str) -> dict[Any, Any]:
