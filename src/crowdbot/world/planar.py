@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -323,7 +323,8 @@ class PlanarWorld(PlanarLiveChanges):
         """Return the scenes before and after the last substep of the crowd."""
         wide = widen_robots(before.radius, self.twists, self.robot_margin)
         start = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
-        resolve, radius, step = self._resolve_overlaps, before.radius, self._step_model
+        resolve, radius = self._resolve_overlaps, before.radius
+        step: Callable[[Scene, float], Scene] = self._step_model
         if self.reactions is not None:
             start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
         earlier, crowd = move_people(start, step, resolve, self.limits, self.dt, self.substeps, radius)

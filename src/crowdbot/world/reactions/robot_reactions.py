@@ -71,9 +71,9 @@ class RobotReactions:
     def __post_init__(self) -> None:
         object.__setattr__(self, "groups", tuple(tuple(group) for group in self.groups))
         for name in ("members", "sources"):
-            group = np.asarray(getattr(self, name), dtype=np.int64)
-            object.__setattr__(self, name, tuple(group.tolist()))
-            if group.size and not -1 <= group.min() <= group.max() < len(self.groups):
+            numbers = np.asarray(getattr(self, name), dtype=np.int64)
+            object.__setattr__(self, name, tuple(numbers.tolist()))
+            if numbers.size and not -1 <= numbers.min() <= numbers.max() < len(self.groups):
                 raise InputError(f"RobotReactions: {name} must be from -1 to {len(self.groups) - 1}")
         for group in self.groups:
             shares = [float(share) for _, share in group]
