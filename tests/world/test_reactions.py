@@ -13,8 +13,10 @@ from crowdbot.world import (
     REACTIONS,
     DifferentialDrive,
     PeopleSource,
+    PhysicsWorld,
     PlanarWorld,
     PolygonZone,
+    Robot,
     RobotReaction,
     RobotReactions,
     WaypointSequence,
@@ -300,9 +302,6 @@ def test_a_scene_with_preferred_velocities_reacts_too():
 
 
 def test_both_worlds_move_people_alike():
-    pytest.importorskip("mujoco")
-    from crowdbot.world import PhysicsWorld, Robot
-
     robot = Robot.load("turtlebot2")
     scene = Scene.of(
         [[0.0, 0.0], [5.0, 0.5], [5.0, 3.0]], goal=[[0.0, 0.0], [-5.0, 0.5], [-5.0, 3.0]],
