@@ -81,8 +81,8 @@ def find_robot(
 def update_states(
     code: Numbers, number: Floats, rule: Floats, position: Floats, ahead: Floats, active: Bools, external: Bools,
     visible: Bools, robots: Numbers, edges: Floats, dt: float, state: Floats,
-) -> None:  # fmt: skip
-    """Begin, continue and end reactions.
+) -> bool:  # fmt: skip
+    """Begin, continue and end reactions; return whether somebody reacts with a motion of their own.
 
     Args:
         code, number: ``[K]`` and ``[K, 8]`` kinds and parameters.
@@ -94,6 +94,7 @@ def update_states(
         dt: time step [s].
         state: ``[E, A, 4]``, modified in place.
     """
+    some = False
     for e in range(len(rule)):
         for a in range(rule.shape[1]):
             k = int(rule[e, a]) - 1
@@ -110,6 +111,7 @@ def update_states(
                     robot = find_robot(e, a, row, position, ahead, active, visible, robots, edges)
                 if robot >= 0:
                     own[0], own[1], own[2], own[3] = code[k], row[1], robot, 0.0
+                    some = True
                 continue
             robot = int(own[2])
             seen = active[e, robot] and visible[e, robot]
@@ -117,14 +119,17 @@ def update_states(
             own[3] = 0.0 if seen else own[3] + dt
             if own[1] == 0.0 or own[3] > LOST or not active[e, robot]:
                 own[0], own[1], own[3] = 0.0, row[2], 0.0
+            else:
+                some = True
+    return some
 
 
 @kernel
 def choose_motion(
     number: Floats, rule: Floats, state: Floats, position: Floats, velocity: Floats, ahead: Floats, radius: Floats,
     speed: Floats, top: Floats, active: Bools, wish: Floats, steers: Bools, toward: Floats,
-) -> bool:  # fmt: skip
-    """Replace the desired velocities of people who react to a robot; return whether there are any.
+) -> None:  # fmt: skip
+    """Replace the desired velocities of people who react to a robot.
 
     Args:
         number, rule, state: as in :func:`update_states`.
@@ -135,13 +140,12 @@ def choose_motion(
         steers: ``[E, A]`` whose desired velocity is replaced.
         toward: ``[E, A, 2]`` vector to the robot for people who look at it, otherwise 0.
     """
-    some = False
     for e in range(len(rule)):
         for a in range(rule.shape[1]):
             code = int(state[e, a, 0])
             if code <= IMPASSIVE or not active[e, a] or rule[e, a] < 1.0:
                 continue
-            some = steers[e, a] = True
+            steers[e, a] = True
             row, robot = number[int(rule[e, a]) - 1], int(state[e, a, 2])
             dx, dy = position[e, robot, 0] - position[e, a, 0], position[e, robot, 1] - position[e, a, 1]
             gap, most = radius[e, a] + radius[e, robot], row[3] * speed[e, a]
@@ -163,7 +167,6 @@ def choose_motion(
             wish[e, a, 0], wish[e, a, 1] = share * vx, share * vy
             if code in (CURIOUS, BLOCK, FOLLOW, LOOK):
                 toward[e, a, 0], toward[e, a, 1] = dx, dy
-    return some
 
 
 @kernel

@@ -131,21 +131,21 @@ class RobotReactions:
             return scene, step
         ahead = np.stack([np.cos(scene.heading), np.sin(scene.heading)], axis=-1)
         position, active = dense(scene.position, pairs, FLOAT), dense(scene.active, shape, BOOL)
-        update_states(
+        some = update_states(
             *self._table, rule, position, ahead, active, dense(scene.external, shape, BOOL),
             dense(scene.visible, shape, BOOL), np.array(robots, dtype=np.int64),
             np.ascontiguousarray(scene.walls.segments()), float(dt), state,
         )  # fmt: skip
         scene = scene.replace(memory={**memory, REACTION_STATE: state})
         views = self._views(step, robots, state[..., 0])
+        if not some:
+            return scene, views
         wish, steers, toward = np.array(scene.desired_velocity(dt)), np.zeros(shape, dtype=np.bool_), np.zeros(pairs)
-        some = choose_motion(
+        choose_motion(
             self._table[1], rule, state, position, dense(scene.velocity, pairs, FLOAT), ahead,
             dense(radius, shape, FLOAT), dense(scene.preferred_speed, shape, FLOAT),
             dense(scene.max_speed, shape, FLOAT), active, wish, steers, toward,
         )  # fmt: skip
-        if not some:
-            return scene, views
         looks = (state[..., 0] == REACTIONS.index("look")) & steers
         return _with_wishes(scene, wish, steers), _turn_after(views, toward, looks)
 
