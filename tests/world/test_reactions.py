@@ -25,6 +25,7 @@ from crowdbot.world import (
     people_by_reaction,
     put_environments,
     reaction_codes,
+    remove_person,
     select_environments,
 )
 
@@ -333,3 +334,47 @@ def test_wrong_reactions_are_refused(make, sentence):
     with pytest.raises(InputError) as caught:
         make()
     assert sentence in str(caught.value)
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_random_crowds_with_all_reactions_stay_finite_and_repeat(model):
+    kinds = [kind for kind in REACTIONS if kind != "regular"]
+
+    def run():
+        world = crowd(11, 30, model, kinds[:5])
+        for tick in range(80):
+            world.step({0: Twist(0.8, 0.4 * math.sin(0.2 * tick))})
+        return world
+
+    one = run()
+    assert np.isfinite(one.scene.position).all()
+    assert np.any(reaction_codes(one.scene))
+    speed = np.hypot(*one.scene.velocity[0, 1:].T)
+    assert np.all(speed <= one.scene.max_speed[0, 1:] + 1e-9)
+    np.testing.assert_array_equal(one.scene.preferred_speed[0, 1:], 1.3)
+    assert bytes_of(one, 0) == bytes_of(run(), 0)
+
+
+def test_a_removed_robot_ends_the_reaction_and_who_leaves_has_none():
+    world = meeting("curious", person=(3.0, 0.0), duration=100.0)
+    assert drive(world, 1.0)[2][-1] == REACTIONS.index("curious")
+    world.remove_robot(ROBOT)
+    world.step({})
+    assert reaction_codes(world.scene).tolist() == [[0, 0]]
+    world = meeting("curious", person=(3.0, 0.0), duration=100.0)
+    drive(world, 1.0)
+    remove_person(world, PERSON)
+    assert reaction_codes(world.scene).tolist() == [[0, 0]]
+
+
+def test_people_react_to_the_nearest_of_several_robots():
+    scene = Scene.of(
+        [[0.0, 0.0], [3.0, 0.0], [0.0, 2.5]], goal=[[0.0, 0.0], [3.0, 0.0], [0.0, 2.5]], heading=[0.3, 0.0, 0.0],
+        external=[False, True, True],
+    )  # fmt: skip
+    reactions = RobotReactions([[(RobotReaction("curious", gap=0.5, field_of_view=2 * math.pi), 1.0)]], members=[0])
+    world = PlanarWorld(scene, ORCA(), {1: DifferentialDrive(), 2: DifferentialDrive()}, 0.05, reactions=reactions)
+    for _ in range(100):
+        world.step({1: Twist(0.0, 0.0), 2: Twist(0.0, 0.0)})
+    assert world.scene.memory["reaction_state"][0, 0, 2] == 2.0
+    assert np.hypot(*(world.scene.position[0, 0] - [0.0, 2.5])) == pytest.approx(1.0, abs=0.15)
