@@ -43,7 +43,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim or the CrowdBot simulator (2021)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim or the CrowdBot simulator (2021), or a drawing (DXF)",
     )
     begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
     group.add_argument(
@@ -51,6 +51,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="DIR",
         help="project folder of the CrowdBot simulator, for files that FILE refers to (default: folder of FILE)",
+    )
+    group.add_argument(
+        "--layer", metavar="NAME", action="append", default=[], help="layer of a drawing (default: all visible ones)"
+    )
+    group.add_argument(
+        "--unit", choices=("mm", "cm", "m", "km", "in", "ft"), help="unit of a drawing (default: from the file)"
     )
     add_settings(group)
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
@@ -166,7 +172,7 @@ def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
     from crowdbot.trials import check_trial, import_trial, trial_xml
 
-    done = import_trial(options.original, options.root)
+    done = import_trial(options.original, options.root, options.layer, options.unit or "")
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1

@@ -23,11 +23,23 @@ from crowdbot.messages import (
 from crowdbot.messages.marker_array import KIND as MARKERS
 from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, Simulation, StepRecord, write_order
 from crowdbot.trials import RobotSpec, Trial, trial_xml
+from crowdbot.world import people_by_reaction
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
-from .metadata import ADDED_ROBOTS, CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
+from .metadata import (
+    ADDED_ROBOTS,
+    CONTACTS,
+    DIGEST,
+    ENDING,
+    FORMAT,
+    METADATA,
+    ORDERS,
+    REACTION_TOPIC,
+    as_json,
+    versions,
+)
 from .robot_messages import RobotMessages
 
 __all__ = ["Recorder"]
@@ -52,8 +64,8 @@ class Recorder:
     sensors, latched), ``/people``, ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``,
     ``/<robot>/ground_truth/odom``, ``/<robot>/cmd_vel``, ``/<robot>/joint_states``, ``/<robot>/robot_description``
     (latched) and ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for
-    contacts of a robot with people or walls, and ``/crowdbot/orders`` for orders from outside; in the physics world
-    ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
+    contacts of a robot with people or walls, ``/crowdbot/orders`` for orders from outside, and ``/crowdbot/reactions`` if people can
+    react to robots; in the physics world ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
 
     The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
     as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no
@@ -205,6 +217,8 @@ class Recorder:
     def _scene(self, frame: StepRecord) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
         self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
+        if (reactions := people_by_reaction(scene, frame.ids)) is not None:
+            self._write(REACTION_TOPIC, make.text(as_json(reactions)), now)
         for topic, message in self.robots.scene(frame):
             self._write(topic, message, now)
         if (latest := self._markers.index(frame.tick)) >= self._next_markers:

@@ -23,6 +23,7 @@ __all__ = [
     "METADATA",
     "ODOM",
     "ORDERS",
+    "REACTION_TOPIC",
     "TWIST",
     "as_json",
     "from_json",
@@ -51,6 +52,8 @@ CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
 GROUND_TRUTH, ODOM = "/ground_truth/odom", "/odom"
 """Topics of the true pose of a robot, after its name: of today, and of files before."""
+REACTION_TOPIC = "/crowdbot/reactions"
+"""Topic of the reactions to robots that are in force, as JSON: ids of people by kind of reaction."""
 
 
 def versions() -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -29,7 +30,7 @@ from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ODOM, ORDERS, heading_of
+from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ODOM, ORDERS, REACTION_TOPIC, heading_of
 
 __all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
 
@@ -72,6 +73,7 @@ class RecordedStep:
         forces, collisions: contact forces of this step, and contact events that ended, in the physics world.
         contacts: contacts of this step.
         orders: orders from outside in this step, as JSON.
+        reactions: ids of the people who react to robots, by kind of reaction; None if nobody can.
         digest: digest of the episode as if it was interrupted here; empty in files of format 1.
     """
 
@@ -87,6 +89,7 @@ class RecordedStep:
     collisions: list[ContactEventRecord] = field(default_factory=list)
     contacts: list[RecordedContact] = field(default_factory=list)
     orders: list[str] = field(default_factory=list)
+    reactions: dict[str, list[int]] | None = None
     digest: str = ""
 
     @property
@@ -180,6 +183,8 @@ def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors:
         moment.digest = str(message.data)
     elif topic == ORDERS:
         moment.orders.append(str(message.data))
+    elif topic == REACTION_TOPIC:
+        moment.reactions = json.loads(message.data)
     elif topic == CONTACTS:
         moment.contacts = [RecordedContact(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
     elif topic == FORCES:

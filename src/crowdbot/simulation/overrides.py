@@ -116,6 +116,8 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
     for first, second in zip(old.sources, new.sources, strict=True):
         if (first.goal, first.journey, first.arrival) != (second.goal, second.journey, second.arrival):
             raise InputError(f"the goal of source {first.name!r} cannot change in a branch")
+        if first.reactions != second.reactions:
+            raise InputError(f"the reactions of source {first.name!r} cannot change in a branch")
     if crowd_names(old.crowd) != crowd_names(new.crowd):
         raise InputError("the names of crowds cannot change in a branch")
     if new.duration < time:

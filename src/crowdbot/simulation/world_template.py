@@ -26,6 +26,7 @@ from crowdbot.trials import (
     expand_sweeps,
     people_appearance,
     place,
+    robot_reactions,
 )
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
@@ -232,6 +233,7 @@ class WorldTemplate:
             **self._shared,
             "journeys": journeys_of(self.trial, people, agents),
             "script": script_of(people),
+            "reactions": robot_reactions(people.owners, people.owner.tolist(), self.trial.sources, agents),
             "avatars": avatars_of(self.trial, len(people) - len(people.walks), len(people)),
             "ids": np.concatenate([np.arange(there), -1 - np.arange(agents - there)]),
         }

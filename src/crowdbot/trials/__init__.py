@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
+    from .importers.hunavsim import import_hunavsim
     from .importers.original import ImportedTrial, import_original, plan_of, trials_of
     from .importers.original_order import Plan
     from .importers.pedsim import import_pedsim
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .robots.joint_target import JointTarget, joint_positions
     from .robots.predictor import RobotPredictor
+    from .robots.reaction import ReactionSpec, robot_reactions
     from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
@@ -73,7 +76,9 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
+        "importers.hunavsim": ["import_hunavsim"],
         "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
         "importers.original_order": ["Plan"],
         "importers.pedsim": ["import_pedsim"],
@@ -92,6 +97,7 @@ __getattr__, __dir__ = lazy_exports(
         "placement.spawn_placement": ["GAP", "InitialPeople"],
         "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
+        "robots.reaction": ["ReactionSpec", "robot_reactions"],
         "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
@@ -155,6 +161,7 @@ __all__ = [
     "Points",
     "Portal",
     "RandomizedModel",
+    "ReactionSpec",
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
@@ -188,6 +195,8 @@ __all__ = [
     "expand_spawners",
     "expand_sweeps",
     "has_kind",
+    "import_dxf",
+    "import_hunavsim",
     "import_original",
     "import_pedsim",
     "import_trial",
@@ -217,6 +226,7 @@ __all__ = [
     "resolve_file",
     "restore_old_names",
     "robot_place_problem",
+    "robot_reactions",
     "schema",
     "skip_unreadable",
     "trial_remarks",

@@ -16,6 +16,7 @@ from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.trial_files import read_beside, resolve_file
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .notation import NAME, Points
+from .robots.reaction import ReactionSpec, check_shares, share_problems
 
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource, PoseTrack
@@ -70,16 +71,18 @@ class Agent:
     outfit: int | None = attribute(None, about="number of the appearance (clothes and colours)", min=0, max=1e6)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
     parameters: tuple[AgentParameter, ...] = children("parameter", about="model parameters of this person", max=100)
+    reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+        check_shares(self)
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return the problems of bodies and activities, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found]
+        return [((), sentence) for sentence in found] + share_problems(values)
 
     @property
     def count(self) -> int:

@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from .planar import PlanarWorld
     from .planar_environments import planar_world
     from .planar_live_changes import widen
+    from .reactions.reaction import REACTIONS, RobotReaction
+    from .reactions.robot_reactions import RobotReactions, people_by_reaction, reaction_codes
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
@@ -99,6 +101,7 @@ _LAZY = {
     "PolygonZone": "crowd.waypoint",
     "PortalTransfer": "crowd.portal",
     "PropBody": "physics.stage",
+    "REACTIONS": "reactions.reaction",
     "Renderer": "rendering.renderer",
     "ReplayedPeople": "crowd.replay",
     "ReplayedTrack": "crowd.replay",
@@ -106,6 +109,8 @@ _LAZY = {
     "RobotBody": "physics.robot_body",
     "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
+    "RobotReaction": "reactions.reaction",
+    "RobotReactions": "reactions.robot_reactions",
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
@@ -137,10 +142,12 @@ _LAZY = {
     "joint_states": "robots.wheel_encoders",
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
+    "people_by_reaction": "reactions.robot_reactions",
     "permitted_speed": "physics.body_region_limits",
     "planar_world": "planar_environments",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
+    "reaction_codes": "reactions.robot_reactions",
     "read_urdf": "urdf",
     "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
@@ -161,6 +168,7 @@ _LAZY = {
 
 __all__ = [
     "BODY_REGION_LIMITS",
+    "REACTIONS",
     "AckermannDrive",
     "Avatars",
     "BodyContactEvent",
@@ -198,6 +206,8 @@ __all__ = [
     "RobotBody",
     "RobotFolder",
     "RobotModel",
+    "RobotReaction",
+    "RobotReactions",
     "Router",
     "SceneCamera",
     "SensorMount",
@@ -229,10 +239,12 @@ __all__ = [
     "joint_states",
     "move_agent",
     "move_joint",
+    "people_by_reaction",
     "permitted_speed",
     "planar_world",
     "put_environments",
     "quaternion",
+    "reaction_codes",
     "read_urdf",
     "redirect_person",
     "region_of",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .crowd.avatars import Avatars
     from .physics.kinematic_bodies import KinematicBodies
     from .physics.stage import PhysicsStage
+    from .reactions.robot_reactions import RobotReactions
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
@@ -91,6 +92,7 @@ class PlanarWorld(PlanarLiveChanges):
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
         avatars: people and robots whose pose comes from outside; to the crowd model they are external.
+        reactions: reactions of people to robots, on top of the crowd model.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -136,6 +138,7 @@ class PlanarWorld(PlanarLiveChanges):
     latency: Mapping[int, float] = field(default_factory=dict)
     ghosts: Sequence[int] = ()
     avatars: Avatars | None = None
+    reactions: RobotReactions | None = None
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -153,7 +156,9 @@ class PlanarWorld(PlanarLiveChanges):
         external = self.scene.external
         self.scene = self.scene if self.script is None else self.script.start(self.scene)
         self.scene = self.scene if self.avatars is None else self.avatars.place(self.scene, 0.0)
-        self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
+        self.scene = self._traffic.start(self._with_replayed_external(self.scene))
+        self.scene = self.scene if self.reactions is None else self.reactions.start(self.scene, self._traffic)
+        self.scene = self.scene.replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
         self.slots = np.full(len(seeds), self.scene.shape[1], dtype=np.int64)
@@ -319,8 +324,12 @@ class PlanarWorld(PlanarLiveChanges):
         wide = widen_robots(before.radius, self.twists, self.robot_margin)
         start = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
         resolve, radius = self._resolve_overlaps, before.radius
-        earlier, crowd = move_people(start, self._step_model, resolve, self.limits, self.dt, self.substeps, radius)
+        step: Callable[[Scene, float], Scene] = self._step_model
+        if self.reactions is not None:
+            start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
+        earlier, crowd = move_people(start, step, resolve, self.limits, self.dt, self.substeps, radius)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
+        own["preferred_speed"] = before.preferred_speed
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:

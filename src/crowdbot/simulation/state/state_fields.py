@@ -36,7 +36,7 @@ HOLDERS = {
     "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together wheels",
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"
-        " heading_jitter substeps latency ghosts joined _models _segments _surfaces"
+        " heading_jitter substeps latency ghosts reactions joined _models _segments _surfaces"
     ),
     "crowdbot.world.physics.world.PhysicsWorld": (
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
