@@ -59,7 +59,9 @@ class RigidBodies:
             for _ in range(steps):
                 for body in self.robots.values():
                     body.drive()
-                mj.mj_step(model, self.data)
+                mj.mj_step1(model, self.data)
+                self.compiled.servos.apply(self.data)
+                mj.mj_step2(model, self.data)
             update_frames(model, self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:

@@ -282,6 +282,7 @@ class PhysicsWorld(RigidWorld):
             robot_bodies.drive()
         self._people_bodies.go(share)
         mj.mj_step1(model, data)
+        self.rigid.main.compiled.servos.apply(data)
         reader.look()
         mj.mj_step2(model, data)
         contacts = reader.read()
