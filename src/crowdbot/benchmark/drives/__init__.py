@@ -1,0 +1,23 @@
+"""The drive laboratory: how robots follow velocity commands in the physics world, beside the planar world."""
+
+from .figures import DriveFigures, compare_traces
+from .laboratory import BARS, DriveReport, DriveRow, measure_drives
+from .manoeuvres import Manoeuvre, manoeuvres, speed_grid
+from .page import write_drives_page
+from .traces import DriveTrace, trace_physics, trace_planar
+
+__all__ = [
+    "BARS",
+    "DriveFigures",
+    "DriveReport",
+    "DriveRow",
+    "DriveTrace",
+    "Manoeuvre",
+    "compare_traces",
+    "manoeuvres",
+    "measure_drives",
+    "speed_grid",
+    "trace_physics",
+    "trace_planar",
+    "write_drives_page",
+]
