@@ -1,19 +1,21 @@
 """The drive laboratory: how robots follow velocity commands in the physics world, beside the planar world."""
 
 from .figures import DriveFigures, compare_traces
-from .laboratory import BARS, DriveReport, DriveRow, measure_drives
+from .laboratory import DRIVE_BARS, DriveReport, DriveRow, measure_drives
 from .manoeuvres import Manoeuvre, manoeuvres, speed_grid
-from .page import write_drives_page
+from .page import DRIVE_COLUMNS, grid_cells, write_drives_page
 from .traces import DriveTrace, trace_physics, trace_planar
 
 __all__ = [
-    "BARS",
+    "DRIVE_BARS",
+    "DRIVE_COLUMNS",
     "DriveFigures",
     "DriveReport",
     "DriveRow",
     "DriveTrace",
     "Manoeuvre",
     "compare_traces",
+    "grid_cells",
     "manoeuvres",
     "measure_drives",
     "speed_grid",

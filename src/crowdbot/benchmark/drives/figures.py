@@ -91,7 +91,9 @@ def compare_traces(drive: Drive, manoeuvre: Manoeuvre, physics: DriveTrace, plan
     (0.0, 0.0, 1.0, 0.49)
     """
     held = manoeuvre.held
-    over, steady = _speed_errors(drive, physics.twist[:held], plane.twist[:held]) if manoeuvre.name == "grid" else (0, 0)
+    over, steady = (
+        _speed_errors(drive, physics.twist[:held], plane.twist[:held]) if manoeuvre.name == "grid" else (0, 0)
+    )
     push, spin = _accelerations(drive, physics, plane)
     away = np.hypot(*(physics.position - plane.position).T)
     driven, turned = _length(plane.position), _total(plane.heading)

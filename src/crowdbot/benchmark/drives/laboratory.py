@@ -13,13 +13,13 @@ from .figures import DriveFigures, compare_traces
 from .manoeuvres import Manoeuvre, manoeuvres
 from .traces import DriveTrace, trace_physics, trace_planar
 
-__all__ = ["BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]
+__all__ = ["DRIVE_BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02)
 """Time steps of the engine [s]."""
 BARRED = (0.002, 0.005, 0.01)
-"""Time steps [s] at which :data:`BARS` hold."""
-BARS: Mapping[str, float] = {
+"""Time steps [s] at which :data:`DRIVE_BARS` hold."""
+DRIVE_BARS: Mapping[str, float] = {
     "overshoot": 0.05, "steady_error": 0.02, "acceleration": 1.1, "turn_acceleration": 1.1, "path_error": 0.02,
     "heading_error": 0.02,
 }  # fmt: skip
@@ -51,7 +51,7 @@ class DriveRow:
     @property
     def failures(self) -> tuple[str, ...]:
         """Names of the figures that exceed their bars, of falls, and of heading changes."""
-        found = [name for name, most in BARS.items() if getattr(self.grid, name) > most]
+        found = [name for name, most in DRIVE_BARS.items() if getattr(self.grid, name) > most]
         regular = [self.grid, *(self.others[name] for name in REGULAR if name in self.others)]
         if any(one.fallen for one in regular):
             found.append("fall")
@@ -82,7 +82,7 @@ class DriveReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return machine, bars and rows as plain values."""
-        return {"machine": self.machine, "bars": dict(BARS), "rows": [row.as_dict() for row in self.rows]}
+        return {"machine": self.machine, "bars": dict(DRIVE_BARS), "rows": [row.as_dict() for row in self.rows]}
 
 
 def measure_drives(
@@ -96,7 +96,8 @@ def measure_drives(
 
     Args:
         robots: built-in names or folders of robots; none: all built-in robots.
-        steps: time steps of the engine [s] (default: 1, 2, 5, 10 and 20 ms, or 5 ms if quick).
+        steps: time steps of the engine [s] (default: 1, 2, 5, 10 and 20 ms, or 5 ms if quick). The whole grid is driven
+            at 2, 5 and 10 ms, the quick one at others.
         quick: three speeds and short manoeuvres.
         report: called with the robot and the share that is done.
 
@@ -119,7 +120,7 @@ def measure_drives(
                 report("drives", (number + k / len(steps)) / len(loaded))
             runs = [
                 (one, trace_physics(robot, one.commands, step, one.friction), trace_planar(robot, one.commands, step))
-                for one in manoeuvres(robot, quick)
+                for one in manoeuvres(robot, quick or all(abs(step - one) > 1e-9 for one in BARRED))
             ]
             rows.append(_row(robot, step, runs))
             if step == shown:

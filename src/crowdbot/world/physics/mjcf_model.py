@@ -107,12 +107,16 @@ def build_mjcf_model(
     root.children += [Element("asset", {}, assets), Element("worldbody", {}, world)]
     root.children += [Element(tag, {}, rows) for tag, rows in sections.items() if rows]
     wheels = {prefixes[agent] + wheel.joint for agent, robot in robots.items() for wheel in robot.wheels}
-    torques = {} if posed else {
-        prefixes[agent] + wheel.joint: _torque(robot, wheel)
-        for agent, robot in robots.items()
-        for wheel in robot.wheels
-        if wheel.driven and robot.base != "planar"
-    }
+    torques = (
+        {}
+        if posed
+        else {
+            prefixes[agent] + wheel.joint: _torque(robot, wheel)
+            for agent, robot in robots.items()
+            for wheel in robot.wheels
+            if wheel.driven and robot.base != "planar"
+        }
+    )
     return MjcfModel(root, files, prefixes, frozenset(wheels), torques)
 
 
@@ -120,8 +124,7 @@ def _torque(robot: Robot, wheel: Wheel) -> float:
     """Return the largest torque [N m] of the motor of a wheel; without a limit, enough to spin the wheel."""
     joint = robot.model.joints[wheel.joint]
     effort = joint.motor.effort
-    most = effort if math.isfinite(effort) and effort > 0.0 else GRAVITY * robot.model.mass * wheel.radius
-    return most
+    return effort if math.isfinite(effort) and effort > 0.0 else GRAVITY * robot.model.mass * wheel.radius
 
 
 def _firm(model: Any, driven: Collection[str]) -> None:

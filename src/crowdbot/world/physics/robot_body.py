@@ -55,7 +55,8 @@ class RobotBody:
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
         self._held: dict[str, float] = {}
-        self._forces, self._weighed = BaseForces(robot, step), False
+        self._forces = BaseForces(robot, step)
+        self._quick: tuple[float, float, float] | tuple[()] = ()
         self._lag = lag(step)
 
     def bind(self, model: Any, data: Any) -> None:
@@ -137,10 +138,11 @@ class RobotBody:
         if self._servo:
             place, speed = self._base
             heading = float(self._data.qpos[place[2]])
-            if not self._weighed:
-                self._forces.weigh(self._model, self._data, speed, heading)
-                self._weighed = True
-            self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, self._data.qvel[speed], heading)
+            if not self._quick:
+                self._quick = self._forces.weigh(self._model, self._data, speed, heading)
+            self._data.ctrl[self._servo] = self._forces.forces(
+                old, self._aim, self._data.qvel[speed], heading, self._quick
+            )
             return
         if _same(old, self._aim):
             self._forced = now

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -32,9 +32,11 @@ class WheelServos:
         torques: largest torque [N m] by actuator name, which is also the name of the joint.
     """
 
-    def __init__(self, model: Any, torques: dict[str, float]) -> None:
+    def __init__(self, model: Any, torques: Mapping[str, float]) -> None:
         mj = engine()
-        rows = [(int(model.joint(name).dofadr[0]), int(model.actuator(name).id), most) for name, most in torques.items()]
+        rows = [
+            (int(model.joint(name).dofadr[0]), int(model.actuator(name).id), most) for name, most in torques.items()
+        ]
         self.lag = lag(model.opt.timestep)
         for dof, motor, most in rows:
             model.actuator_gainprm[motor], model.actuator_biasprm[motor] = 0.0, 0.0
