@@ -136,13 +136,7 @@ class RobotBody:
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
         if self._servo:
-            place, speed = self._base
-            heading = float(self._data.qpos[place[2]])
-            if not self._quick:
-                self._quick = self._forces.weigh(self._model, self._data, speed, heading)
-            self._data.ctrl[self._servo] = self._forces.forces(
-                old, self._aim, self._data.qvel[speed], heading, self._quick
-            )
+            self._pull(old)
             return
         if _same(old, self._aim):
             self._forced = now
@@ -152,6 +146,15 @@ class RobotBody:
         speeds, before = self._rolling @ _row(self._aim), self._rolling @ _row(old)
         lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
         self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
+
+    def _pull(self, old: Twists) -> None:
+        """Set the forces on a planar base for the way from the old commanded twist to the new one."""
+        place, speed = self._base
+        heading = float(self._data.qpos[place[2]])
+        if not self._quick:
+            self._quick = self._forces.weigh(self._model, self._data, speed, heading)
+        velocity = self._data.qvel[speed]
+        self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, velocity, heading, self._quick)
 
     def _steered(self, aim: Twists) -> None:
         """Steer the wheels of a car; at rest they keep their angle."""
