@@ -48,7 +48,8 @@ def speed_grid(drive: Drive, quick: bool = False) -> list[Twist]:
     if quick:
         shares = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
     else:
-        shares = [pair for pair in itertools.product((-1.0, -0.5, 0.0, 0.5, 1.0), repeat=2) if any(pair)]
+        levels = (-1.0, -0.5, 0.0, 0.5, 1.0)
+        shares = [(v, w) for v, w in itertools.product(levels, levels) if v or w]
     found = [Twist(v * top, w * most) for v, w in shares if v or not isinstance(drive, AckermannDrive)]
     if isinstance(drive, Omnidirectional):
         found += [Twist(0.0, 0.0, left=top), Twist(0.5 * top, 0.5 * most, left=-0.5 * top)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,7 @@ def plot_drives(report: DriveReport, folder: Path) -> list[Path]:
     """
     from matplotlib import rc_context
 
-    made = {
+    made: dict[str, Callable[[], Any]] = {
         "steps": lambda: _panels(report, _step_panel),
         "paths": lambda: _panels(report, _path_panel),
         "slip": lambda: _panels(report, _slip_panel),

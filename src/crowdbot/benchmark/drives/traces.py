@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import CommandDelay, PhysicsStage, PhysicsWorld, Robot, Twists
+from crowdbot.world import CommandDelay, Pending, PhysicsStage, PhysicsWorld, Robot, Twists
 
 __all__ = ["SAMPLE", "DriveTrace", "trace_physics", "trace_planar"]
 
@@ -54,7 +54,8 @@ def trace_planar(robot: Robot, commands: Sequence[Twist], step: float) -> DriveT
     """
     pose, twist = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1)
     delay, now = CommandDelay(robot.latency), Twist()
-    pending, heading, rows = (), 0.0, []
+    pending: tuple[Pending, ...] = ()
+    heading, rows = 0.0, []
     for command in commands:
         for _ in range(_steps(step)):
             pending, current = delay.step(pending, now, command, step)
