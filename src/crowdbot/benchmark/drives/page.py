@@ -38,10 +38,9 @@ the planar position by the distance driven; *heading* the largest difference by 
 of the stop distances; *tilt* the largest angle from the vertical. At 1 and 20 ms, only full speed, full turn rate and
 both are driven.
 
-Bars at time steps of 2, 5 and 10 ms: overshoot {overshoot:.0f} %, steady error {steady:.0f} %, accelerations {acc:.0f}
-% of the declared ones, path {path:.0f} %, heading {heading:g} rad per rad, at most {straight:g} rad of heading change
-beside the planar one, no fall.
-"""
+Bars at 2, 5 and 10 ms: overshoot {overshoot:.0f} %, steady error {steady:.0f} %, accelerations {acc:.0f} % of the
+declared ones, path {path:.0f} %, heading {heading:g} rad per rad, at most {straight:g} rad of heading change beside the
+planar one, no fall."""
 
 
 def write_drives_page(report: DriveReport, file: Path, command: str = "crowdbot bench drives") -> list[Path]:

@@ -71,11 +71,14 @@ def _panels(report: DriveReport, draw: Any) -> Any:
         draw(axes, runs, number == 0)
     for axes in list(grid.flat)[count:]:
         axes.set_axis_off()
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 
 def _step_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace], ...], first: bool) -> None:
     """Draw the step to full speed and turn rate, and the stop."""
+    if first:
+        axes.set_ylabel("speed, turn rate")
     steps = [run for run in runs if run[0].name == "grid" and run[0].commands[0].left == 0.0]
     _, physics, plane = max(steps, key=lambda run: run[0].commands[0].forward + 1e-3 * run[0].commands[0].turn)
     times = SAMPLE * np.arange(1, len(plane.heading) + 1)
@@ -83,8 +86,6 @@ def _step_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace],
         axes.plot(times, plane.twist[:, part], color=PLANE, lw=3.0, label="plane" if part == 0 else None)
         axes.plot(times, physics.twist[:, part], color=color, lw=1.1, label=f"physics: {word}")
     axes.set_xlabel("time [s]")
-    if first:
-        axes.legend(frameon=False, fontsize=7, loc="center right")
 
 
 def _path_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace], ...], first: bool) -> None:
@@ -98,7 +99,6 @@ def _path_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace],
     axes.set_xlabel("x [m]")
     if first:
         axes.set_ylabel("y [m]")
-        axes.legend(frameon=False, fontsize=7)
 
 
 def _slip_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace], ...], first: bool) -> None:
@@ -111,7 +111,6 @@ def _slip_panel(axes: Any, runs: tuple[tuple[Manoeuvre, DriveTrace, DriveTrace],
     axes.set_xlabel("time [s]")
     if first:
         axes.set_ylabel("turn rate [rad/s]")
-        axes.legend(frameon=False, fontsize=7)
 
 
 def _time_steps(report: DriveReport) -> Any:
@@ -134,5 +133,5 @@ def _time_steps(report: DriveReport) -> Any:
         axes.set_xlabel("time step [ms]")
         axes.set_title(title, fontsize=9)
         axes.grid(alpha=0.25)
-    panels[0].legend(frameon=False, fontsize=7)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right center", frameon=False)
     return figure
