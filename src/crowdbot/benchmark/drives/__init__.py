@@ -2,7 +2,7 @@
 
 from .figures import DriveFigures, compare_traces
 from .laboratory import DRIVE_BARS, DriveReport, DriveRow, measure_drives
-from .manoeuvres import Manoeuvre, manoeuvres, speed_grid
+from .manoeuvre import Manoeuvre, manoeuvres, speed_grid
 from .page import DRIVE_COLUMNS, grid_cells, write_drives_page
 from .traces import DriveTrace, trace_physics, trace_planar
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.world import Drive
 
-from .manoeuvres import Manoeuvre
+from .manoeuvre import Manoeuvre
 from .traces import SAMPLE, DriveTrace
 
 __all__ = ["FALLEN", "DriveFigures", "compare_traces"]

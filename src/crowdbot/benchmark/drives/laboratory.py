@@ -10,7 +10,7 @@ from crowdbot.benchmark.speed.timing import environment
 from crowdbot.world import Robot, builtin_robots
 
 from .figures import DriveFigures, compare_traces
-from .manoeuvres import Manoeuvre, manoeuvres
+from .manoeuvre import Manoeuvre, manoeuvres
 from .traces import DriveTrace, trace_physics, trace_planar
 
 __all__ = ["DRIVE_BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]

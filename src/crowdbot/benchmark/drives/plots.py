@@ -13,7 +13,7 @@ from .laboratory import DRIVE_BARS, DriveReport
 from .traces import SAMPLE
 
 if TYPE_CHECKING:
-    from .manoeuvres import Manoeuvre
+    from .manoeuvre import Manoeuvre
     from .traces import DriveTrace
 
 __all__ = ["plot_drives"]
