@@ -63,7 +63,9 @@ class RigidBodies:
                 for body in self.robots.values():
                     body.drive()
                 links.begin(model, self.data)
-                mj.mj_step(model, self.data)
+                mj.mj_step1(model, self.data)
+                self.compiled.servos.apply(self.data)
+                mj.mj_step2(model, self.data)
                 links.end(self.data)
             update_frames(model, self.data)
 

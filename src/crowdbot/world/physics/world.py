@@ -311,6 +311,7 @@ class PhysicsWorld(RigidWorld):
         if self.rigid.links:
             self.rigid.links.begin(model, data)
         mj.mj_step1(model, data)
+        self.rigid.main.compiled.servos.apply(data)
         reader.look()
         mj.mj_step2(model, data)
         if self.rigid.links:
