@@ -56,11 +56,17 @@ if TYPE_CHECKING:
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
     from .robots.joint_motion import check_joint, free_joints, move_joint
+    from .robots.legged import LeggedDrive
+    from .robots.mecanum import MecanumDrive
     from .robots.mount import MountPlacement, SensorMount
+    from .robots.omni_wheels import OmniWheelDrive
     from .robots.robot import Robot, builtin_robots
     from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
+    from .robots.skid_steer import SkidSteerDrive
+    from .robots.tricycle import TricycleDrive
     from .robots.wheel import Wheel
+    from .robots.wheeled import WheeledDrive
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
@@ -83,9 +89,12 @@ _LAZY = {
     "Drive": "robots.drive",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
+    "LeggedDrive": "robots.legged",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
+    "MecanumDrive": "robots.mecanum",
     "MountPlacement": "robots.mount",
+    "OmniWheelDrive": "robots.omni_wheels",
     "Omnidirectional": "robots.drive",
     "Pending": "robots.servo",
     "PeopleMotion": "physics.people_motion",
@@ -107,14 +116,17 @@ _LAZY = {
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
+    "SkidSteerDrive": "robots.skid_steer",
     "SteeredTwists": "robots.ackermann",
     "TableBody": "physics.stage",
     "TreeBody": "physics.stage",
+    "TricycleDrive": "robots.tricycle",
     "Twists": "robots.drive",
     "VelocityServo": "robots.servo",
     "Waypoint": "crowd.waypoint",
     "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
+    "WheeledDrive": "robots.wheeled",
     "World": "world",
     "add_person": "live_changes",
     "arrival_counts": "crowd.arrivals",
@@ -170,9 +182,12 @@ __all__ = [
     "Drive",
     "HeadingWaypoint",
     "JourneyAssignment",
+    "LeggedDrive",
     "LightSource",
     "LimbCapsules",
+    "MecanumDrive",
     "MountPlacement",
+    "OmniWheelDrive",
     "Omnidirectional",
     "Pending",
     "PeopleMotion",
@@ -194,14 +209,17 @@ __all__ = [
     "Router",
     "SceneCamera",
     "SensorMount",
+    "SkidSteerDrive",
     "SteeredTwists",
     "TableBody",
     "TreeBody",
+    "TricycleDrive",
     "Twists",
     "VelocityServo",
     "Waypoint",
     "WaypointSequence",
     "Wheel",
+    "WheeledDrive",
     "World",
     "add_person",
     "arrival_counts",

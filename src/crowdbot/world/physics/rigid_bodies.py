@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
 from .robot_body import RobotBody
+from .wheels.friction import orient_friction
 
 __all__ = ["RigidBodies", "copy_state"]
 
@@ -55,11 +56,17 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
+        frictions = [body.friction for body in self.robots.values() if len(body.friction)]
         with self.compiled.borrow() as model:
             for _ in range(steps):
                 for body in self.robots.values():
                     body.drive()
-                mj.mj_step(model, self.data)
+                if frictions:
+                    mj.mj_step1(model, self.data)
+                    orient_friction(frictions, model, self.data)
+                    mj.mj_step2(model, self.data)
+                else:
+                    mj.mj_step(model, self.data)
             update_frames(model, self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:

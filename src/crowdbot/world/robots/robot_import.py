@@ -11,6 +11,7 @@ from typing import NamedTuple
 from crowdbot.core import Element, RobotError, format_xml
 from crowdbot.world.urdf import RobotModel, parse_robot_file, read_urdf
 
+from .base_drive import choose_drive, rollers_of, turns_wheels
 from .base_kind import BaseKind, recognize_base
 from .gazebo_tags import DriveParameters, find_sensors, read_drive_parameters
 
@@ -18,8 +19,6 @@ __all__ = ["Guess", "RobotFolder", "import_robot"]
 
 GROUND_LINK = "drive_center"
 GRAVITY = 9.81
-WHEELED = ("differential", "ackermann", "tricycle")
-"""Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
 
 
 class Guess(NamedTuple):
@@ -86,20 +85,13 @@ def import_robot(
     made = RobotFolder(name, remarks=model.warnings, kind=base.kind)
     made.guess("kind of base", base.kind, base.why, "--base KIND")
     made.guess("mass", f"{model.mass:.4g} kg", "<inertial> of the file", f"<mass> in {name}.urdf")
-    wheeled = _uses_wheels(model, base)
+    wheeled = turns_wheels(model, base)
     root = _robot_element(made, model, base, parameters, wheeled)
     _sensor_elements(made, root, document.root, model)
     urdf = _expanded(made, document.root, model, base, wheeled)
     _add_motors(made, urdf, model, base, parameters, wheeled)
     made.texts = {f"{name}.urdf": format_xml(urdf), "robot.xml": format_xml(root)}
     return made
-
-
-def _uses_wheels(model: RobotModel, base: BaseKind) -> bool:
-    """Return whether motors turn the wheels in the physics world."""
-    needed = 2 if base.kind == "differential" else 1
-    links = [model.links[wheel.link] for wheel in base.wheels]
-    return base.kind in WHEELED and len(base.driven) >= needed and all(link.collisions for link in links)
 
 
 def _number(value: float) -> str:
@@ -115,7 +107,11 @@ def _robot_element(
     root.attributes["about"] = f"{base.kind} base, from {model.name}"
     how = "its wheels are turned by motors" if wheeled else "the base is moved directly"
     made.guess("physics world", root.attributes["base"], f"{base.kind} base: {how}", "base= in robot.xml")
-    root.children.append(Element("drive", _drive(made, model, base, parameters)))
+    drive, rows = choose_drive(model, base, parameters.values, wheeled)
+    made.guess("drive", drive, f"{base.kind} base", "type= of <drive> in robot.xml")
+    for key, value, source in rows:
+        made.guess(key, f"{value:.4g}", source, f"{key}= of <drive> in robot.xml")
+    root.children.append(Element("drive", {"type": drive} | {key: _number(value) for key, value, _ in rows}))
     if not len(model.points()):
         made.guess("footprint", "outline of the visuals", "the file has no colliders", "<footprint> in robot.xml")
         root.children.append(Element("footprint", {"radius": _number(_reach(model))}))
@@ -124,6 +120,11 @@ def _robot_element(
             row = {"joint": wheel.joint, "radius": _number(wheel.radius)}
             row |= {"steering": wheel.steering} if wheel.steering else {}
             row |= {} if wheel.joint in base.driven else {"driven": "false"}
+            rollers = rollers_of(base, wheel)
+            row |= {} if rollers is None else {"rollers": _number(rollers)}
+            if rollers:
+                side = f"{math.degrees(rollers):+.0f} degrees"
+                made.guess(f"rollers {wheel.joint}", side, "usual arrangement", "rollers= of <wheel> in robot.xml")
             if wheel.joint in base.driven or wheel.steering:
                 root.children.append(Element("wheel", row))
     for wheel in base.wheels:
@@ -139,44 +140,6 @@ def _reach(model: RobotModel) -> float:
         (poses[name] @ part.origin, part.shape.points()) for name, link in model.links.items() for part in link.visuals
     ]
     return max(math.hypot(*(matrix[:2, :3] @ row + matrix[:2, 3])) for matrix, points in rows for row in points)
-
-
-def _drive(made: RobotFolder, model: RobotModel, base: BaseKind, parameters: DriveParameters) -> dict[str, str]:
-    """Return the attributes of <drive>, and list each as known or guessed."""
-    given, plugin = parameters.values, "the drive plugin"
-    limits = [model.joints[name].motor.velocity for name in base.driven]
-    speeds = [v for v in limits if math.isfinite(v) and v > 0.0]
-    radius = base.wheels[0].radius if base.wheels else 0.0
-    rows: list[tuple[str, float, str]] = []
-
-    def choose(key: str, guess: float, why: str) -> float:
-        value, source = (given[key], plugin) if key in given else (guess, why)
-        rows.append((key.replace("_", "-"), value, source))
-        return value
-
-    from_joint = min(speeds) * radius if speeds else 0.0
-    usable = 0.05 <= from_joint <= 5.0
-    guess = min(1.0, 10.0 * radius) if radius else 1.0
-    why = "joint limits" if usable else ("guess: 10 rad/s of the wheels" if radius else "guess")
-    speed = choose("max_speed", from_joint if usable else guess, why)
-    choose("max_acceleration", 1.0, "guess")
-    if base.kind in ("ackermann", "tricycle"):
-        drive = "ackermann-drive"
-        angles = [model.joints[wheel.steering].upper for wheel in base.wheels if wheel.steering]
-        angle = min([value for value in angles if 0.05 < value < 1.4], default=0.6)
-        choose("max_steering", angle, "joint limits" if angle in angles else "guess")
-        choose("max_steering_rate", 1.0, "guess")
-        rows.append(("wheelbase", base.wheelbase or given.get("wheelbase", 0.6), "places of the wheels"))
-    else:
-        drive = "omnidirectional" if base.kind in ("mecanum", "omnidirectional", "legged") else "differential-drive"
-        track = base.track or given.get("track", 0.5)
-        turning = min(2.0 * speed / track, 3.0) if track > 0.05 else 1.5
-        choose("max_turn_rate", turning, "speed and track" if base.track else "guess")
-        choose("max_turn_acceleration", 3.0, "guess")
-    made.guess("drive", drive, f"{base.kind} base", "type= of <drive> in robot.xml")
-    for key, value, source in rows:
-        made.guess(key, f"{value:.4g}", source, f"{key}= of <drive> in robot.xml")
-    return {"type": drive} | {key: _number(value) for key, value, _ in rows}
 
 
 def _sensor_elements(made: RobotFolder, root: Element, source: Element, model: RobotModel) -> None:
@@ -257,7 +220,10 @@ def _add_motors(
             change = f"<ros2_control> in {made.name}.urdf"
             made.guess(f"motor of {joint.name}", motors[joint.name], source, change)
         if not 0.0 < joint.motor.effort < math.inf:
-            effort = model.mass * GRAVITY * wheel.radius / max(1, len(base.driven)) if wheel else max(10.0, model.mass)
+            effort = max(10.0, model.mass)
+            if wheel:  # skid-steer wheels also push against the friction of the others
+                share = (2.0 if base.kind == "skid-steer" else 1.0) / max(1, len(base.driven))
+                effort = share * model.mass * GRAVITY * wheel.radius
             effort = parameters.values.get("effort", effort) if wheel else effort
             limit = next(iter(elements[joint.name].each("limit")), None)
             if limit is None:
