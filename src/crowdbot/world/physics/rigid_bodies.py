@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
 from .robot_body import RobotBody
-from .wheels.friction import orient_friction
 
 __all__ = ["RigidBodies", "copy_state"]
 
@@ -56,18 +55,31 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
-        frictions = [body.friction for body in self.robots.values() if len(body.friction)]
+        whole = not any(len(body.friction) for body in self.robots.values())
         with self.compiled.borrow() as model:
             for _ in range(steps):
                 for body in self.robots.values():
                     body.drive()
-                if frictions:
-                    mj.mj_step1(model, self.data)
-                    orient_friction(frictions, model, self.data)
-                    mj.mj_step2(model, self.data)
-                else:
+                if whole:
                     mj.mj_step(model, self.data)
+                    continue
+                mj.mj_step1(model, self.data)
+                self.apply_friction(model)
+                mj.mj_step2(model, self.data)
+                self.read_loads()
             update_frames(model, self.data)
+
+    def apply_friction(self, model: Any) -> None:
+        """Set the friction of wheels between the two halves of an engine step, see :class:`WheelFriction`."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.friction.apply(model, self.data, body.loads)
+
+    def read_loads(self) -> None:
+        """Read the loads of wheels after an engine step."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.loads = body.friction.loads(self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:
         """Copy the state of all joints and motors that one of the others has as well; frames follow."""

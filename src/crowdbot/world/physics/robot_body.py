@@ -40,6 +40,7 @@ class RobotBody:
         robot: description of the robot.
         body: index of the root link in the engine.
         friction: wheels whose friction has a direction.
+        loads: normal forces [N] of these wheels in the last engine step.
     """
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
@@ -50,6 +51,7 @@ class RobotBody:
         self._step_robots = [joint for joint in units[0] if joint in self._wheels]
         self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
         self._steers = any(wheel.steering for wheel in robot.wheels)
+        self.loads = np.zeros(len(self.friction))
         self._slip = SlipControl.of(robot)
         self._slip_state: SlipState | None = self._slip.first if self._slip else None
         self._delay = CommandDelay(robot.latency)
@@ -77,6 +79,7 @@ class RobotBody:
         """Set posture and weight of the robot in a new model."""
         if self._servo:  # the engine takes the mean over three directions; a planar base lacks one
             self._model.body_invweight0[self.body, 0] = 1.0 / self.robot.model.mass
+        self.friction.stiffen(self._model)
         self._posed()
 
     @property

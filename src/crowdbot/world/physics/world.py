@@ -30,7 +30,6 @@ from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
-from .wheels.friction import orient_friction
 from .world_bodies import WorldBodies
 from .world_checks import check_arguments
 
@@ -283,9 +282,10 @@ class PhysicsWorld(RigidWorld):
             robot_bodies.drive()
         self._people_bodies.go(share)
         mj.mj_step1(model, data)
-        orient_friction([body.friction for body in self.rigid.main.robots.values()], model, data)
+        self.rigid.main.apply_friction(model)
         reader.look()
         mj.mj_step2(model, data)
+        self.rigid.main.read_loads()
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)

@@ -21,6 +21,8 @@ USUAL_RATE = 10.0
 """Guess of the maximum speed of a wheel [rad/s]."""
 FASTEST = 3.0
 """Largest guess of the maximum turn rate [rad/s]."""
+FASTEST_SLIDING = 2.0
+"""The same for skid-steer bases and omnidirectional wheels, as that of Husky: faster, they slide outwards."""
 
 
 class DriveChoice(NamedTuple):
@@ -99,7 +101,8 @@ def choose_drive(
     track = base.track or given.get("track", 0.5)
     geometry = _geometry(base, track) if wheeled else {}
     reach = geometry.pop("reach", 0.5 * track)
-    turning = min(speed / reach, FASTEST) if reach > 0.025 else 1.5
+    highest = FASTEST_SLIDING if base.kind in ("skid-steer", "omnidirectional") else FASTEST
+    turning = min(speed / reach, highest) if reach > 0.025 else 1.5
     turn = choose("max_turn_rate", turning, "speed and places of the wheels" if base.track else "guess")
     choose("max_turn_acceleration", 3.0, "guess")
     if base.kind == "legged":
