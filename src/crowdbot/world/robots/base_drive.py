@@ -64,9 +64,7 @@ def rollers_of(base: BaseKind, wheel: FoundWheel) -> float | None:
     return -math.copysign(math.pi / 4.0, ahead * aside)
 
 
-def choose_drive(
-    model: RobotModel, base: BaseKind, given: Mapping[str, float], wheeled: bool
-) -> DriveChoice:
+def choose_drive(model: RobotModel, base: BaseKind, given: Mapping[str, float], wheeled: bool) -> DriveChoice:
     """Return the drive of a base.
 
     Args:
@@ -149,7 +147,7 @@ def _star(base: BaseKind) -> tuple[int, float, float] | None:
     angles = np.sort(np.arctan2(away[:, 1], away[:, 0]))
     gaps = np.diff([*angles, angles[0] + 2.0 * math.pi])
     radial = [
-        abs(float(np.cross(wheel.axle[:2], way)))
+        abs(float(wheel.axle[0] * way[1] - wheel.axle[1] * way[0]))
         for wheel, way in zip(base.wheels, away / distance[:, None].clip(1e-9), strict=True)
     ]
     even = np.ptp(distance) < 0.02 * distance.mean() and np.ptp(gaps) < 0.05

@@ -15,7 +15,7 @@ __all__ = ["MecanumDrive"]
 
 @dataclass(frozen=True)
 class MecanumDrive(WheeledDrive):
-    """Mecanum drive with rollers in the usual arrangement: seen from above, their axes on the ground meet the diagonals.
+    """Mecanum drive with rollers in the usual arrangement: on the ground, their axes point along the diagonals.
 
     With ``reach = (wheelbase + track) / 2``, the wheel speeds are
 
@@ -39,7 +39,7 @@ class MecanumDrive(WheeledDrive):
         InputError: a limit or a length is not finite and above 0.
 
     >>> from crowdbot.core import Twist
-    >>> MecanumDrive().wheel_speeds(Twist(0.0, 0.0, left=0.5)).tolist()  # front left, front right, rear left, rear right
+    >>> MecanumDrive().wheel_speeds(Twist(0.0, 0.0, left=0.5)).tolist()
     [-5.0, 5.0, 5.0, -5.0]
     """
 

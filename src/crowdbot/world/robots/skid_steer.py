@@ -16,11 +16,11 @@ __all__ = ["SkidSteerDrive", "slip_of"]
 def slip_of(track: float, wheelbase: float) -> float:
     """Return the slip factor of a skid-steer base: effective track divided by track.
 
-    At a wheel with the centre ``(+-wheelbase / 2, +-track / 2)`` whose rim runs at the speed ``v``, a base that turns at
-    the rate ``w`` slides by ``(v - w track / 2, w wheelbase / 2)``. Coulomb friction opposes the slide. With equal loads
-    its moment about the centre is zero for ``w = 2 v / (track (1 + (wheelbase / track)^2))``, whatever the friction
-    coefficient and the forward speed. Real controllers have the same factor: 1.5 for Jackal (1.49 here), 1.875 for
-    Husky (1.80 here).
+    At a wheel with the centre ``(+-wheelbase / 2, +-track / 2)`` whose rim runs at the speed ``v``, a base that turns
+    at the rate ``w`` slides by ``(v - w track / 2, w wheelbase / 2)``. Coulomb friction opposes the slide. With equal
+    loads its moment about the centre is zero for ``w = 2 v / (track (1 + (wheelbase / track)^2))``, whatever the
+    friction coefficient and the forward speed. Real controllers have the same factor: 1.5 for Jackal (1.49 here),
+    1.875 for Husky (1.80 here).
 
     Source: J. L. Martinez et al., Approximating Kinematics for Tracked Mobile Robots, IJRR 24(10), 2005 (instantaneous
     centres of rotation of the sides); ``wheel_separation_multiplier`` of jackal_control and husky_control.

@@ -150,13 +150,15 @@ class WheelFriction:
     def stiffen(self, model: Any) -> None:
         """Let the motors of the wheels follow their speed within ``RESPONSE``; their maximum torque is unchanged."""
         for motor, gain in zip(self.motor, self.gain, strict=True):
-            if model.actuator_gainprm[motor, 0] < gain:
+            if 0.0 < model.actuator_gainprm[motor, 0] < gain:
                 model.actuator_gainprm[motor, 0], model.actuator_biasprm[motor, 2] = gain, -gain
 
     def apply(self, model: Any, data: Any, loads: Floats) -> None:
-        """Set the friction between the two halves of an engine step; ``loads`` ``[W]`` [N] are those of the step before.
+        """Set the friction between the two halves of an engine step, and compute the constraints with it.
 
-        The constraints are computed anew with it.
+        Args:
+            model, data: model and data of the engine.
+            loads: normal forces ``[W]`` [N] of the wheels in the step before.
         """
         mj, contact = engine(), data.contact
         changed = 0

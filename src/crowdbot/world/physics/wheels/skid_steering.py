@@ -35,8 +35,8 @@ class SlipControl:
     estimate begins with the factor of the drive and ends within ``MOST`` times it. The velocity is that of the engine,
     without noise.
 
-    Source: A. Mandow et al., Experimental kinematics for wheeled skid-steer mobile robots, IROS 2007; J. Pentzer et al.,
-    Model-based prediction of skid-steer robot kinematics using online estimation of track instantaneous centers of
+    Source: A. Mandow et al., Experimental kinematics for wheeled skid-steer mobile robots, IROS 2007; J. Pentzer et
+    al., Model-based prediction of skid-steer robot kinematics using online estimation of track instantaneous centers of
     rotation, Journal of Field Robotics 31(3), 2014.
 
     Fields:
