@@ -15,7 +15,7 @@ __all__ = ["MecanumDrive"]
 
 @dataclass(frozen=True)
 class MecanumDrive(WheeledDrive):
-    """Mecanum drive with rollers in the usual arrangement: on the ground, their axes point along the diagonals.
+    """Mecanum drive with rollers in the usual arrangement: seen from above, their axes point along the diagonals.
 
     With ``reach = (wheelbase + track) / 2``, the wheel speeds are
 
