@@ -13,12 +13,14 @@ from typing import Any, NamedTuple
 from crowdbot.core import Scene, Walls
 from crowdbot.world.robots.robot import Robot
 
+from .base_servo import release_base_motors
 from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
 from .robot_body import RobotBody
 from .stage import PhysicsStage
+from .wheel_servo import WheelServos
 
 __all__ = ["BodyDesign", "CompiledBodies", "RobotStart", "compile_bodies", "motors_of"]
 
@@ -91,6 +93,7 @@ class CompiledBodies:
         first: state before the first step.
         shapes: limbs and masses of the bodies of people before they are assigned.
         geoms: bodies and parts of the geoms.
+        servos: servos of the wheels, part of every step.
     """
 
     def __init__(self, design: BodyDesign) -> None:
@@ -99,6 +102,10 @@ class CompiledBodies:
         motors = {start.agent: dict(start.motors) for start in design.robots}
         self.built: MjcfModel = build_mjcf_model(design.scene, design.stage, robots, design.slots, motors)
         self.base = self.built.load(design.step)
+        self.servos = WheelServos(self.base, self.built.torques)
+        for start in design.robots:
+            if start.robot.base == "planar":
+                release_base_motors(self.base, self.built.prefixes[start.agent])
         self.first = engine().MjData(self.base)
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()

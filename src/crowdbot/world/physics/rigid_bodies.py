@@ -55,16 +55,13 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
-        whole = not any(len(body.friction) for body in self.robots.values())
         with self.compiled.borrow() as model:
             for _ in range(steps):
                 for body in self.robots.values():
                     body.drive()
-                if whole:
-                    mj.mj_step(model, self.data)
-                    continue
                 mj.mj_step1(model, self.data)
                 self.apply_friction(model)
+                self.compiled.servos.apply(self.data)
                 mj.mj_step2(model, self.data)
                 self.read_loads()
             update_frames(model, self.data)

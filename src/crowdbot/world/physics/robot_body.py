@@ -17,7 +17,9 @@ from crowdbot.world.robots.robot import Robot, spatial
 from crowdbot.world.robots.servo import CommandDelay, Pending
 from crowdbot.world.robots.tricycle import TricycleDrive
 
+from .base_servo import BASE_MOTORS, BaseForces
 from .engine import engine
+from .wheel_servo import lag
 from .wheels.friction import WheelFriction
 from .wheels.skid_steering import SlipControl, SlipState
 
@@ -61,6 +63,9 @@ class RobotBody:
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
         self._held: dict[str, float] = {}
+        self._forces = BaseForces(robot, step)
+        self._quick: tuple[float, float, float] | tuple[()] = ()
+        self._lag = lag(step)
 
     def bind(self, model: Any, data: Any) -> None:
         """Continue in another model and state of the engine."""
@@ -68,8 +73,9 @@ class RobotBody:
         self._model, self._data = model, data
         self.body = int(model.body(prefix + robot.model.root).id)
         self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
-        self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
-            robot.base == "planar") else []  # fmt: skip
+        self._servo = [model.actuator(prefix + name).id for name in BASE_MOTORS] if robot.base == "planar" else []
+        joints = [model.joint(f"{prefix}base_{name}") for name in ("x", "y", "yaw")] if self._servo else []
+        self._base = [int(one.qposadr[0]) for one in joints], [int(one.dofadr[0]) for one in joints]
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
@@ -79,7 +85,6 @@ class RobotBody:
         """Set posture and weight of the robot in a new model."""
         if self._servo:  # the engine takes the mean over three directions; a planar base lacks one
             self._model.body_invweight0[self.body, 0] = 1.0 / self.robot.model.mass
-        self.friction.stiffen(self._model)
         self._posed()
 
     @property
@@ -139,19 +144,34 @@ class RobotBody:
             return
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
-        aim = np.array([self._aim.forward[0], self._aim.turn[0], self._aim.left[0]])
+        if self._servo:
+            self._pull(old)
+            return
         if _same(old, self._aim):
             self._forced = now
-        if self._servo:
-            self._data.ctrl[self._servo] = aim
-        elif self._steers:
+        if self._steers:
             self._steered(self._aim)
-        elif self._slip is not None and self._slip_state is not None:
-            self._slip_state, wheels = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
-            aim[:2] = wheels.forward, wheels.turn
-            self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = self._rolling @ aim
-        else:
-            self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = self._rolling @ aim
+            return
+        speeds, before = self._wheel_rates(self._aim), self._wheel_rates(old)
+        if self._slip is not None and self._slip_state is not None:
+            self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
+        lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
+        self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
+
+    def _wheel_rates(self, twist: Twists) -> Floats:
+        """Return the speeds of the driven wheels [rad/s] for a twist, with the slip of a skid-steer base."""
+        if self._slip is not None and self._slip_state is not None:
+            twist = Twists.of(self._slip.wheels(self._slip_state, twist.at(0)), 1)
+        return np.asarray(self._rolling @ _row(twist))
+
+    def _pull(self, old: Twists) -> None:
+        """Set the forces on a planar base for the way from the old commanded twist to the new one."""
+        place, speed = self._base
+        heading = float(self._data.qpos[place[2]])
+        if not self._quick:
+            self._quick = self._forces.weigh(self._model, self._data, speed, heading)
+        velocity = self._data.qvel[speed]
+        self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, velocity, heading, self._quick)
 
     def _steered(self, aim: Twists) -> None:
         """Steer the wheels of a car or tricycle; at rest they keep their angle."""
@@ -243,6 +263,10 @@ class RobotBody:
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + name)
             if index >= 0:
                 self._data.ctrl[index] = float(np.atleast_1d(position)[0])
+
+
+def _row(twist: Twists) -> Floats:
+    return np.array([twist.forward[0], twist.turn[0], twist.left[0]])
 
 
 def _same(one: Twists, other: Twists) -> bool:

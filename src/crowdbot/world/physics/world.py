@@ -283,6 +283,7 @@ class PhysicsWorld(RigidWorld):
         self._people_bodies.go(share)
         mj.mj_step1(model, data)
         self.rigid.main.apply_friction(model)
+        self.rigid.main.compiled.servos.apply(data)
         reader.look()
         mj.mj_step2(model, data)
         self.rigid.main.read_loads()

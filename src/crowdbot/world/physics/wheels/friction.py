@@ -26,8 +26,6 @@ LEAST = 0.001
 """Smallest share of the friction of the engine; it needs one above 0."""
 FLAT = 0.7
 """Smallest vertical part of a contact normal of a wheel on the ground."""
-RESPONSE = 0.005
-"""Time constant [s] with which the motors of these wheels follow their speed."""
 
 
 @kernel
@@ -134,8 +132,6 @@ class WheelFriction:
             and wheel.driven and (self.skids or roll)
         ]  # fmt: skip
         self.joint = np.array([model.joint(prefix + wheel.joint).id for wheel in wheels], dtype=np.int64)
-        self.motor = [model.actuator(prefix + wheel.joint).id for wheel in wheels]
-        self.gain = [robot.model.mass / len(wheels) * wheel.radius**2 / RESPONSE for wheel in wheels]
         self.rollers = np.array([math.nan if wheel.rollers is None else wheel.rollers for wheel in wheels])
         self.body = np.asarray(model.jnt_bodyid[self.joint], dtype=np.int64)
         self.root = np.asarray(model.body_rootid[self.body], dtype=np.int64)
@@ -146,12 +142,6 @@ class WheelFriction:
     def __len__(self) -> int:
         """Return the number of wheels whose friction has a direction."""
         return len(self.joint)
-
-    def stiffen(self, model: Any) -> None:
-        """Let the motors of the wheels follow their speed within ``RESPONSE``; their maximum torque is unchanged."""
-        for motor, gain in zip(self.motor, self.gain, strict=True):
-            if 0.0 < model.actuator_gainprm[motor, 0] < gain:
-                model.actuator_gainprm[motor, 0], model.actuator_biasprm[motor, 2] = gain, -gain
 
     def apply(self, model: Any, data: Any, loads: Floats) -> None:
         """Set the friction between the two halves of an engine step, and compute the constraints with it.

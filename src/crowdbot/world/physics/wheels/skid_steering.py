@@ -44,8 +44,8 @@ class SlipControl:
         track: distance between the left and right wheels [m].
 
     >>> control = SlipControl(1.5, 0.4)
-    >>> state, wheels = control.step(control.first, Twist(0.0, 1.0), Twist(0.0, 0.5), 0.005)
-    >>> state[0] > 1.5, round(wheels.turn, 1)
+    >>> state = control.step(control.first, Twist(0.0, 1.0), Twist(0.0, 0.5), 0.005)
+    >>> state[0] < 1.5, control.wheels(control.first, Twist(0.5, 1.0)).turn
     (True, 1.5)
     """
 
@@ -65,8 +65,8 @@ class SlipControl:
         """State before the first step."""
         return (self.slip, 0.0, 0.0, 0.0)
 
-    def step(self, state: SlipState, wanted: Twist, found: Twist, dt: float) -> tuple[SlipState, Twist]:
-        """Return the new state and the twist for which the wheels turn without slip.
+    def step(self, state: SlipState, wanted: Twist, found: Twist, dt: float) -> SlipState:
+        """Return the new state.
 
         Args:
             state: state before the step.
@@ -82,5 +82,9 @@ class SlipControl:
         offset += share * (forward - found.forward)
         factor = min(max(factor, 1.0), MOST * self.slip)
         offset = min(max(offset, -self.track), self.track)
-        wheels = Twist(wanted.forward + offset * wanted.turn, factor * wanted.turn)
-        return (factor, offset, forward, turn), wheels
+        return (factor, offset, forward, turn)
+
+    def wheels(self, state: SlipState, wanted: Twist) -> Twist:
+        """Return the twist for which the wheels turn without slip, so that the base has another one with it."""
+        factor, offset, _, _ = state
+        return Twist(wanted.forward + offset * wanted.turn, factor * wanted.turn)
