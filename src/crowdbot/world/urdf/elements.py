@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Element, InputError, RobotError, parse_number
 
 from .folders import Folders
+from .mesh_files import MeshFiles
 from .meshes import read_mesh, with_pieces
 from .model import Remark
 from .shapes import Mesh
@@ -38,6 +39,7 @@ class UrdfReader:
         self.found: list[tuple[int, str]] = []
         self.remarks: list[Remark] = []
         self.files: dict[str, Path] = {}
+        self.textures: dict[str, dict[str, Path]] = {}
         self.materials: dict[str, Color] = {}
         self.friction: dict[str, float] = {}
         self.springs: dict[str, dict[str, float]] = {}
@@ -163,8 +165,12 @@ class UrdfReader:
         key = (str(path), scale)
         if key not in self._read:
             try:
-                self._read[key] = read_mesh(path, source, scale)
+                files = MeshFiles(self.folders, path)
+                self._read[key] = read_mesh(path, source, scale, files)
                 self.files[source] = path
+                self.textures[source] = files.found
+                for sentence in files.remarks:
+                    self.remark("ignored", element, sentence)
             except (InputError, OSError) as error:
                 self._read[key] = f"the mesh {source[:200]} cannot be used: {error}"
         mesh = self._read[key]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Element
 
 from .model import Link, LinkShape, RobotModel
-from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Texture
 from .transforms import quaternion
 
 __all__ = ["Geoms", "row"]
@@ -24,7 +25,7 @@ MOST_FACES = 150_000
 MOST_CORNERS = 64
 """Maximum number of vertices of a convex body in contacts; more are slower and not more accurate on a floor."""
 MOST_COLORS = 32
-"""A mesh with more colours is drawn in grey."""
+"""The colours of a mesh with more are rounded."""
 NOTHING = 1e-30
 """Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
@@ -54,6 +55,7 @@ class Geoms:
         self.files: dict[str, bytes] = {}
         self._parts: dict[int, list[tuple[Mesh, tuple[float, float, float, float]]]] = {}
         self._known: dict[tuple[int, bool], list[str]] = {}
+        self._materials: dict[tuple[bytes, tuple[float, float, float, float]], str] = {}
 
     def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
         """Return the geoms of a link.
@@ -81,16 +83,24 @@ class Geoms:
         return geoms
 
     def _painted(self, part: LinkShape) -> list[LinkShape]:
-        """Return a visual as one shape for each colour of its mesh; a colour in the robot file comes first."""
+        """Return a visual as one shape for each colour and texture of its mesh; a colour in the robot file comes first."""
         mesh = part.shape
         if part.color is not None or not isinstance(mesh, Mesh) or mesh.colors is None:
             return [part]
         if id(mesh) not in self._parts:
-            colors, which = np.unique(mesh.colors, axis=0, return_inverse=True)
-            if len(colors) > MOST_COLORS:
-                return [part]
-            rows = [(Mesh(mesh.source, mesh.vertices, mesh.faces[which.ravel() == k]), c) for k, c in enumerate(colors)]
-            self._parts[id(mesh)] = [(one, tuple((color / 255.0).tolist())) for one, color in rows]
+            rows = []
+            plain = np.ones(len(mesh.faces), dtype=bool)
+            for texture in mesh.textures:
+                plain[texture.first : texture.last] = False
+                whole = texture._replace(first=0, last=texture.last - texture.first)
+                faces = mesh.faces[texture.first : texture.last]
+                one = dataclasses.replace(mesh, faces=faces, colors=None, pieces=(), textures=(whole,))
+                rows.append((one, texture.color))
+            colors, which = distinct_colors(mesh.colors[plain])
+            for k, color in enumerate(colors):
+                one = Mesh(mesh.source, mesh.vertices, mesh.faces[plain][which == k])
+                rows.append((one, tuple((color / 255.0).tolist())))
+            self._parts[id(mesh)] = rows
         return [LinkShape(one, part.origin, part.name, color) for one, color in self._parts[id(mesh)]]
 
     def _parse_shape(
@@ -101,6 +111,9 @@ class Geoms:
         if not isinstance(part.shape, Mesh):
             return [Element("geom", {"name": name, **_sized(part.shape, wheel), **placed, **values})]
         files = self._mesh(part.shape, collision=values["group"] == "3")
+        if part.shape.textures and values["group"] != "3":
+            del values["rgba"]
+            values["material"] = self._material(part.shape.textures[0])
         names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
         return [
             Element("geom", {"name": one, "type": "mesh", "mesh": file, **placed, **values})
@@ -118,8 +131,9 @@ class Geoms:
         names = []
         for vertices, faces in bodies:
             name = f"{self.prefix}mesh{len(self.files)}"
-            file = f"{name}.stl"
-            self.files[file] = _stl(vertices, faces)
+            drawn = mesh.uv is not None and bool(mesh.textures) and not collision
+            file = f"{name}.obj" if drawn else f"{name}.stl"
+            self.files[file] = _obj(vertices, faces, mesh.uv) if drawn and mesh.uv is not None else _stl(vertices, faces)
             values = {"name": name, "file": file, "inertia": "convex" if collision else "shell"}
             if collision:
                 values["maxhullvert"] = str(MOST_CORNERS)
@@ -127,6 +141,18 @@ class Geoms:
             names.append(name)
         self._known[key] = names
         return names
+
+
+    def _material(self, texture: Texture) -> str:
+        """Return the name of the material of a texture, with its assets."""
+        key = (texture.image, texture.color)
+        if key not in self._materials:
+            name = f"{self.prefix}texture{len(self.files)}"
+            self.files[f"{name}.png"] = texture.image
+            self.meshes.append(Element("texture", {"name": name, "type": "2d", "file": f"{name}.png"}))
+            self.meshes.append(Element("material", {"name": name, "texture": name, "rgba": row(texture.color)}))
+            self._materials[key] = name
+        return self._materials[key]
 
 
 def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
@@ -161,6 +187,30 @@ def _friction_attributes(friction: float | None) -> dict[str, str]:
     if friction < SMOOTH:
         return {"condim": "1", "priority": "1"}
     return {"friction": row((friction, 0.005, 0.0001)), "priority": "1"}
+
+
+def distinct_colors(colors: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Return at most 32 colours ``[K, 4]`` and the number ``[M]`` of each row; many colours are rounded.
+
+    >>> distinct_colors(np.array([[9, 0, 0, 255], [0, 0, 0, 255], [9, 0, 0, 255]], dtype=np.uint8))[1].tolist()
+    [1, 0, 1]
+    """
+    bits = 0
+    while True:
+        rounded = np.minimum((colors >> bits << bits) + ((1 << bits) >> 1), 255).astype(np.uint8)
+        found, which = np.unique(rounded, axis=0, return_inverse=True)
+        if len(found) <= MOST_COLORS:
+            return found, np.asarray(which, dtype=np.int64).ravel()
+        bits += 1
+
+
+def _obj(vertices: Floats, faces: NDArray[np.int64], uv: Floats) -> bytes:
+    """Return an OBJ file with texture coordinates; only vertices of the triangles are written."""
+    used, corners = np.unique(faces, return_inverse=True)
+    rows = [f"v {x:.8g} {y:.8g} {z:.8g}" for x, y, z in vertices[used].tolist()]
+    rows += [f"vt {u:.7g} {v:.7g}" for u, v in uv[used].tolist()]
+    rows += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (corners.reshape(-1, 3) + 1).tolist()]
+    return "\n".join([*rows, ""]).encode()
 
 
 def _stl(vertices: Floats, faces: NDArray[np.int64]) -> bytes:
