@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
+    from .robots.guess_table import Guess
     from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
@@ -81,6 +82,7 @@ _LAZY = {
     "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
     "Drive": "robots.drive",
+    "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
     "LightSource": "physics.stage",
@@ -168,6 +170,7 @@ __all__ = [
     "CubeBody",
     "DifferentialDrive",
     "Drive",
+    "Guess",
     "HeadingWaypoint",
     "JourneyAssignment",
     "LightSource",
