@@ -63,6 +63,7 @@ class _Conversion:
     parameters: DriveParameters
     joints: Mapping[str, JointLimits]
     wheeled: bool
+    mass: float = 0.0
 
     @property
     def urdf(self) -> str:
@@ -116,7 +117,7 @@ def import_robot(
     add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
-    made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, model.mass
+    made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, done.mass
     made.texts["import.json"] = _record(made, source)
     return made
 
@@ -159,8 +160,6 @@ def _uses_wheels(model: RobotModel, base: BaseKind) -> bool:
 def _robot_element(done: _Conversion) -> Element:
     """Return <robot> with its drive and wheels."""
     model, base, table = done.model, done.base, done.table
-    added = sum(link.inertial is not None for link in model.links.values())
-    table.add("mass", f"{model.mass:.4g} kg", f"<inertial> of {added} links", f"<mass> in {done.urdf}")
     root = Element("robot", {"name": done.name, "urdf": done.urdf, "base": "wheels" if done.wheeled else "planar"})
     root.attributes["about"] = f"{base.kind} base, from {model.name}"
     how = "its wheels are turned by motors" if done.wheeled else "the base is moved directly"
@@ -272,7 +271,7 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
     model, base = done.model, done.base
     root = copy_elements(source, done.name)
     copies = copy_meshes(root, model)
-    add_masses(done.table, root, model, done.urdf)
+    done.mass = add_masses(done.table, root, model, done.urdf)
     if abs(base.rear) > 0.005 and base.wheels and base.kind != "planar":
         root.children.append(Element("link", {"name": GROUND_LINK}))
         joint = Element("joint", {"name": f"{GROUND_LINK}_joint", "type": "fixed"})

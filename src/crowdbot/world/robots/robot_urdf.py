@@ -14,7 +14,7 @@ from crowdbot.core import Element
 from crowdbot.world.urdf import Link, LinkInertia, RobotModel, replacement_shape
 
 from .base_kind import BaseKind
-from .guess_table import DERIVED, GUESS, GuessTable
+from .guess_table import DERIVED, FILE, GUESS, GuessTable
 
 __all__ = ["add_masses", "add_motors", "add_shapes", "copy_elements", "copy_meshes", "format_number"]
 
@@ -94,18 +94,26 @@ def _place_of(name: str, file: Path) -> str:
     return plain if safe else file.name
 
 
-def add_masses(table: GuessTable, root: Element, model: RobotModel, urdf: str) -> None:
-    """Write the masses that the file does not give, and list them."""
+def add_masses(table: GuessTable, root: Element, model: RobotModel, urdf: str) -> float:
+    """Write the masses that the file does not give, list them and the total, and return the total mass [kg]."""
+    known = sum(any(_has_mass(inner) for inner in link.each("inertial")) for link in root.each("link"))
+    why = "it moves, and has no <inertial>" if known else "no link has <inertial>: density of water"
+    total = guessed = 0.0
     for element in root.each("link"):
         name = element.attributes.get("name", "")
         inertial = model.links[name].inertial
-        if inertial is None or any(_has_mass(inner) for inner in element.each("inertial")):
+        if inertial is None:
             continue
-        whole = not any(_has_mass(inner) for link in root.each("link") for inner in link.each("inertial"))
-        why = "no link has <inertial>: density of water" if whole else "it moves, and has no <inertial>"
-        mass = table.number(f"mass of {name}", inertial.mass, why, f"<mass> in {urdf}", GUESS, unit="kg")
-        element.children = [child for child in element.children if child.tag != "inertial"]
-        element.children.append(_inertial(mass, inertial))
+        mass = inertial.mass
+        if not any(_has_mass(inner) for inner in element.each("inertial")):
+            mass = table.number(f"mass of {name}", mass, why, f"<mass> in {urdf}", GUESS, unit="kg")
+            element.children = [child for child in element.children if child.tag != "inertial"]
+            element.children.append(_inertial(mass, inertial))
+            guessed += mass
+        total += mass
+    source = f"<inertial> of {known} links" + (f"; {guessed:.4g} kg are guesses" if guessed else "")
+    table.add("mass", f"{total:.4g} kg", source, f"<mass> in {urdf}", DERIVED if guessed else FILE)
+    return total
 
 
 def _has_mass(inertial: Element) -> bool:
@@ -200,7 +208,7 @@ def add_motors(
         why = "the drive plugin" if known else ("weight and radius" if wheel else "mass of the robot")
         effort = table.number(
             f"effort of {joint.name}", torque if known and torque is not None else effort, why, f"<limit> in {urdf}",
-            "file" if known else GUESS, unit="N" if joint.kind == "prismatic" else "N m",
+            FILE if known else GUESS, unit="N" if joint.kind == "prismatic" else "N m",
         )  # fmt: skip
         limit = next(iter(elements[joint.name].each("limit")), None)
         if limit is None:
