@@ -41,6 +41,7 @@ class UrdfReader:
         self.files: dict[str, Path] = {}
         self.textures: dict[str, dict[str, Path]] = {}
         self.materials: dict[str, Color] = {}
+        self.mean_colors: dict[str, Color | None] = {}
         self.friction: dict[str, float] = {}
         self.springs: dict[str, dict[str, float]] = {}
         self.motors: dict[str, str] = {}

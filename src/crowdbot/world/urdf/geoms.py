@@ -26,6 +26,9 @@ MOST_CORNERS = 64
 """Maximum number of vertices of a convex body in contacts; more are slower and not more accurate on a floor."""
 MOST_COLORS = 32
 """The colours of a mesh with more are rounded."""
+MOST_TESTED = 64
+"""Number of triangles that are tested first, since most meshes have an area there."""
+SMALLEST_AREA = 1e-12
 NOTHING = 1e-30
 """Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
@@ -111,7 +114,7 @@ class Geoms:
         if not isinstance(part.shape, Mesh):
             return [Element("geom", {"name": name, **_sized(part.shape, wheel), **placed, **values})]
         files = self._mesh(part.shape, collision=values["group"] == "3")
-        if part.shape.textures and values["group"] != "3":
+        if part.shape.textures and part.shape.colors is None and values["group"] != "3":
             del values["rgba"]
             values["material"] = self._material(part.shape.textures[0])
         names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
@@ -124,16 +127,18 @@ class Geoms:
         key = (id(mesh), collision)
         if key in self._known:
             return self._known[key]
+        shown = mesh
         if collision:
             bodies = [(piece.vertices, piece.faces) for piece in mesh.pieces]
         else:
-            bodies = [(mesh.vertices, mesh.faces[k : k + MOST_FACES]) for k in range(0, len(mesh.faces), MOST_FACES)]
+            shown = drawable(mesh)
+            bodies = [(shown.vertices, shown.faces[k : k + MOST_FACES]) for k in range(0, len(shown.faces), MOST_FACES)]
         names = []
         for vertices, faces in bodies:
             name = f"{self.prefix}mesh{len(self.files)}"
-            drawn = mesh.uv is not None and bool(mesh.textures) and not collision
+            drawn = shown.uv is not None and mesh.colors is None and not collision
             file = f"{name}.obj" if drawn else f"{name}.stl"
-            self.files[file] = _obj(vertices, faces, mesh.uv) if drawn and mesh.uv is not None else _stl(vertices, faces)
+            self.files[file] = _obj(vertices, faces, shown.uv) if drawn else _stl(vertices, faces)
             values = {"name": name, "file": file, "inertia": "convex" if collision else "shell"}
             if collision:
                 values["maxhullvert"] = str(MOST_CORNERS)
@@ -204,8 +209,39 @@ def distinct_colors(colors: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArr
         bits += 1
 
 
-def _obj(vertices: Floats, faces: NDArray[np.int64], uv: Floats) -> bytes:
+def drawable(mesh: Mesh) -> Mesh:
+    """Return a mesh that MuJoCo accepts: triangles with an area, and at least four points.
+
+    A mesh of one triangle gets a point 0.1 mm below it; a mesh without area has no triangles.
+    """
+    corners = mesh.vertices[mesh.faces[:MOST_TESTED]].astype(np.float32).astype(np.float64)
+    if len(np.unique(corners.reshape(-1, 3), axis=0)) >= 4 and _area(corners) > SMALLEST_AREA:
+        return mesh
+    whole = mesh.vertices[mesh.faces].astype(np.float32).astype(np.float64)
+    if _area(whole) <= SMALLEST_AREA:
+        return dataclasses.replace(mesh, faces=mesh.faces[:0])
+    if len(np.unique(whole.reshape(-1, 3), axis=0)) >= 4:
+        return mesh
+    largest = int(np.argmax(np.linalg.norm(np.cross(whole[:, 1] - whole[:, 0], whole[:, 2] - whole[:, 0]), axis=1)))
+    a, b, c = whole[largest]
+    normal = np.cross(b - a, c - a)
+    below = (a + b + c) / 3.0 - 1e-4 * normal / np.linalg.norm(normal)
+    first, second, third = mesh.faces[largest]
+    last = len(mesh.vertices)
+    more = [(second, first, last), (third, second, last), (first, third, last)]
+    uv = None if mesh.uv is None else np.vstack([mesh.uv, mesh.uv[first]])
+    faces = np.vstack([mesh.faces[largest : largest + 1], more])
+    return dataclasses.replace(mesh, vertices=np.vstack([mesh.vertices, below]), faces=faces, uv=uv)
+
+
+def _area(corners: Floats) -> float:
+    """Return twice the area [m2] of triangles ``[M, 3, 3]``."""
+    return float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum())
+
+
+def _obj(vertices: Floats, faces: NDArray[np.int64], uv: Floats | None) -> bytes:
     """Return an OBJ file with texture coordinates; only vertices of the triangles are written."""
+    assert uv is not None
     used, corners = np.unique(faces, return_inverse=True)
     rows = [f"v {x:.8g} {y:.8g} {z:.8g}" for x, y, z in vertices[used].tolist()]
     rows += [f"vt {u:.7g} {v:.7g}" for u, v in uv[used].tolist()]

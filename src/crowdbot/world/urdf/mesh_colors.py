@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import io
+import warnings
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .mesh_files import MeshFiles
+from crowdbot.core import InputError
+
+from .mesh_files import MOST_BYTES, MeshFiles
 from .shapes import Texture
 
-__all__ = ["PartColors", "join_colors", "take_colors"]
+__all__ = ["PartColors", "join_colors", "mean_color", "take_colors"]
 
 MOST_PIXELS = 40_000_000
 MOST_SIDE = 2048
@@ -81,12 +85,36 @@ def _png(image: Any, files: MeshFiles) -> tuple[bytes, NDArray[np.uint8]] | None
         whole.thumbnail((MOST_SIDE, MOST_SIDE))
         stream = io.BytesIO()
         whole.save(stream, "PNG", compress_level=1)
-        mean = np.asarray(whole.resize((1, 1)), dtype=np.uint8).ravel()
+        mean = np.asarray(whole.resize((1, 1), 4), dtype=np.uint8).ravel()
     except Exception as error:  # a broken image causes many kinds of exceptions inside Pillow
         reason = f"{type(error).__name__}: {str(error)[:80]}"
         files.remarks.append(f"a texture of the mesh {files.path.name} cannot be read ({reason}); its colour is used")
         return None
     return stream.getvalue(), np.append(mean[:3], np.uint8(255)).astype(np.uint8)
+
+
+def mean_color(path: Path) -> tuple[float, float, float, float]:
+    """Return the mean colour (red, green, blue, alpha) of an image file.
+
+    Raises:
+        InputError: the file is not an image, or is too large; the end of a sentence.
+    """
+    from PIL import Image
+
+    if path.stat().st_size > MOST_BYTES:
+        raise InputError(f"is larger than {MOST_BYTES} bytes, the maximum")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            image = Image.open(io.BytesIO(path.read_bytes()), formats=FORMATS)
+            if image.size[0] * image.size[1] > MOST_PIXELS:
+                raise InputError(f"has {image.size[0]} x {image.size[1]} pixels, at most {MOST_PIXELS} are allowed")
+            red, green, blue = np.asarray(image.convert("RGB").resize((1, 1), Image.Resampling.BOX))[0, 0] / 255.0
+        except InputError:
+            raise
+        except Exception as error:  # a broken image causes many kinds of exceptions inside Pillow
+            raise InputError(f"cannot be read as an image: {type(error).__name__}") from None
+    return float(red), float(green), float(blue), 1.0
 
 
 def join_colors(

@@ -90,7 +90,7 @@ def _check_dae(data: bytes, name: str) -> None:
     reject_entities(data, name)
     parts = sum(data.count(tag) for tag in (b"<triangles", b"<polylist", b"<polygons", b"<lines", b"<tristrips"))
     _check_parts(parts, "groups of triangles")
-    if data.count(b"instance_node") + data.count(b"instance_geometry") > 1:
+    if b"instance_node" in data or data.count(b"instance_geometry") > 1 or data.count(b"<node") > MOST_DEPTH:
         _check_instances(data)
 
 
