@@ -93,6 +93,5 @@ class GuessTable:
         """Raise an error if a given name is not in the table."""
         for name in self.given:
             if name not in self._settable:
-                listed = ", ".join(sorted(self._settable)[:20])
-                meant = did_you_mean(name, self._settable)
-                raise InputError(f"--set {name[:60]!r} is not a value of this robot{meant}; it has {listed}")
+                meant = did_you_mean(name, self._settable) or f"; it has {', '.join(sorted(self._settable)[:20])}"
+                raise InputError(f"--set {name[:60]!r} is not a value of this robot{meant}")
