@@ -234,24 +234,30 @@ def _summary(made: RobotFolder, out: Path, trial: Path, confirmed: bool) -> dict
 
 
 def _hall(name: str, robot: Robot) -> str:
-    """Return a trial with the robot and five people in a hall that the robot crosses at its own speed."""
+    """Return a trial with the robot and people who walk up and down a hall that it crosses at its own speed."""
     radius, speed = robot.radius, float(getattr(robot.drive, "max_speed", 1.0))
     width = 6.0 + 4.0 * radius
-    length = min(16.0, max(8.0, math.ceil(2.0 + 2.0 * radius + 24.0 * speed)))
-    distance = length - 2.0 - 2.0 * radius
-    duration = max(20.0, min(600.0, math.ceil(1.5 * distance / max(speed, 0.01) + 5.0)))
+    length = min(18.0, max(9.0, math.ceil(4.0 + 2.0 * radius + 24.0 * speed)))
+    begin, end = 2.5 + radius, length - 1.0 - radius
+    duration = max(20.0, min(600.0, math.ceil(1.5 * (end - begin) / max(speed, 0.01) + 5.0)))
+    back, high = 1.4 + 1.5 * radius, 1.0 + radius
+    zones = [f"{x:g},1 {x + 1:g},1 {x + 1:g},{width - 1:g} {x:g},{width - 1:g}" for x in (1.0, length - 2.0)]
+    west, east = (f'<zone points="{zone}" aim="random"/>' for zone in zones)
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <trial name="{name}-hall" duration="{duration:g}">
   <stage walkable="0,0 {length:g},0 {length:g},{width:g} 0,{width:g}"/>
   <crowd type="orca"/>
-  <agent name="ann" x="{length - 2:g}" y="{0.5 * width:g}" goal="1,{0.5 * width:g}"/>
-  <agent name="ben" x="{length - 3:g}" y="{0.25 * width:g}" goal="1,{0.25 * width:g}"/>
-  <agent name="eva" x="{length - 4:g}" y="{0.75 * width:g}" goal="1,{0.75 * width:g}"/>
-  <agent name="tom" x="{0.5 * length:g}" y="1" goal="{0.5 * length:g},{width - 1:g}"/>
-  <agent name="zoe" x="{0.5 * length + 1:g}" y="{width - 1:g}" goal="{0.5 * length + 1:g},1"/>
-  <robot type="{name}" x="{1.0 + radius:g}" y="{0.5 * width:g}" sensor-rates="nearest">
-    <goal x="{length - 1.0 - radius:g}" y="{0.5 * width:g}"/>
+  <journey name="west" then="again">{west}{east}</journey>
+  <journey name="east" then="again">{east}{west}</journey>
+  <agent name="ann" x="{length - 2:g}" y="{0.5 * width:g}" journey="west" body="woman"/>
+  <agent name="ben" x="{length - 3:g}" y="{0.3 * width:g}" journey="west" body="man"/>
+  <agent name="eva" x="{length - 4:g}" y="{0.7 * width:g}" journey="west" body="woman"/>
+  <agent name="tom" x="{0.5 * length:g}" y="1" journey="east" body="man"/>
+  <agent name="zoe" x="{0.5 * length + 1:g}" y="{width - 1:g}" journey="east" body="woman"/>
+  <robot name="{name}" type="{name}" x="{begin:g}" y="{0.5 * width:g}" sensor-rates="nearest">
+    <goal x="{end:g}" y="{0.5 * width:g}"/>
     <navigator type="orca"/>
   </robot>
+  <camera name="behind" robot="{name}" x="{-back:g}" z="{high:g}" pitch="{math.atan2(0.6 * high, back + 1.0):.3g}"/>
 </trial>
 """
