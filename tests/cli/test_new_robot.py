@@ -12,15 +12,18 @@ from crowdbot.trials import load_trial
 from crowdbot.world import Robot
 
 CART = """<robot name='cart'>
-<link name='base_link'><inertial><mass value='9'/><inertia ixx='.1' iyy='.1' izz='.1' ixy='0' ixz='0' iyz='0'/></inertial>
+<link name='base_link'><inertial><mass value='9'/>
+  <inertia ixx='.1' iyy='.1' izz='.1' ixy='0' ixz='0' iyz='0'/></inertial>
   <collision><origin xyz='0 0 0.15'/><geometry><box size='0.4 0.3 0.2'/></geometry></collision></link>
 <link name='castor'><collision><geometry><sphere radius='0.04'/></geometry></collision></link>
-<joint name='castor_joint' type='fixed'><parent link='base_link'/><child link='castor'/><origin xyz='-0.15 0 0.04'/></joint>
+<joint name='castor_joint' type='fixed'>
+  <parent link='base_link'/><child link='castor'/><origin xyz='-0.15 0 0.04'/></joint>
 <link name='tower'><visual><geometry><box size='0.1 0.1 0.5'/></geometry></visual></link>
 <joint name='tower_joint' type='revolute'><parent link='base_link'/><child link='tower'/><origin xyz='0 0 0.5'/>
   <axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='5' velocity='1'/></joint>
 {wheels}</robot>"""
-WHEEL = """<link name='{side}'><inertial><mass value='1'/><inertia ixx='.01' iyy='.01' izz='.01' ixy='0' ixz='0' iyz='0'/>
+WHEEL = """<link name='{side}'><inertial><mass value='1'/>
+  <inertia ixx='.01' iyy='.01' izz='.01' ixy='0' ixz='0' iyz='0'/>
 </inertial><collision><geometry><cylinder radius='{radius}' length='0.04'/></geometry></collision></link>
 <joint name='{side}_joint' type='continuous'><parent link='base_link'/><child link='{side}'/>
 <origin xyz='0 {y} {radius}' rpy='-1.5708 0 0'/><axis xyz='0 0 1'/></joint>"""

@@ -39,7 +39,12 @@ def box_arrays():
 POINTS, UV, FACES = box_arrays()
 BOX_MTL = "newmtl paint\nKd 0.8 0.8 0.8\nmap_Kd paint.png\n"
 BOX_OBJ = "\n".join(
-    ["mtllib box.mtl", *(f"v {x:g} {y:g} {z:g}" for x, y, z in POINTS), *(f"vt {u:g} {v:g}" for u, v in UV), "usemtl paint"]
+    [
+        "mtllib box.mtl",
+        *(f"v {x:g} {y:g} {z:g}" for x, y, z in POINTS),
+        *(f"vt {u:g} {v:g}" for u, v in UV),
+        "usemtl paint",
+    ]
     + [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in FACES + 1]
     + [""]
 )

@@ -1,7 +1,7 @@
 """Hostile meshes, material files and textures: a refusal in one sentence, no trace, no hang, no file outside."""
 
-import io
 import json
+import re
 import struct
 import zlib
 
@@ -46,7 +46,8 @@ def change_table(change):
 def doubling_dae(levels):
     """Return a DAE file whose nodes use each other twice on every level."""
     rows = "".join(
-        f"<node id='n{k}'><instance_node url='#n{k + 1}'/><instance_node url='#n{k + 1}'/></node>" for k in range(levels)
+        f"<node id='n{k}'><instance_node url='#n{k + 1}'/><instance_node url='#n{k + 1}'/></node>"
+        for k in range(levels)
     )
     last = f"<node id='n{levels}'><instance_geometry url='#box'/></node>"
     library = f"<library_nodes>{last}{rows}</library_nodes><library_visual_scenes>"
@@ -133,7 +134,9 @@ def bomb(width, height):
     head = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
     rows = compress(min((width + 1) * height, 100_000_000))
     chunks = [(b"IHDR", head), (b"IDAT", rows), (b"IEND", b"")]
-    made = [struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body)) for name, body in chunks]
+    made = [
+        struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body)) for name, body in chunks
+    ]
     return b"\x89PNG\r\n\x1a\n" + b"".join(made)
 
 
@@ -156,11 +159,18 @@ def test_hostile_textures_are_left_out_in_a_sentence(tmp_path, name):
     assert not shape.textures
     assert len(shape.faces) == 12
     if name != "script" and name != "larger than any memory":
-        assert any(__import__("re").search(sentence, warning) for warning in model.warnings), model.warnings
+        assert any(re.search(sentence, warning) for warning in model.warnings), model.warnings
     assert mjcf(model).load().nmesh > 0
 
 
-OUTSIDE = ("../secret.png", "/etc/hostname", "file:///etc/hostname", "..\\secret.png", "%2e%2e/secret.png", "a/../../secret.png")
+OUTSIDE = (
+    "../secret.png",
+    "/etc/hostname",
+    "file:///etc/hostname",
+    "..\\secret.png",
+    "%2e%2e/secret.png",
+    "a/../../secret.png",
+)
 
 
 @pytest.mark.parametrize("reference", OUTSIDE)
@@ -205,7 +215,22 @@ FILES = {
     "box.stl": bytes(trimesh.creation.box().export(file_type="stl")),
     "box.ply": bytes(trimesh.creation.box().export(file_type="ply")),
 }
-WORDS = (b"0", b"-1", b"99999999999", b"nan", b"1e999", b"<", b">", b"\0", b"../", b"\xff\xff\xff\xff", b"/etc/passwd", b"", b" ", b"f 1 2 3\n")
+WORDS = (
+    b"0",
+    b"-1",
+    b"99999999999",
+    b"nan",
+    b"1e999",
+    b"<",
+    b">",
+    b"\0",
+    b"../",
+    b"\xff\xff\xff\xff",
+    b"/etc/passwd",
+    b"",
+    b" ",
+    b"f 1 2 3\n",
+)
 
 
 def damage(data, rng):
@@ -216,7 +241,7 @@ def damage(data, rng):
         kind = int(rng.integers(4))
         if kind == 0:
             data[at:at] = WORDS[int(rng.integers(len(WORDS)))]
-        elif kind == 1 and len(data):
+        elif kind == 1 and data:
             data[min(at, len(data) - 1)] = int(rng.integers(256))
         elif kind == 2:
             data[at:at] = data[at : at + int(rng.integers(1, 40))]
@@ -230,9 +255,9 @@ def test_damaged_meshes_and_textures_are_refused_or_drawn(tmp_path, count):
     rng = np.random.default_rng(3)
     outcomes = {"refused": 0, "read": 0}
     names = list(FILES)
+    for name, data in FILES.items():
+        (tmp_path / name).write_bytes(data)
     for number in range(count):
-        for name, data in FILES.items():
-            (tmp_path / name).write_bytes(data)
         name = names[int(rng.integers(len(names)))]
         (tmp_path / name).write_bytes(damage(FILES[name], rng))
         mesh = "box.obj" if name in ("box.mtl", "paint.png") else name
@@ -240,7 +265,8 @@ def test_damaged_meshes_and_textures_are_refused_or_drawn(tmp_path, count):
         model = read_urdf(tmp_path / "r.urdf", colliders="hull")
         outcomes["refused" if any("cannot be used" in text for text in model.warnings) else "read"] += 1
         assert not any("Traceback" in text or "\n" in text for text in model.warnings)
-        if number % 5 == 0:
+        if number % 20 == 0:
             assert mjcf(model).load().nbody == 2
+        (tmp_path / name).write_bytes(FILES[name])
     assert min(outcomes.values()) > 0
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*FILES, "r.urdf"])

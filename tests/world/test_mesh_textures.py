@@ -21,7 +21,11 @@ def write(folder, kind, material="", mass=9):
     (folder / "textures").mkdir(exist_ok=True)
     (folder / "textures" / "paint.png").write_bytes(PNG)
     (folder / "box.mtl").write_text(BOX_MTL.replace("paint.png", "textures/paint.png"))
-    data = {"obj": BOX_OBJ.encode(), "dae": BOX_DAE.replace("paint.png", "./textures/paint.png").encode(), "glb": box_glb()}
+    data = {
+        "obj": BOX_OBJ.encode(),
+        "dae": BOX_DAE.replace("paint.png", "./textures/paint.png").encode(),
+        "glb": box_glb(),
+    }
     (folder / f"box.{kind}").write_bytes(data[kind])
     (folder / "r.urdf").write_text(TEXT.format(name=f"box.{kind}", material=material, mass=mass))
     return folder / "r.urdf"

@@ -72,7 +72,10 @@ def test_a_controller_file_of_the_package_is_found(tmp_path):
 
 
 def test_a_controller_file_that_the_robot_file_names_is_read(tmp_path):
-    plugin = "<gazebo><plugin filename='gz_ros2_control-system' name='x'><parameters>{}</parameters></plugin></gazebo></robot>"
+    plugin = (
+        "<gazebo><plugin filename='gz_ros2_control-system' name='x'><parameters>{}</parameters></plugin></gazebo>"
+        "</robot>"
+    )
     file = tmp_path / "r.xacro"
     (tmp_path / "somewhere").mkdir()
     (tmp_path / "somewhere" / "base.yaml").write_text(ROS_2)
@@ -91,7 +94,9 @@ def test_limits_of_ros2_control_tags_are_taken(tmp_path):
         for name in ("left", "right")
     )
     file = tmp_path / "r.xacro"
-    file.write_text(base_file("differential").replace("</robot>", f"<ros2_control name='c'>{control}</ros2_control></robot>"))
+    file.write_text(
+        base_file("differential").replace("</robot>", f"<ros2_control name='c'>{control}</ros2_control></robot>")
+    )
     found = import_robot(file, "r")
     row = next(guess for guess in found.guesses if guess.what == "max-speed")
     assert (row.value, row.source, row.status) == ("0.6 m/s", "<ros2_control> of the wheels", "file")
@@ -133,7 +138,24 @@ def test_a_wrong_controller_file_is_told(tmp_path, text, sentence):
 def test_damaged_controller_files_are_refused_or_read(tmp_path, count):
     rng = np.random.default_rng(5)
     path = tmp_path / "c.yaml"
-    words = ("{", "}", "[", ": ", "\n", "  ", "- ", "'", '"', "1e999", ".nan", "ros__parameters", "type", "-1", "0", "null")
+    words = (
+        "{",
+        "}",
+        "[",
+        ": ",
+        "\n",
+        "  ",
+        "- ",
+        "'",
+        '"',
+        "1e999",
+        ".nan",
+        "ros__parameters",
+        "type",
+        "-1",
+        "0",
+        "null",
+    )
     outcomes = {"read": 0, "refused": 0}
     for _ in range(count):
         text = (ROS_2, ROS_1)[int(rng.integers(2))]

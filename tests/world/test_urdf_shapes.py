@@ -125,7 +125,9 @@ def test_materials_outside_the_folder_are_not_read(tmp_path):
     )
     model = read_urdf(write(tmp_path, mesh("a.obj")))
     (warning,) = model.warnings
-    assert "'../../../../etc/passwd' of the mesh a.obj is outside the folder of the robot; its colour is used" in warning
+    assert (
+        "'../../../../etc/passwd' of the mesh a.obj is outside the folder of the robot; its colour is used" in warning
+    )
     assert model.links["a"].visuals[0].shape.colors is None
 
 

@@ -25,7 +25,7 @@ NUMBERS = {
     "wheel_separation": "track", "wheel_track": "track", "rear_wheel_track": "track", "traction_wheels_track": "track",
     "wheel_radius": "radius", "rear_wheels_radius": "radius", "traction_wheels_radius": "radius",
     "kinematics.wheels_radius": "radius", "wheelbase": "wheelbase", "wheel_base": "wheelbase",
-    "wheel_separation_w": "track", "steering.max_position": "max_steering", "steering.max_velocity": "max_steering_rate",
+    "steering.max_position": "max_steering", "steering.max_velocity": "max_steering_rate",
 }  # fmt: skip
 """Parameters of drive controllers, and the names of the drive parameters."""
 OF_WHEELS = {"traction.max_velocity": "max_speed", "traction.max_acceleration": "max_acceleration"}
@@ -135,8 +135,8 @@ def find_controller_files(
     """Return the drive controllers of files that the robot file names or that are beside it, and remarks.
 
     A file is named by ``<parameters>`` of a ros2_control plugin. Otherwise the YAML files beside the robot file and in
-    the folders ``config``, ``control``, ``controllers`` and ``params`` of its package are searched for a controller whose
-    wheels are joints of the robot.
+    the folders ``config``, ``control``, ``controllers`` and ``params`` of its package are searched for a controller
+    whose wheels are joints of the robot.
 
     Args:
         source: the robot file.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 from crowdbot.core import Element, InputError, parse_number
@@ -27,9 +28,9 @@ class DriveParameters(NamedTuple):
 
     plugins: tuple[str, ...]
     values: dict[str, float]
-    sources: dict[str, str] = {}
+    sources: Mapping[str, str] = MappingProxyType({})
 
-    def extended(self, plugins: tuple[str, ...], values: Mapping[str, float], source: str) -> DriveParameters:
+    def extend(self, plugins: tuple[str, ...], values: Mapping[str, float], source: str) -> DriveParameters:
         """Return the parameters with those of a controller, which come first."""
         sources = {**self.sources, **dict.fromkeys(values, source)}
         return DriveParameters((*plugins, *self.plugins), {**self.values, **values}, sources)

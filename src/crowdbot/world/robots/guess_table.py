@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, did_you_mean, parse_number
 
-__all__ = ["FILE", "GIVEN", "GUESS", "DERIVED", "Guess", "GuessTable"]
+__all__ = ["DERIVED", "FILE", "GIVEN", "GUESS", "Guess", "GuessTable"]
 
 FILE, DERIVED, GUESS, GIVEN = "file", "derived", "guess", "given"
 
@@ -54,9 +54,7 @@ class GuessTable:
         """Add a value that :attr:`given` does not replace."""
         self.rows.append(Guess(what, value, source, change, status))
 
-    def number(
-        self, what: str, value: float, source: str, change: str, status: str = FILE, *, unit: str = ""
-    ) -> float:
+    def number(self, what: str, value: float, source: str, change: str, status: str = FILE, *, unit: str = "") -> float:
         """Add a number above 0 and return it, or the one that the user gives.
 
         Raises:

@@ -146,7 +146,7 @@ def _parameters(
         if missing:
             remarks.append(f"the controller {one.name!r} in {one.place} names {missing[0]!r}, which is not a joint")
         label = f"{one.name} in {Path(one.place).name}"
-        parameters = parameters.extended((one.kind,), one.values, label)
+        parameters = parameters.extend((one.kind,), one.values, label)
     return parameters, remarks
 
 
@@ -193,7 +193,7 @@ def _reach(model: RobotModel) -> float:
 
 def _drive(done: _Conversion) -> dict[str, str]:
     """Return the attributes of <drive>, and list each with its source."""
-    model, base, given, sources = done.model, done.base, done.parameters.values, done.parameters.sources
+    base, given, sources = done.base, done.parameters.values, done.parameters.sources
     kind = DRIVES.get(base.kind, "differential-drive")
     done.table.add("drive", kind, f"{base.kind} base", "type= of <drive> in robot.xml", DERIVED)
     row = {"type": kind}

@@ -86,7 +86,10 @@ class Geoms:
         return geoms
 
     def _painted(self, part: LinkShape) -> list[LinkShape]:
-        """Return a visual as one shape for each colour and texture of its mesh; a colour in the robot file comes first."""
+        """Return a visual as one shape for each colour and texture of its mesh.
+
+        A colour in the robot file comes first.
+        """
         mesh = part.shape
         if part.color is not None or not isinstance(mesh, Mesh) or mesh.colors is None:
             return [part]
@@ -146,7 +149,6 @@ class Geoms:
             names.append(name)
         self._known[key] = names
         return names
-
 
     def _material(self, texture: Texture) -> str:
         """Return the name of the material of a texture, with its assets."""

@@ -11,7 +11,15 @@ from .model import LinkInertia, LinkShape
 from .shapes import Box, Solid, Sphere, together
 from .transforms import frame, transform_points
 
-__all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inertia", "replacement_shape", "solid_of", "unphysical"]
+__all__ = [
+    "DENSITY",
+    "default_inertia",
+    "find_inertia_problems",
+    "repair_inertia",
+    "replacement_shape",
+    "solid_of",
+    "unphysical",
+]
 
 Floats = NDArray[np.float64]
 DENSITY = 1000.0

@@ -22,6 +22,8 @@ MOST_SIDE = 2048
 """Largest side of a texture in pixels; larger images are reduced."""
 FORMATS = ("PNG", "JPEG", "BMP", "TGA", "WEBP", "GIF", "TIFF")
 GREY = (178, 178, 184, 255)
+INVISIBLE = 13
+"""Below this alpha, 5 %, a material is drawn opaque: exporters of DAE files write the alpha in several ways."""
 PLAIN = (102, 102, 102, 255)
 """Colour of a material that trimesh adds to a mesh with texture coordinates."""
 
@@ -53,6 +55,7 @@ def take_colors(part: Any, kind: str, files: MeshFiles | None) -> PartColors:
         return PartColors(np.asarray(visual.face_colors, dtype=np.uint8)) if several else PartColors()
     color = np.asarray(getattr(material, "main_color", ()))
     color = color.astype(np.uint8) if color.shape == (4,) else np.array(GREY, dtype=np.uint8)
+    color = np.append(color[:3], np.uint8(255)) if color[3] < INVISIBLE else color
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     if image is None:
         added = kind in ("obj", "ply") and tuple(color) == PLAIN

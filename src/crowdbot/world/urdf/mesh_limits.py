@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import re
 import struct
-import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+from xml.parsers import expat
+from xml.etree import ElementTree
 
 from crowdbot.core import InputError, reject_entities
 
@@ -74,14 +75,14 @@ def _check_ply(data: bytes, name: str) -> None:
     end = data.find(b"end_header", 0, 100_000)
     if data[:3] != b"ply" or end < 0:
         raise InputError("it has no PLY header")
+    room = len(data) - end
     for kind, count in re.findall(rb"^element\s+(\S+)\s+(\S+)", data[:end], re.MULTILINE):
+        what = repr(kind.decode("ascii", "replace")[:20])
         digits = count.decode("ascii", "replace")[:40]
         if not digits.isdecimal():
-            raise InputError(f"its header announces {digits!r} rows of {kind.decode('ascii', 'replace')[:20]!r}")
-        if int(digits) > len(data) - end:
-            raise InputError(
-                f"it announces {digits} rows of {kind.decode('ascii', 'replace')[:20]!r}, and it has {len(data) - end} bytes"
-            )
+            raise InputError(f"its header announces {digits!r} rows of {what}")
+        if int(digits) > room:
+            raise InputError(f"it announces {digits} rows of {what}, and it has {room} bytes")
 
 
 def _check_dae(data: bytes, name: str) -> None:
@@ -94,51 +95,65 @@ def _check_dae(data: bytes, name: str) -> None:
         _check_instances(data)
 
 
-def _check_instances(data: bytes) -> None:
-    """Check how often shapes are drawn, since nodes may be used by other nodes again and again."""
-    nodes: dict[str, Any] = {}
-    scenes, depth = [], 0
-    for event, element in ElementTree.iterparse(_Stream(data), ("start", "end")):
-        tag = element.tag.rpartition("}")[2]
-        depth += 1 if event == "start" else -1
-        if depth > MOST_DEPTH:
-            raise InputError(f"its elements are nested more than {MOST_DEPTH} levels deep")
-        if event == "end" and tag in ("node", "visual_scene"):
-            nodes[element.get("id", "")] = element
-            scenes += [element] if tag == "visual_scene" else []
-        elif event == "end" and tag in ("float_array", "p", "vcount", "h"):
-            element.clear()
-    counts: dict[int, int] = {}
+class _SceneNode(NamedTuple):
+    """A node or scene: its child nodes, the names of nodes that it uses, and its number of shapes."""
 
-    def count(element: Any, above: tuple[int, ...]) -> int:
-        if id(element) in above or len(above) > MOST_DEPTH:
-            raise InputError("its nodes contain themselves")
-        if id(element) in counts:
-            return counts[id(element)]
-        total = 0
-        for inner in element:
-            tag = inner.tag.rpartition("}")[2]
-            if tag == "node":
-                total += count(inner, (*above, id(element)))
-            elif tag == "instance_geometry":
-                total += 1
-            elif tag == "instance_node" and inner.get("url", "#").removeprefix("#") in nodes:
-                total += count(nodes[inner.get("url", "#").removeprefix("#")], (*above, id(element)))
-        counts[id(element)] = total
-        return total
-
-    for scene in scenes:
-        _check_parts(count(scene, ()), "shapes in its scene")
+    children: list[_SceneNode]
+    uses: list[str]
+    shapes: list[int]
 
 
-class _Stream:
-    """Bytes as a stream that is read in blocks."""
+class _SceneReader:
+    """Reads the nodes of a DAE file, without its arrays."""
 
     def __init__(self, data: bytes) -> None:
-        self._blocks: Iterator[bytes] = (data[k : k + 65_536] for k in range(0, len(data), 65_536))
+        self.nodes: dict[str, _SceneNode] = {}
+        self.scenes: list[_SceneNode] = []
+        self._open: list[_SceneNode] = []
+        self._depth = 0
+        parser = expat.ParserCreate()
+        parser.StartElementHandler, parser.EndElementHandler = self._start, self._end
+        parser.Parse(data, True)
 
-    def read(self, size: int = -1) -> bytes:
-        return next(self._blocks, b"")
+    def _start(self, name: str, values: Mapping[str, str]) -> None:
+        tag = name.rpartition(":")[2]
+        self._depth += 1
+        if self._depth > MOST_DEPTH:
+            raise InputError(f"its elements are nested more than {MOST_DEPTH} levels deep")
+        if tag in ("node", "visual_scene"):
+            node = _SceneNode([], [], [0])
+            if self._open:
+                self._open[-1].children.append(node)
+            if tag == "visual_scene":
+                self.scenes.append(node)
+            self.nodes[values.get("id", "")] = node
+            self._open.append(node)
+        elif tag == "instance_node" and self._open:
+            self._open[-1].uses.append(values.get("url", "").removeprefix("#"))
+        elif tag == "instance_geometry" and self._open:
+            self._open[-1].shapes[0] += 1
+
+    def _end(self, name: str) -> None:
+        self._depth -= 1
+        if name.rpartition(":")[2] in ("node", "visual_scene"):
+            self._open.pop()
+
+    def count(self, node: _SceneNode, above: tuple[int, ...], counts: dict[int, int]) -> int:
+        """Return the number of shapes of a node with all nodes below it and that it uses."""
+        if id(node) in above or len(above) > MOST_DEPTH:
+            raise InputError("its nodes contain themselves")
+        if id(node) not in counts:
+            below = [*node.children, *(self.nodes[name] for name in node.uses if name in self.nodes)]
+            counts[id(node)] = node.shapes[0] + sum(self.count(one, (*above, id(node)), counts) for one in below)
+        return counts[id(node)]
+
+
+def _check_instances(data: bytes) -> None:
+    """Check how often shapes are drawn, since nodes may be used by other nodes again and again."""
+    reader = _SceneReader(data)
+    counts: dict[int, int] = {}
+    for scene in reader.scenes:
+        _check_parts(reader.count(scene, (), counts), "shapes in its scene")
 
 
 def _check_glb(data: bytes, name: str) -> None:

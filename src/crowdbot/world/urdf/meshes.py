@@ -30,9 +30,7 @@ LOOSE = 1.3
 """If the convex hull exceeds the volume of the mesh by this factor, the mesh is decomposed into convex pieces."""
 
 
-def read_mesh(
-    path: Path, source: str, scale: tuple[float, float, float], files: MeshFiles | None = None
-) -> Mesh:
+def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files: MeshFiles | None = None) -> Mesh:
     """Read a mesh file in metres. With a mirroring scale, triangles keep facing outwards.
 
     Args:
