@@ -16,6 +16,7 @@ __all__ = ["ControllerFile", "JointLimits", "find_controller_files", "read_contr
 MOST_BYTES = 300_000
 MOST_FILES = 60
 MOST_DEPTH = 12
+LARGEST = 1e6
 FOLDERS = ("config", "control", "controllers", "params", "param")
 DRIVES = ("diff", "ackermann", "tricycle", "mecanum", "omni", "swerve", "bicycle", "four_wheel", "steering", "skid")
 """Parts of the type or the name of a controller that moves the base."""
@@ -109,15 +110,21 @@ def _values(rows: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers above 0 whose limit is switched on."""
     found: dict[str, float] = {}
     for key, name in NUMBERS.items():
-        value = rows.get(key)
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if number and 0.0 < value < 1e6 and rows.get(SWITCHES.get(key, ""), True) is not False:
-            found.setdefault(name, float(value))
+        value = _positive(rows.get(key))
+        if value is not None and rows.get(SWITCHES.get(key, ""), True) is not False:
+            found.setdefault(name, value)
     for key, name in OF_WHEELS.items():
-        value = rows.get(key)
-        if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value < 1e6 and "radius" in found:
-            found.setdefault(name, float(value) * found["radius"])
+        value = _positive(rows.get(key))
+        if value is not None and "radius" in found:
+            found.setdefault(name, value * found["radius"])
     return found
+
+
+def _positive(value: Any) -> float | None:
+    """Return a number above 0 and below a million, otherwise None."""
+    if not isinstance(value, int | float) or isinstance(value, bool) or not 0.0 < value < LARGEST:
+        return None
+    return float(value)
 
 
 def _joints(rows: Mapping[str, Any]) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 from xml.parsers import expat
-from xml.etree import ElementTree
 
 from crowdbot.core import InputError, reject_entities
 
