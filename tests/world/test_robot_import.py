@@ -55,7 +55,7 @@ def test_the_printed_commands_run(tmp_path, capsys, monkeypatch, kind):
     (tmp_path / "maker.xacro").write_text(base_file(kind))
     assert main(["new", "robot", "maker.xacro"]) == 0
     lines = [line for line in capsys.readouterr().out.splitlines() if "  crowdbot " in line]
-    assert len(lines) == 3
+    assert len(lines) == 4
     for line in lines:
         words = line.split("  crowdbot ")[1].split()
         if words[0] != "render":

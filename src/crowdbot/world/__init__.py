@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from .robot_contract import check_robot
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from .robots.guess_table import Guess
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.legged import LeggedDrive
     from .robots.mecanum import MecanumDrive
@@ -87,6 +88,7 @@ _LAZY = {
     "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
     "Drive": "robots.drive",
+    "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
     "LeggedDrive": "robots.legged",
@@ -180,6 +182,7 @@ __all__ = [
     "CubeBody",
     "DifferentialDrive",
     "Drive",
+    "Guess",
     "HeadingWaypoint",
     "JourneyAssignment",
     "LeggedDrive",

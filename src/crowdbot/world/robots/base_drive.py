@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,23 +11,14 @@ from crowdbot.world.urdf import RobotModel
 from .base_kind import BaseKind, FoundWheel
 from .skid_steer import slip_of
 
-__all__ = ["DriveChoice", "choose_drive", "rollers_of", "turns_wheels"]
+__all__ = ["drive_type", "middle_angle", "rollers_of", "turns_wheels", "wheel_attributes"]
 
 WHEELED = ("differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional")
 """Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
-USUAL_RATE = 10.0
-"""Guess of the maximum speed of a wheel [rad/s]."""
 FASTEST = 3.0
 """Largest guess of the maximum turn rate [rad/s]."""
 FASTEST_SLIDING = 2.0
 """The same for skid-steer bases and omnidirectional wheels, as that of Husky: faster, they slide outwards."""
-
-
-class DriveChoice(NamedTuple):
-    """Type of a drive, and its attributes: name, value and source."""
-
-    drive: str
-    rows: tuple[tuple[str, float, str], ...]
 
 
 def turns_wheels(model: RobotModel, base: BaseKind) -> bool:
@@ -64,56 +53,11 @@ def rollers_of(base: BaseKind, wheel: FoundWheel) -> float | None:
     return -math.copysign(math.pi / 4.0, ahead * aside)
 
 
-def choose_drive(model: RobotModel, base: BaseKind, given: Mapping[str, float], wheeled: bool) -> DriveChoice:
-    """Return the drive of a base.
-
-    Args:
-        model: the robot.
-        base: its wheels and kind.
-        given: values of the drive plugin of the file.
-        wheeled: whether motors turn the wheels in the physics world.
-    """
-    rows: list[tuple[str, float, str]] = []
-
-    def choose(key: str, guess: float, why: str) -> float:
-        value, source = (given[key], "the drive plugin") if key in given else (guess, why)
-        rows.append((key.replace("_", "-"), value, source))
-        return value
-
-    radius = base.wheels[0].radius if base.wheels else 0.0
-    limits = [model.joints[name].motor.velocity for name in base.driven]
-    rates = [v for v in limits if math.isfinite(v) and v > 0.0]
-    fastest = min(rates) if rates and 0.05 <= min(rates) * radius <= 5.0 else 0.0
-    guess = min(1.0, USUAL_RATE * radius) if radius else 1.0
-    why = "joint limits" if fastest else (f"guess: {USUAL_RATE:g} rad/s of the wheels" if radius else "guess")
-    speed = choose("max_speed", fastest * radius or guess, why)
-    choose("max_acceleration", 1.0, "guess")
+def drive_type(base: BaseKind, wheeled: bool) -> str:
+    """Return the type of the drive of a base, as in ``robot.xml``."""
     if base.kind in ("ackermann", "tricycle"):
-        angle, source = _steering_limit(model, base)
-        choose("max_steering", angle, source)
-        choose("max_steering_rate", 1.0, "guess")
-        rows.append(("wheelbase", base.wheelbase or given.get("wheelbase", 0.6), "places of the wheels"))
         steered = all(wheel.steering for wheel in base.wheels if wheel.joint in base.driven)
-        drive = "tricycle-drive" if base.kind == "tricycle" and steered else "ackermann-drive"
-        return DriveChoice(drive, tuple(rows))
-    track = base.track or given.get("track", 0.5)
-    geometry = _geometry(base, track) if wheeled else {}
-    reach = geometry.pop("reach", 0.5 * track)
-    highest = FASTEST_SLIDING if base.kind in ("skid-steer", "omnidirectional") else FASTEST
-    turning = min(speed / reach, highest) if reach > 0.025 else 1.5
-    turn = choose("max_turn_rate", turning, "speed and places of the wheels" if base.track else "guess")
-    choose("max_turn_acceleration", 3.0, "guess")
-    if base.kind == "legged":
-        choose("max_side_speed", 0.5 * speed, "guess: half of the maximum speed")
-    rows += [(key, value, "places of the wheels") for key, value in geometry.items()]
-    if geometry:
-        rows.append(("wheel-radius", radius, "shape of the wheels"))
-        need = (speed + turn * reach) / radius * (math.sqrt(2.0) if base.kind == "mecanum" else 1.0)
-        rows.append(("max-wheel-speed", fastest or need, "joint limits" if fastest else "speed and turn rate"))
-    return DriveChoice(_drive_type(base, wheeled), tuple(rows))
-
-
-def _drive_type(base: BaseKind, wheeled: bool) -> str:
+        return "tricycle-drive" if base.kind == "tricycle" and steered else "ackermann-drive"
     if base.kind == "legged":
         return "legged-drive"
     if base.kind in ("mecanum", "omnidirectional"):
@@ -122,19 +66,25 @@ def _drive_type(base: BaseKind, wheeled: bool) -> str:
     return "skid-steer-drive" if base.kind == "skid-steer" and wheeled else "differential-drive"
 
 
-def _geometry(base: BaseKind, track: float) -> dict[str, float]:
-    """Return the attributes of a drive that say where its wheels are, and their ``reach``: rim speed per turn rate."""
-    if base.kind == "skid-steer":
-        long = base.wheelbase_of_axles
-        return {"track": track, "wheelbase": long, "reach": 0.5 * track * slip_of(track, long)}
-    if base.kind == "mecanum":
-        long = base.wheelbase_of_axles
-        return {"track": track, "wheelbase": long, "reach": 0.5 * (track + long)}
-    star = _star(base) if base.kind == "omnidirectional" else None
-    if star is None:
-        return {}
-    count, distance, first = star
-    return {"wheels": float(count), "distance": distance, "first-angle": first, "reach": distance}
+def wheel_attributes(base: BaseKind, track: float, wheeled: bool) -> tuple[list[tuple[str, float, str]], float, float]:
+    """Return attributes of a drive that say where its wheels are, rim speed per turn rate [m], and largest turn rate.
+
+    The attributes are name, value and unit; the largest turn rate [rad/s] is a guess.
+    """
+    most = FASTEST_SLIDING if base.kind in ("skid-steer", "omnidirectional") else FASTEST
+    long, star = base.wheelbase_of_axles, _star(base)
+    radius = ("wheel_radius", base.wheels[0].radius if base.wheels else 0.0, "m")
+    if wheeled and base.kind in ("skid-steer", "mecanum"):
+        rows = [("track", track, "m"), ("wheelbase", long, "m"), radius]
+        return rows, 0.5 * (track * slip_of(track, long) if base.kind == "skid-steer" else track + long), most
+    if wheeled and base.kind == "omnidirectional" and star is not None:
+        count, distance, first = star
+        return (
+            [("wheels", float(count), ""), ("distance", distance, "m"), ("first_angle", first, "rad"), radius],
+            (distance),
+            most,
+        )
+    return [], 0.5 * track, most
 
 
 def _star(base: BaseKind) -> tuple[int, float, float] | None:
@@ -154,18 +104,19 @@ def _star(base: BaseKind) -> tuple[int, float, float] | None:
     return (len(places), float(distance.mean()), float(angles[0])) if even and max(radial) < 0.1 else None
 
 
-def _steering_limit(model: RobotModel, base: BaseKind) -> tuple[float, str]:
-    """Return the maximum steering angle [rad] of the (virtual central) steered wheel, and where it is from.
+def middle_angle(base: BaseKind, inner: float) -> float:
+    """Return the maximum steering angle [rad] of the (virtual central) steered wheel; 0 if the limit is useless.
 
     The inner wheel of a car steers more than the middle: ``cot(middle) = cot(inner) + track / (2 wheelbase)``.
+
+    Args:
+        base: wheels and kind of base.
+        inner: limit of the steering joints [rad].
     """
-    steered = [wheel for wheel in base.wheels if wheel.steering]
-    limits = [min(model.joints[one.steering].upper, -model.joints[one.steering].lower) for one in steered]
-    inner = min([value for value in limits if value > 0.05], default=0.0)
     if base.kind == "tricycle":
-        return (min(inner, math.pi / 2.0), "joint limits") if inner else (1.2, "guess")
+        return min(inner, math.pi / 2.0 if drive_type(base, True) == "tricycle-drive" else 1.4)
     if not 0.0 < inner < 1.4:
-        return 0.6, "guess"
-    sides = [float(wheel.center[1]) for wheel in steered]
+        return 0.0
+    sides = [float(wheel.center[1]) for wheel in base.wheels if wheel.steering]
     half = 0.5 * (max(sides) - min(sides)) / base.wheelbase if base.wheelbase else 0.0
-    return math.atan(1.0 / (1.0 / math.tan(inner) + half)), "joint limits of the inner wheel"
+    return math.atan(1.0 / (1.0 / math.tan(inner) + half))

@@ -89,7 +89,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
     kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
-    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
+    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files), dict(reader.textures))
 
 
 def _check_tree(
