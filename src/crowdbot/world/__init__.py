@@ -57,14 +57,21 @@ if TYPE_CHECKING:
     from .robot_contract import check_robot
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from .robots.guess_table import Guess
     from .robots.joint_motion import check_joint, free_joints, move_joint
+    from .robots.legged import LeggedDrive
+    from .robots.mecanum import MecanumDrive
     from .robots.mount import MountPlacement, SensorMount
+    from .robots.omni_wheels import OmniWheelDrive
     from .robots.robot import Robot, builtin_robots
     from .robots.robot_description import robot_description
     from .robots.robot_import import RobotFolder, import_robot
     from .robots.servo import CommandDelay, Pending, VelocityServo
+    from .robots.skid_steer import SkidSteerDrive
+    from .robots.tricycle import TricycleDrive
     from .robots.wheel import Wheel
     from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
+    from .robots.wheeled import WheeledDrive
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
@@ -85,11 +92,15 @@ _LAZY = {
     "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
     "Drive": "robots.drive",
+    "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
+    "LeggedDrive": "robots.legged",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
+    "MecanumDrive": "robots.mecanum",
     "MountPlacement": "robots.mount",
+    "OmniWheelDrive": "robots.omni_wheels",
     "Omnidirectional": "robots.drive",
     "Pending": "robots.servo",
     "PeopleMotion": "physics.people_motion",
@@ -114,14 +125,17 @@ _LAZY = {
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
+    "SkidSteerDrive": "robots.skid_steer",
     "SteeredTwists": "robots.ackermann",
     "TableBody": "physics.stage",
     "TreeBody": "physics.stage",
+    "TricycleDrive": "robots.tricycle",
     "Twists": "robots.drive",
     "VelocityServo": "robots.servo",
     "Waypoint": "crowd.waypoint",
     "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
+    "WheeledDrive": "robots.wheeled",
     "World": "world",
     "add_person": "live_changes",
     "arrival_counts": "crowd.arrivals",
@@ -183,11 +197,15 @@ __all__ = [
     "CubeBody",
     "DifferentialDrive",
     "Drive",
+    "Guess",
     "HeadingWaypoint",
     "JourneyAssignment",
+    "LeggedDrive",
     "LightSource",
     "LimbCapsules",
+    "MecanumDrive",
     "MountPlacement",
+    "OmniWheelDrive",
     "Omnidirectional",
     "Pending",
     "PeopleMotion",
@@ -211,14 +229,17 @@ __all__ = [
     "Router",
     "SceneCamera",
     "SensorMount",
+    "SkidSteerDrive",
     "SteeredTwists",
     "TableBody",
     "TreeBody",
+    "TricycleDrive",
     "Twists",
     "VelocityServo",
     "Waypoint",
     "WaypointSequence",
     "Wheel",
+    "WheeledDrive",
     "World",
     "add_person",
     "arrival_counts",

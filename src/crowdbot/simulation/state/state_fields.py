@@ -49,8 +49,8 @@ HOLDERS = {
     "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
     "crowdbot.world.crowd.arrivals._Queues": "sources",
     "crowdbot.world.physics.robot_body.RobotBody": (
-        "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay"
-        " _forces _lag _base"
+        "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay _slip"
+        " friction _forces _lag _base"
     ),
     "crowdbot.world.physics.people_bodies.PeopleBodies": "_model _data step geoms bodies _place _speed _hold",
     "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius",

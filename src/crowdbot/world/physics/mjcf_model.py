@@ -12,6 +12,7 @@ from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
 from crowdbot.world.robots.ackermann import AckermannDrive
 from crowdbot.world.robots.robot import Robot
+from crowdbot.world.robots.tricycle import TricycleDrive
 from crowdbot.world.robots.wheel import Wheel
 from crowdbot.world.urdf import BaseServo, mjcf
 from crowdbot.world.urdf.geoms import row
@@ -202,10 +203,10 @@ def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[
     who = f"robot {robot.name} of agent {agent}"
     if not planar and not any(wheel.driven for wheel in robot.wheels):
         raise InputError(f"{who} has no driven wheels; list them in its robot.xml")
-    if not planar and steers != isinstance(robot.drive, AckermannDrive):
+    if not planar and steers != isinstance(robot.drive, AckermannDrive | TricycleDrive):
         raise InputError(
             f"{who} has a drive {type(robot.drive).__name__} and {'' if steers else 'no '}steered wheels; use"
-            ' base="planar", or an AckermannDrive with steered wheels'
+            ' base="planar", or an AckermannDrive or TricycleDrive with steered wheels'
         )
     kinds = {wheel.joint: "velocity" for wheel in robot.wheels if wheel.driven and not planar}
     kinds |= {wheel.steering: "position" for wheel in robot.wheels if wheel.steering and not planar}

@@ -64,10 +64,24 @@ class RigidBodies:
                     body.drive()
                 links.begin(model, self.data)
                 mj.mj_step1(model, self.data)
+                self.apply_friction(model)
                 self.compiled.servos.apply(self.data)
                 mj.mj_step2(model, self.data)
                 links.end(self.data)
+                self.read_loads()
             update_frames(model, self.data)
+
+    def apply_friction(self, model: Any) -> None:
+        """Set the friction of wheels between the two halves of an engine step, see :class:`WheelFriction`."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.friction.apply(model, self.data, body.loads)
+
+    def read_loads(self) -> None:
+        """Read the loads of wheels after an engine step."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.loads = body.friction.loads(self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:
         """Copy the state of all joints and motors that one of the others has as well; frames follow."""

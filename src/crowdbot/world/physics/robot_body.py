@@ -15,10 +15,13 @@ from crowdbot.world.robots.ackermann import AckermannDrive, SteeredTwists
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.robot import Robot, spatial
 from crowdbot.world.robots.servo import CommandDelay, Pending
+from crowdbot.world.robots.tricycle import TricycleDrive
 
 from .base_servo import BASE_MOTORS, BaseForces
 from .engine import engine
 from .wheel_servo import lag
+from .wheels.friction import WheelFriction
+from .wheels.skid_steering import SlipControl, SlipState
 
 __all__ = ["RobotBody"]
 
@@ -38,6 +41,8 @@ class RobotBody:
     Attributes:
         robot: description of the robot.
         body: index of the root link in the engine.
+        friction: wheels whose friction has a direction.
+        loads: normal forces [N] of these wheels in the last engine step.
     """
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
@@ -48,6 +53,9 @@ class RobotBody:
         self._step_robots = [joint for joint in units[0] if joint in self._wheels]
         self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
         self._steers = any(wheel.steering for wheel in robot.wheels)
+        self.loads = np.zeros(len(self.friction))
+        self._slip = SlipControl.of(robot)
+        self._slip_state: SlipState | None = self._slip.first if self._slip else None
         self._delay = CommandDelay(robot.latency)
         self._pending: tuple[Pending, ...] = ()
         self._current: Twist | Twists = STILL
@@ -71,6 +79,7 @@ class RobotBody:
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
+        self.friction = WheelFriction(model, robot, prefix)
 
     def prepare(self) -> None:
         """Set posture and weight of the robot in a new model."""
@@ -131,7 +140,7 @@ class RobotBody:
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
             self._current = now
-        if now is self._forced:  # unchanged since the command was reached
+        if now is self._forced and self._slip_state is None:  # unchanged since the command was reached
             return
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
@@ -143,9 +152,17 @@ class RobotBody:
         if self._steers:
             self._steered(self._aim)
             return
-        speeds, before = self._rolling @ _row(self._aim), self._rolling @ _row(old)
+        speeds, before = self._wheel_rates(self._aim), self._wheel_rates(old)
+        if self._slip is not None and self._slip_state is not None:
+            self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
         lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
         self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
+
+    def _wheel_rates(self, twist: Twists) -> Floats:
+        """Return the speeds of the driven wheels [rad/s] for a twist, with the slip of a skid-steer base."""
+        if self._slip is not None and self._slip_state is not None:
+            twist = Twists.of(self._slip.wheels(self._slip_state, twist.at(0)), 1)
+        return np.asarray(self._rolling @ _row(twist))
 
     def _pull(self, old: Twists) -> None:
         """Set the forces on a planar base for the way from the old commanded twist to the new one."""
@@ -157,13 +174,13 @@ class RobotBody:
         self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, velocity, heading, self._quick)
 
     def _steered(self, aim: Twists) -> None:
-        """Steer the wheels of a car; at rest they keep their angle."""
+        """Steer the wheels of a car or tricycle; at rest they keep their angle."""
         drive = self.robot.drive
-        assert isinstance(drive, AckermannDrive)
-        bend = math.tan(float(aim.steering[0])) / drive.wheelbase if isinstance(aim, SteeredTwists) else 0.0
-        way = Twist(1.0, bend)
+        assert isinstance(drive, AckermannDrive | TricycleDrive)
+        angle = aim.steering if isinstance(aim, SteeredTwists) else np.zeros(1)
+        way, speed = drive.motion(float(angle[0])), float(drive.rolling(aim, angle)[0])
         values = self.robot.steering(way)
-        values |= {joint: speed * float(aim.forward[0]) for joint, speed in self.robot.wheel_speeds(way).items()}
+        values |= {joint: rate * speed for joint, rate in self.robot.wheel_speeds(way).items()}
         for joint, value in values.items():
             self._data.ctrl[self._wheels[joint]] = value
 

@@ -311,11 +311,13 @@ class PhysicsWorld(RigidWorld):
         if self.rigid.links:
             self.rigid.links.begin(model, data)
         mj.mj_step1(model, data)
+        self.rigid.main.apply_friction(model)
         self.rigid.main.compiled.servos.apply(data)
         reader.look()
         mj.mj_step2(model, data)
         if self.rigid.links:
             self.rigid.links.end(data)
+        self.rigid.main.read_loads()
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)

@@ -216,7 +216,7 @@ class Robot:
     def wheel_speeds(self, twist: Twist) -> dict[str, float]:
         """Return the wheel speeds [rad/s] by joint without slip along the rolling directions.
 
-        Valid for plain wheels and for wheels with rollers that slide along the axle.
+        Rollers slide across their axes: a wheel with rollers at an angle ``a`` also turns for motion along its axle.
 
         >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
@@ -230,6 +230,8 @@ class Robot:
                 matrix = poses[joint.parent] @ joint.origin
                 axle = matrix[:3, :3] @ joint.axis
                 rolling = np.array([axle[1], -axle[0]])  # axle x up
+                if wheel.rollers:
+                    rolling += math.tan(wheel.rollers) * np.array([axle[0], axle[1]])
                 speeds[wheel.joint] = round(float(_carried(twist, matrix) @ rolling) / wheel.radius, 12)
         return speeds
 

@@ -45,7 +45,7 @@ SHIPPED = Path(str(importlib.resources.files("crowdbot").joinpath("assets", "rob
 KNOWN: dict[str, tuple[str, ...]] = {
     "robot": ("name", "urdf", "about", "base", "extends", "default-sensors", "seat", "rider"),
     "footprint": ("points", "radius"),
-    "wheel": ("joint", "radius", "steering", "driven"),
+    "wheel": ("joint", "radius", "steering", "driven", "rollers"),
     "posture": ("joint", "position"),
 }
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -218,8 +218,9 @@ class _Reader:
         if radius <= 0.0:
             self.say(element, f'radius="{element.attributes["radius"][:40]}" must be above 0')
             return None
+        rollers = self.number(element, "rollers") if "rollers" in row else None
         try:
-            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true")
+            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true", rollers)
         except InputError as error:
             self.say(element, str(error))
             return None

@@ -89,7 +89,8 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
     kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
-    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files), _text(name, root))
+    files, textures = dict(reader.files), dict(reader.textures)
+    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), files, _text(name, root), textures)
 
 
 def _text(name: str, root: Element) -> str:
