@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .ground.door import Door
+    from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
     from .importers.foreign import import_trial
     from .importers.original import ImportedTrial, import_original, plan_of, trials_of
     from .importers.original_order import Plan
@@ -71,6 +73,8 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "ground.door": ["Door"],
+        "ground.elements": ["UNEVEN", "Platform", "Ramp", "Stairs", "Threshold"],
         "importers.foreign": ["import_trial"],
         "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
         "importers.original_order": ["Plan"],
@@ -118,6 +122,7 @@ __all__ = [
     "OVERVIEW",
     "PRESETS",
     "SIZES",
+    "UNEVEN",
     "UNWRITABLE",
     "Agent",
     "AgentParameter",
@@ -129,6 +134,7 @@ __all__ = [
     "Cube",
     "Direction",
     "Distribution",
+    "Door",
     "End",
     "EndCondition",
     "Exit",
@@ -146,9 +152,11 @@ __all__ = [
     "PlacementPlan",
     "Plan",
     "Planner",
+    "Platform",
     "Point",
     "Points",
     "Portal",
+    "Ramp",
     "RandomizedModel",
     "RecordedPeople",
     "RecordingSpec",
@@ -159,8 +167,10 @@ __all__ = [
     "SourceSpec",
     "Spawner",
     "Stage",
+    "Stairs",
     "Sweep",
     "Table",
+    "Threshold",
     "Tree",
     "Trial",
     "Wall",

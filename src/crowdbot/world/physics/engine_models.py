@@ -13,11 +13,13 @@ from typing import Any, NamedTuple
 from crowdbot.core import Scene, Walls
 from crowdbot.world.robots.robot import Robot
 
+from .castor_springs import soften_castors
 from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
 from .robot_body import RobotBody
+from .robot_height import is_level
 from .stage import PhysicsStage
 
 __all__ = ["BodyDesign", "CompiledBodies", "RobotStart", "compile_bodies", "motors_of"]
@@ -99,6 +101,8 @@ class CompiledBodies:
         motors = {start.agent: dict(start.motors) for start in design.robots}
         self.built: MjcfModel = build_mjcf_model(design.scene, design.stage, robots, design.slots, motors)
         self.base = self.built.load(design.step)
+        if design.stage.ground is not None:
+            soften_castors(self.base, {self.built.prefixes[agent]: robot for agent, robot in robots.items()})
         self.first = engine().MjData(self.base)
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()
@@ -138,7 +142,8 @@ class CompiledBodies:
                 body.put(start.x, start.y, start.heading)
             mj.mj_step(model, data, round(SETTLING / design.step))
             for body, start in robots:
-                body.put(start.x, start.y, start.heading)
+                if is_level(design.stage.ground, start):
+                    body.put(start.x, start.y, start.heading)
             data.time = 0.0
             mj.mj_forward(model, data)
         return data

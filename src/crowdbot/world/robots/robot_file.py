@@ -38,7 +38,7 @@ __all__ = ["FILE", "read_robot_file"]
 FILE = "robot.xml"
 
 KNOWN: dict[str, tuple[str, ...]] = {
-    "robot": ("name", "urdf", "about", "base"),
+    "robot": ("name", "urdf", "about", "base", "max-step", "max-slope"),
     "footprint": ("points", "radius"),
     "wheel": ("joint", "radius", "steering", "driven"),
     "posture": ("joint", "position"),
@@ -82,6 +82,7 @@ class _Reader:
         row = self.words(root)
         values: dict[str, Any] = {"name": row.get("name") or self.folder.resolve().name, "about": row.get("about", "")}
         values["base"] = row.get("base", "wheels")
+        values |= self.ground_limits(root)
         parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": []}
         once: set[str] = set()
         for inner in root.children:
@@ -109,6 +110,17 @@ class _Reader:
             "wheels": tuple(parts["wheel"]),
             "posture": posture,
         }
+
+    def ground_limits(self, root: Element) -> dict[str, float]:
+        """Return the largest step and slope that the robot passes, where the file gives them."""
+        found = {}
+        for key in ("max-step", "max-slope"):
+            if key in root.attributes:
+                value = self.number(root, key)
+                found[key.replace("-", "_")] = max(0.0, value)
+                if value < 0.0:
+                    self.say(root, f'{key}="{root.attributes[key][:40]}" must be at least 0')
+        return found
 
     def tag(self, element: Element, known: tuple[str, ...]) -> None:
         """Record an unknown element and return the tag that was probably meant."""
