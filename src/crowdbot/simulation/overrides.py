@@ -99,7 +99,7 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
         parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props", "doors")}
         if dataclasses.replace(new.stage, **parts) != old.stage:
             raise InputError(
-                "of the stage of the physics world, only walls, obstacles, props and open doors can change while it runs"
+                "of the stage of the physics world, only walls, obstacles and props can change while it runs"
             )
         _prop_changes(old, new)
     check_doors(old.stage.doors, new.stage.doors)

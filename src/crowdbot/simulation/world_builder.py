@@ -23,8 +23,8 @@ from crowdbot.trials import (
 from crowdbot.world import Avatars, Doors, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
 __all__ = [
-    "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of",
-    "set_off", "start_scene", "start_scenes",
+    "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls",
+    "script_of", "set_off", "start_scene", "start_scenes",
 ]  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, TrialError
 from crowdbot.models import CrowdModel
 from crowdbot.trials import (
+    UNEVEN,
     Agent,
     Crowds,
     InitialPeople,
@@ -19,7 +20,6 @@ from crowdbot.trials import (
     PeopleBatch,
     PlacementPlan,
     RandomizedModel,
-    UNEVEN,
     RobotSpec,
     Trial,
     crowd_names,

@@ -8,7 +8,6 @@ from typing import Any
 
 from crowdbot import world
 from crowdbot.trials.fields import attribute, check
-from crowdbot.trials.partial_element import readable
 
 __all__ = ["UNEVEN", "GroundElement", "Platform", "Ramp", "Stairs", "Threshold", "ground_of"]
 
@@ -120,7 +119,9 @@ class Threshold:
         return found
 
 
-UNEVEN = "has uneven ground (ramp, stairs, platform or threshold), which only the physics world has; set world=\"physics\""
+UNEVEN = (
+    'has uneven ground (ramp, stairs, platform or threshold), which only the physics world has; set world="physics"'
+)
 GroundElement = Ramp | Stairs | Platform | Threshold
 
 

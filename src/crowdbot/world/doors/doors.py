@@ -102,8 +102,7 @@ class Doors:
         return tuple(
             leaf.line(float(self.share[k]))
             for k, leaf in enumerate(self.leaves)
-            if not (self.pushed and leaf.opening == "push")
-            and (leaf.kind == "hinged" or self.share[k] < 1.0 - SHUT)
+            if not (self.pushed and leaf.opening == "push") and (leaf.kind == "hinged" or self.share[k] < 1.0 - SHUT)
         )
 
     def walls(self, base: Walls) -> Walls:
@@ -122,7 +121,7 @@ class Doors:
         return new
 
     def path_lines(self) -> tuple[Floats, ...]:
-        """Return the lines ``[2, 2]`` [m] that paths avoid: closed doors that do not open for everybody, open leaves."""
+        """Return the lines ``[2, 2]`` [m] that paths avoid: doors that stay closed, and leaves that are open."""
         found = []
         for k, leaf in enumerate(self.leaves):
             if self.blocked[k]:

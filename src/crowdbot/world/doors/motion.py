@@ -16,7 +16,9 @@ __all__ = ["ONE_ENVIRONMENT", "move_doors", "read_leaves", "show_doors", "turn_l
 Floats = NDArray[np.float64]
 
 
-ONE_ENVIRONMENT = "a planar world with doors has one environment, since its walls are those of all; run the seeds one by one"
+ONE_ENVIRONMENT = (
+    "a planar world with doors has one environment, since its walls are those of all; run the seeds one by one"
+)
 
 
 def move_doors(world: Any, elapsed: float | Floats) -> None:

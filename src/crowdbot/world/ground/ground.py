@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, kernel
 
+from .barriers import PEOPLE_SLOPE, PEOPLE_STEP, barriers
 from .part import GroundPart
 
 __all__ = ["Ground"]
@@ -102,10 +103,13 @@ class Ground:
     def table(self) -> Floats:
         """Table ``[P, 9]`` of the parts for kernels."""
         rows = [
-            (p.x, p.y, math.cos(p.heading), math.sin(p.heading), 0.5 * p.length, 0.5 * p.width, p.rear, p.front, p.stairs)
+            (p.x, p.y, math.cos(p.heading), math.sin(p.heading), 0.5 * p.length, 0.5 * p.width, p.rear, p.front)
             for p in self.parts
-        ]  # fmt: skip
-        return np.array(rows, dtype=np.float64).reshape(-1, 9)
+        ]
+        stairs = [[part.stairs] for part in self.parts]
+        return np.concatenate(
+            [np.array(rows).reshape(-1, 8), np.array(stairs, dtype=np.float64).reshape(-1, 1)], axis=1
+        )
 
     def height(self, points: ArrayLike) -> Floats:
         """Return the height ``[...]`` [m] of the ground at points ``[..., 2]`` [m]; an edge belongs to the upper part.
@@ -151,14 +155,10 @@ class Ground:
             max_step: largest step [m] that can be passed, up and down.
             max_slope: largest slope, as rise over length.
         """
-        from .barriers import barriers
-
-        return barriers(self, max_step, max_slope)
+        return _barriers(self, max_step, max_slope)
 
     def people_barriers(self) -> tuple[Floats, ...]:
         """Return what people cannot pass."""
-        from .barriers import PEOPLE_SLOPE, PEOPLE_STEP
-
         return self.barriers(PEOPLE_STEP, PEOPLE_SLOPE)
 
     def is_level(self, x: float, y: float, radius: float) -> bool:
@@ -181,3 +181,8 @@ def _places(points: ArrayLike) -> Floats:
     if places.ndim == 0 or places.shape[-1] != 2:
         raise InputError(f"Ground: points have shape {list(places.shape)}, expected [..., 2]")
     return places
+
+
+@functools.lru_cache(maxsize=64)
+def _barriers(ground: Ground, max_step: float, max_slope: float) -> tuple[Floats, ...]:
+    return barriers(ground.parts, ground.height, max_step, max_slope)

@@ -72,7 +72,9 @@ class KinematicBodies:
 
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
-        found = scene_bodies(scene, self.people, self.robots, self.stage, joints=self.joints, doors=self._shares(), skins=skins)
+        found = scene_bodies(
+            scene, self.people, self.robots, self.stage, joints=self.joints, doors=self._shares(), skins=skins
+        )
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 
     def renderer(self, scene: Scene) -> Renderer:

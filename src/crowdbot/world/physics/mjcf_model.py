@@ -144,9 +144,7 @@ def _settings() -> list[Element]:
     ]
 
 
-def _robot(
-    scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None, height: float
-) -> Any:
+def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None, height: float) -> Any:
     planar = robot.base == "planar"
     steers = any(wheel.steering for wheel in robot.wheels)
     who = f"robot {robot.name} of agent {agent}"

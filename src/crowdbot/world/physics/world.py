@@ -31,8 +31,8 @@ from .engine_models import RobotStart, motors_of
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
-from .scenery import add_rings, outline_props
 from .robot_height import stand_robot
+from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_bodies import WorldBodies
 from .world_checks import check_arguments
@@ -339,6 +339,10 @@ class PhysicsWorld(RigidWorld):
             return self.robot_bodies[party.number].mass
         if party.kind == "person":
             return float(self.people.people.mass[self.people.row[party.number]])
-        if party.kind == "wall" and party.number < 0 and (leaf := self.stage.doors[-1 - party.number]).opening == "push":
+        if (
+            party.kind == "wall"
+            and party.number < 0
+            and (leaf := self.stage.doors[-1 - party.number]).opening == "push"
+        ):
             return leaf.mass
         return self.stage.props[party.number].weight if party.kind == "prop" else math.inf

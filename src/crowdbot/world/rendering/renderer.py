@@ -109,7 +109,10 @@ class Renderer:
         self._visuals: Visuals | None = None
 
     def show(
-        self, scene: Scene, joints: Mapping[int, Mapping[str, float]] | None = None, doors: Sequence[float] | None = None
+        self,
+        scene: Scene,
+        joints: Mapping[int, Mapping[str, float]] | None = None,
+        doors: Sequence[float] | None = None,
     ) -> None:
         """Set the scene for the following images.
 
