@@ -136,8 +136,9 @@ def test_paths_avoid_closed_doors_and_return_when_they_open() -> None:
 @pytest.mark.parametrize("world", ["planar", "physics"])
 def test_an_episode_with_doors_is_replayed_to_the_byte(world: str, tmp_path: Path) -> None:
     trial = _trial('opening="approach"', world, duration=6.0, robot=ROBOT)
-    first = record(trial, out=tmp_path / "a")
-    assert replay(tmp_path / "a" / "episode.mcap").digest == first.digest
+    record(trial, out=tmp_path / "a")
+    again = replay(tmp_path / "a" / "episode.mcap")
+    assert again.replayed == again.recorded
     assert load_trial("frontal").stage.doors == ()
 
 

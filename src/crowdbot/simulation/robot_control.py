@@ -199,7 +199,8 @@ class RobotControl:
             tracks = tracks.update(batch.time, people.ids, people.position, people.seen, fresh)
             changes["tracks"] = tracks
         if self.planner is not None:
-            found = next_waypoints(self.planner, around.world, environments, batch.pose[:, :2], batch.goal, path)
+            found, goal = next_waypoints(self.planner, around.world, environments, batch.pose[:, :2], batch.goal, path)
+            changes |= {} if goal is batch.goal else {"goal": goal}
             path, changes["waypoint"] = found.path, found.point
             failures |= {k: InputError(f"robot {self.robot.name!r}: {error}") for k, error in found.failures.items()}
         return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, failures)

@@ -40,6 +40,7 @@ class Doors:
         wanted: whether each door that opens by order is to be open; of a scheduled one, whether it starts open.
         share: ``[D]`` from 0, closed, to 1, open.
         start: ``[D]`` the same before the latest step.
+        side: ``[D]`` 1, or -1 for a hinged door that opens to the other side, since somebody stands in its way.
         blocked: ``[D]`` whether paths avoid each door.
 
     >>> doors = Doors((DoorLeaf("hall", 2.0, -1.0, 2.0, 1.0, duration=0.5),))
@@ -59,6 +60,7 @@ class Doors:
         starts = [self.wanted[leaf.name] and not leaf.lets_pass for leaf in self.leaves]
         self.share = np.array(starts, dtype=np.float64)
         self.start = self.share.copy()
+        self.side = np.ones(len(self.leaves))
         self.until = np.full(len(self.leaves), -np.inf)
         self.pushed = pushed
         self.blocked = self._blocked()
@@ -69,6 +71,7 @@ class Doors:
         """Return independent doors in the same state."""
         other = copy.copy(self)
         other.wanted, other.share, other.start = dict(self.wanted), self.share.copy(), self.start.copy()
+        other.side = self.side.copy()
         other.until, other.blocked = self.until.copy(), list(self.blocked)
         return other
 
@@ -89,9 +92,17 @@ class Doors:
             change = np.clip(aim - self.share[k], -dt / leaf.duration, dt / leaf.duration)
             following = float(np.clip(self.share[k] + change, 0.0, 1.0))
             following = 1.0 if following > OPEN else following
-            if following != self.share[k] and not _is_in_the_way(leaf, self.share[k], following, place, radius):
+            if self.share[k] == 0.0 and following > 0.0 and leaf.kind == "hinged":
+                self.side[k] = -1.0 if _is_swept(leaf, 1.0, place, radius) > _is_swept(leaf, -1.0, place, radius) else 1.0
+            old, new = self.side[k] * self.share[k], self.side[k] * following
+            if new != old and not _is_in_the_way(leaf, old, new, place, radius):
                 self.share[k] = following
         self.blocked = self._blocked()
+
+    @property
+    def signed_share(self) -> Floats:
+        """Share ``[D]`` of each door times its side."""
+        return self.side * self.share
 
     def set_share(self, number: int, share: float) -> None:
         """Set a door that the engine moves."""
@@ -100,7 +111,7 @@ class Doors:
     def lines(self) -> tuple[Floats, ...]:
         """Return the lines ``[2, 2]`` [m] of all leaves that are walls now; doors that people push are none."""
         return tuple(
-            leaf.line(float(self.share[k]))
+            leaf.line(float(self.side[k] * self.share[k]))
             for k, leaf in enumerate(self.leaves)
             if not (self.pushed and leaf.opening == "push") and (leaf.kind == "hinged" or self.share[k] < 1.0 - SHUT)
         )
@@ -127,7 +138,7 @@ class Doors:
             if self.blocked[k]:
                 found.append(leaf.line(0.0))
             elif leaf.kind == "hinged" and leaf.opening != "push":
-                found.append(leaf.line(1.0))
+                found.append(leaf.line(float(self.side[k])))
         return tuple(found)
 
     def router(self, base: Router) -> Router:
@@ -135,7 +146,7 @@ class Doors:
 
         Somebody whose goal is behind a closed door walks to the reachable point nearest to it.
         """
-        key = (id(base.walls), tuple(self.blocked))
+        key = (id(base.walls), tuple(self.blocked), tuple(self.side.tolist()))
         if key not in self._routers:
             walls = add_rings(base.walls, self.path_lines())
             self._routers[key] = Router.of(walls, base.radius, "nearest" if any(self.blocked) else base.unreachable)
@@ -163,6 +174,12 @@ def _is_in_the_way(leaf: DoorLeaf, old: float, new: float, place: Floats, radius
         return False
     after = _distance(leaf.line(new), place)
     return bool(np.any((after < radius + SPARE) & (after < _distance(leaf.line(old), place))))
+
+
+def _is_swept(leaf: DoorLeaf, side: float, place: Floats, radius: Floats) -> bool:
+    """Return whether somebody stands where a leaf turns when it opens to a side."""
+    lines = [leaf.line(side * share) for share in (0.25, 0.5, 0.75, 1.0)]
+    return any(bool(np.any(_distance(line, place) < radius + SPARE)) for line in lines)
 
 
 def _distance(line: Floats, points: Floats) -> Floats:

@@ -24,9 +24,9 @@ ONE_ENVIRONMENT = (
 def move_doors(world: Any, elapsed: float | Floats) -> None:
     """Move the doors of a world with one environment by a step that begins at a time [s]."""
     doors: Doors = world.doors
-    before = list(doors.blocked)
+    before = [*doors.blocked, *doors.side.tolist()]
     doors.advance(world.scene, float(np.ravel(elapsed)[0]), world.dt)
-    show_doors(world, before != doors.blocked)
+    show_doors(world, before != [*doors.blocked, *doors.side.tolist()])
 
 
 def show_doors(world: Any, new_paths: bool = True) -> None:
@@ -55,8 +55,9 @@ def turn_leaves(doors: Doors, model: Any, data: Any, fraction: float, dt: float)
             continue
         joint = model.joint(f"door{k}")
         share = doors.start[k] + fraction * (doors.share[k] - doors.start[k])
-        data.qpos[joint.qposadr[0]] = share * leaf.range
-        data.qvel[joint.dofadr[0]] = (doors.share[k] - doors.start[k]) / dt * leaf.range
+        way = doors.side[k] * leaf.range
+        data.qpos[joint.qposadr[0]] = share * way
+        data.qvel[joint.dofadr[0]] = (doors.share[k] - doors.start[k]) / dt * way
 
 
 def read_leaves(doors: Doors, model: Any, data: Any) -> None:

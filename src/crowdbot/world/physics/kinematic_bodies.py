@@ -86,7 +86,7 @@ class KinematicBodies:
         return self._renderer
 
     def _shares(self) -> list[float] | None:
-        return None if self.doors is None else self.doors.share.tolist()
+        return None if self.doors is None else self.doors.signed_share.tolist()
 
     def _walls(self, scene: Scene) -> Walls:
         return scene.walls if self.walls is None else self.walls

@@ -187,7 +187,7 @@ class PhysicsWorld(RigidWorld):
         robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
         moved = {number: self.prop(number) for number in self._movable}
         scene = hide_ghosts(self.scene, self.ghosts)
-        doors = None if self.doors is None else self.doors.share
+        doors = None if self.doors is None else self.doors.signed_share
         return scene_bodies(
             scene, self.people, robots, self.stage, frames=frames, props=moved, doors=doors, skins=skins
         )
