@@ -39,7 +39,9 @@ def barriers(
     >>> len(barriers(kerb.parts, kerb.height, 0.25, 0.7)), len(barriers(kerb.parts, kerb.height, 0.02, 0.1))
     (0, 4)
     """
-    found = [part.corners for part in parts if abs(part.slope) > max_slope + SAME]
+    steep = [part for part in parts if abs(part.slope) > max_slope + SAME]
+    # the bevel of a threshold is no hill: a wheel that passes the step passes it
+    found = [part.corners for part in steep if abs(part.front - part.rear) > max_step + SAME]
     seen: set[tuple[float, ...]] = set()
     for part in parts:
         corners = part.corners
