@@ -22,6 +22,8 @@ SPARE = 0.05
 """Distance [m] that a moving leaf keeps from people and robots; it stops before."""
 TOUCH = 0.15
 """Distance [m] from the outline of a body at which a pushed door opens in the plane."""
+ROOM = 1.5
+"""Distance [m] beyond the swing of a leaf within which somebody makes it open to the other side."""
 OPEN = 1.0 - 1e-9
 SHUT = 1e-6
 """A sliding leaf that is shorter than this share of its width is no wall."""
@@ -40,7 +42,7 @@ class Doors:
         wanted: whether each door that opens by order is to be open; of a scheduled one, whether it starts open.
         share: ``[D]`` from 0, closed, to 1, open.
         start: ``[D]`` the same before the latest step.
-        side: ``[D]`` 1, or -1 for a hinged door that opens to the other side, since somebody stands in its way.
+        side: ``[D]`` 1, or -1 for a hinged door that opens to the other side, since somebody is near on its own side.
         blocked: ``[D]`` whether paths avoid each door.
 
     >>> doors = Doors((DoorLeaf("hall", 2.0, -1.0, 2.0, 1.0, duration=0.5),))
@@ -89,14 +91,7 @@ class Doors:
             if leaf.opening == "push" and self.pushed:
                 continue
             aim = self._aim(k, leaf, place, radius, time)
-            change = np.clip(aim - self.share[k], -dt / leaf.duration, dt / leaf.duration)
-            following = float(np.clip(self.share[k] + change, 0.0, 1.0))
-            following = 1.0 if following > OPEN else following
-            if self.share[k] == 0.0 and following > 0.0 and leaf.kind == "hinged":
-                self.side[k] = -1.0 if _is_swept(leaf, 1.0, place, radius) > _is_swept(leaf, -1.0, place, radius) else 1.0
-            old, new = self.side[k] * self.share[k], self.side[k] * following
-            if new != old and not _is_in_the_way(leaf, old, new, place, radius):
-                self.share[k] = following
+            self._move(k, leaf, aim, dt / leaf.duration, place, radius)
         self.blocked = self._blocked()
 
     @property
@@ -152,6 +147,20 @@ class Doors:
             self._routers[key] = Router.of(walls, base.radius, "nearest" if any(self.blocked) else base.unreachable)
         return self._routers[key]
 
+    def _move(self, k: int, leaf: DoorLeaf, aim: float, most: float, place: Floats, radius: Floats) -> None:
+        """Move a door by at most a share ``most``; a leaf that somebody blocks while it opens turns back."""
+        if self.share[k] == 0.0 and aim > 0.0 and leaf.kind == "hinged":
+            self.side[k] = _free_side(leaf, place)
+        for end in (aim, 0.0):
+            following = float(np.clip(self.share[k] + np.clip(end - self.share[k], -most, most), 0.0, 1.0))
+            following = 1.0 if following > OPEN else following
+            old, new = float(self.side[k] * self.share[k]), float(self.side[k] * following)
+            if new == old:
+                return
+            if not _is_in_the_way(leaf, old, new, place, radius):
+                self.share[k] = following
+                return
+
     def _blocked(self) -> list[bool]:
         return [not leaf.lets_pass and bool(self.share[k] < OPEN) for k, leaf in enumerate(self.leaves)]
 
@@ -176,10 +185,15 @@ def _is_in_the_way(leaf: DoorLeaf, old: float, new: float, place: Floats, radius
     return bool(np.any((after < radius + SPARE) & (after < _distance(leaf.line(old), place))))
 
 
-def _is_swept(leaf: DoorLeaf, side: float, place: Floats, radius: Floats) -> bool:
-    """Return whether somebody stands where a leaf turns when it opens to a side."""
-    lines = [leaf.line(side * share) for share in (0.25, 0.5, 0.75, 1.0)]
-    return any(bool(np.any(_distance(line, place) < radius + SPARE)) for line in lines)
+def _free_side(leaf: DoorLeaf, place: Floats) -> float:
+    """Return 1 if a leaf can turn to its own side, -1 if somebody near is there and the other side has more room."""
+    away = _distance(leaf.line(0.0), place)
+    near = away < leaf.width + ROOM
+    along = np.array([leaf.end_x - leaf.x, leaf.end_y - leaf.y])
+    off = place - (leaf.x, leaf.y)
+    left = (along[0] * off[:, 1] - along[1] * off[:, 0]) * leaf.angle > 0.0
+    own, other = away[near & left].min(initial=np.inf), away[near & ~left].min(initial=np.inf)
+    return -1.0 if own < other else 1.0
 
 
 def _distance(line: Floats, points: Floats) -> Floats:
