@@ -145,7 +145,7 @@ class Ground:
     def normal(self, points: ArrayLike) -> Floats:
         """Return the unit normal ``[..., 3]`` of the surface at points ``[..., 2]`` [m]."""
         slope, _ = self.gradient(points)
-        found = np.concatenate([-slope, np.ones((*slope.shape[:-1], 1))], axis=-1)
+        found = np.concatenate([0.0 - slope, np.ones((*slope.shape[:-1], 1))], axis=-1)
         return np.asarray(found / np.sqrt(np.sum(found * found, axis=-1, keepdims=True)))
 
     def barriers(self, max_step: float, max_slope: float) -> tuple[Floats, ...]:
