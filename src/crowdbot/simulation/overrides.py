@@ -13,6 +13,7 @@ from crowdbot.models import Mixture
 from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 from crowdbot.world import environment_seeds
 
+from .door_orders import check_doors, order_doors
 from .mounted_sensor import mounted_sensors
 from .robot_control import RobotControl, decision_schedule
 from .robot_joints import restore_joints
@@ -71,6 +72,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         ghosts=[control.agent for control, robot in pairs if robot.ghost],
         **_router(old, trial),
     )
+    order_doors(world, trial.stage.doors)
     simulation.trial = trial
     if seed is not None:
         simulation.seeds = environment_seeds(seed, simulation.count)
@@ -94,12 +96,13 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
     """
     old, time = simulation.trial, float(simulation.world.times.max())
     if simulation.world.walls_fixed:
-        parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props")}
+        parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props", "doors")}
         if dataclasses.replace(new.stage, **parts) != old.stage:
             raise InputError(
                 "of the stage of the physics world, only walls, obstacles and props can change while it runs"
             )
         _prop_changes(old, new)
+    check_doors(old.stage.doors, new.stage.doors)
     for name in FIXED:
         if getattr(old, name) != getattr(new, name):
             raise InputError(f"{name} cannot change in a branch: it only affects the start; run another trial instead")
@@ -225,9 +228,10 @@ def _model(simulation: Simulation, trial: Trial) -> Any:
 
 
 def _router(old: Trial, new: Trial) -> dict[str, Any]:
-    if (old.stage, old.routing) == (new.stage, new.routing):
+    stage = dataclasses.replace(new.stage, doors=old.stage.doors)
+    if (old.stage, old.routing) == (stage, new.routing):
         return {}
-    return {"router": None if new.routing is None else new.routing.router(new.stage.as_walls())}
+    return {"router": None if new.routing is None else new.routing.router(new.stage.walking_walls())}
 
 
 def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, seed: int | None) -> RobotControl:

@@ -27,6 +27,7 @@ from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import Twists, World, free_joints
 
 from .decision_timer import DecisionTimer
+from .door_paths import next_waypoints
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
@@ -131,7 +132,7 @@ class RobotControl:
             [None] * count,
             np.zeros(count, dtype=np.bool_),
             np.zeros(count, dtype=np.bool_),
-            robot.path_planner(trial.stage.as_walls()) if robot.planner else None,
+            robot.stage_planner(trial.stage),
             np.full((count, PATH_COLUMNS), np.nan),
             _empty_tracks(robot, count),
             DecisionTimer.of(count),
@@ -148,7 +149,7 @@ class RobotControl:
             InputError: no space between the walls is wide enough for the path planner.
         """
         old, count = self.robot, len(self.memories)
-        planner = robot.path_planner(trial.stage.as_walls()) if robot.planner else None
+        planner = robot.stage_planner(trial.stage)
         same = (robot.tracks, robot.control_period) == (old.tracks, old.control_period)
         return dataclasses.replace(
             self,
@@ -193,7 +194,8 @@ class RobotControl:
             tracks = tracks.update(batch.time, people.ids, people.position, people.seen, fresh)
             changes["tracks"] = tracks
         if self.planner is not None:
-            found = self.planner.next_waypoints(batch.pose[:, :2], batch.goal, path)
+            found, goal = next_waypoints(self.planner, around.world, environments, batch.pose[:, :2], batch.goal, path)
+            changes |= {} if goal is batch.goal else {"goal": goal}
             path, changes["waypoint"] = found.path, found.point
             failures |= {k: InputError(f"robot {self.robot.name!r}: {error}") for k, error in found.failures.items()}
         return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, failures)

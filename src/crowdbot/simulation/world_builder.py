@@ -20,11 +20,11 @@ from crowdbot.trials import (
     Trial,
     own,
 )
-from crowdbot.world import Avatars, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
+from crowdbot.world import Avatars, Doors, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
 __all__ = [
-    "avatars_of", "check_clock", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of",
-    "set_off", "start_scene", "start_scenes",
+    "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls",
+    "script_of", "set_off", "start_scene", "start_scenes",
 ]  # fmt: skip
 
 
@@ -60,8 +60,16 @@ def check_clock(clock: Clock, own: Clock) -> Clock:
 
 
 def own_walls(trial: Trial) -> Walls | None:
-    """Return the walls without the outlines of props, None if there are no props."""
-    return trial.stage.as_walls(props=False) if trial.stage.props else None
+    """Return the walls without the outlines of props, None if there are neither props nor doors."""
+    return trial.stage.as_walls(props=False) if trial.stage.props or trial.stage.doors else None
+
+
+def doors_of(trial: Trial) -> Doors | None:
+    """Return the doors of a trial at its start."""
+    if not trial.stage.doors:
+        return None
+    wanted = {door.name: door.open for door in trial.stage.doors}
+    return Doors([door.leaf() for door in trial.stage.doors], wanted, pushed=trial.world == "physics")
 
 
 def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, TrialError
 from crowdbot.models import CrowdModel
 from crowdbot.trials import (
+    UNEVEN,
     Agent,
     Crowds,
     InitialPeople,
@@ -32,7 +33,7 @@ from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_cou
 
 from .mounted_sensor import spatial
 from .robot_control import RobotControl
-from .world_builder import avatars_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
+from .world_builder import avatars_of, doors_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
 
 __all__ = ["WorldTemplate"]
 
@@ -137,7 +138,7 @@ class WorldTemplate:
         """Whether worlds are made one by one: with bodies or avatars, or if people enter a mixture of crowds."""
         mixed = isinstance(self.trial.crowd, Crowds) and bool(self.trial.sources)
         led = bool(self.trial.avatars) or any(robot.pose is not None for robot in self.trial.robots)
-        return self.posed or self._embodied or mixed or led
+        return self.posed or self._embodied or mixed or led or bool(self.trial.stage.doors)
 
     @functools.cached_property
     def _embodied(self) -> bool:
@@ -154,7 +155,7 @@ class WorldTemplate:
 
     @functools.cached_property
     def _router(self) -> Router | None:
-        return None if self.trial.routing is None else self.trial.routing.router(self._walls)
+        return None if self.trial.routing is None else self.trial.routing.router(self.trial.stage.walking_walls())
 
     @functools.cached_property
     def _sources(self) -> list[PeopleSource]:
@@ -197,6 +198,8 @@ class WorldTemplate:
         if self.trial.sweeps:
             count = len(expand_sweeps(self.trial))
             raise TrialError(f"trial {self.trial.name!r} has {count} variants in its sweeps; run one of them")
+        if self.trial.world != "physics" and self.trial.stage.ground:
+            raise TrialError(f"trial {self.trial.name!r}: the stage {UNEVEN}")
 
     def _place(self, seeds: Sequence[int]) -> PeopleBatch:
         """Return the people of some seeds; a single seed is placed faster than the kernel is loaded."""
@@ -235,6 +238,7 @@ class WorldTemplate:
             "script": script_of(people),
             "reactions": robot_reactions(people.owners, people.owner.tolist(), self.trial.sources, agents),
             "avatars": avatars_of(self.trial, len(people) - len(people.walks), len(people)),
+            "doors": doors_of(self.trial),
             "ids": np.concatenate([np.arange(there), -1 - np.arange(agents - there)]),
         }
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .ground.door import Door
+    from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
     from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
     from .importers.hunavsim import import_hunavsim
@@ -76,6 +78,8 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "ground.door": ["Door"],
+        "ground.elements": ["UNEVEN", "Platform", "Ramp", "Stairs", "Threshold"],
         "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
         "importers.hunavsim": ["import_hunavsim"],
@@ -128,6 +132,7 @@ __all__ = [
     "OVERVIEW",
     "PRESETS",
     "SIZES",
+    "UNEVEN",
     "UNWRITABLE",
     "Agent",
     "AgentParameter",
@@ -139,6 +144,7 @@ __all__ = [
     "Cube",
     "Direction",
     "Distribution",
+    "Door",
     "End",
     "EndCondition",
     "Exit",
@@ -157,9 +163,11 @@ __all__ = [
     "PlacementPlan",
     "Plan",
     "Planner",
+    "Platform",
     "Point",
     "Points",
     "Portal",
+    "Ramp",
     "RandomizedModel",
     "ReactionSpec",
     "RecordedPeople",
@@ -172,8 +180,10 @@ __all__ = [
     "SourceSpec",
     "Spawner",
     "Stage",
+    "Stairs",
     "Sweep",
     "Table",
+    "Threshold",
     "Tree",
     "Trial",
     "Wall",

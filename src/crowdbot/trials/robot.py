@@ -331,6 +331,12 @@ class RobotSpec:
         """
         return None if self.planner is None else PathPlanner.for_stage(walls, self.radius, self.planner.margin)
 
+    def stage_planner(self, stage: Any) -> PathPlanner | None:
+        """Return the path planner of :meth:`path_planner` on a stage, around ground that the robot cannot pass."""
+        if self.planner is None:
+            return None
+        return self.path_planner(stage.driving_walls(self.body.max_step, self.body.max_slope))
+
     def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
         """Return the schedule of a sensor; see the attribute ``sensor_rates``.
 

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from .crowd.routing import Router
     from .crowd.source import PeopleSource
     from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
+    from .doors.doors import Doors
+    from .doors.leaf import DoorLeaf
     from .environments import join_worlds, put_environments, select_environments, step_environments
+    from .ground.ground import Ground
+    from .ground.part import GroundPart
     from .live_changes import (
         add_person,
         check_goal,
@@ -45,6 +49,7 @@ if TYPE_CHECKING:
     from .physics.contacts import ContactBody
     from .physics.people_motion import LimbCapsules, PeopleMotion
     from .physics.robot_body import RobotBody
+    from .physics.scenery import add_rings
     from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
@@ -91,7 +96,11 @@ _LAZY = {
     "CrowdLimits": "crowd.limits",
     "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
+    "DoorLeaf": "doors.leaf",
+    "Doors": "doors.doors",
     "Drive": "robots.drive",
+    "Ground": "ground.ground",
+    "GroundPart": "ground.part",
     "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
@@ -138,6 +147,7 @@ _LAZY = {
     "WheeledDrive": "robots.wheeled",
     "World": "world",
     "add_person": "live_changes",
+    "add_rings": "physics.scenery",
     "arrival_counts": "crowd.arrivals",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
@@ -196,7 +206,11 @@ __all__ = [
     "CrowdLimits",
     "CubeBody",
     "DifferentialDrive",
+    "DoorLeaf",
+    "Doors",
     "Drive",
+    "Ground",
+    "GroundPart",
     "Guess",
     "HeadingWaypoint",
     "JourneyAssignment",
@@ -242,6 +256,7 @@ __all__ = [
     "WheeledDrive",
     "World",
     "add_person",
+    "add_rings",
     "arrival_counts",
     "builtin_robots",
     "check_goal",

@@ -26,6 +26,7 @@ from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
+from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
 from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, step_models, widen_robots
 from .phases.people_exchange import exchange_people
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from crowdbot.humans import People
 
     from .crowd.avatars import Avatars
+    from .doors.doors import Doors
     from .physics.kinematic_bodies import KinematicBodies
     from .physics.stage import PhysicsStage
     from .reactions.robot_reactions import RobotReactions
@@ -93,6 +95,7 @@ class PlanarWorld(PlanarLiveChanges):
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
         avatars: people and robots whose pose comes from outside; to the crowd model they are external.
         reactions: reactions of people to robots, on top of the crowd model.
+        doors: doors, whose leaves are walls; E = 1.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -139,6 +142,7 @@ class PlanarWorld(PlanarLiveChanges):
     ghosts: Sequence[int] = ()
     avatars: Avatars | None = None
     reactions: RobotReactions | None = None
+    doors: Doors | None = None
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -165,10 +169,15 @@ class PlanarWorld(PlanarLiveChanges):
         self._previous = self.scene
         self._segments: tuple[Walls, Floats] | None = None
         self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
+        self._plain_router = self.router
+        if self.doors is not None:
+            show_doors(self)
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
+        if self.doors is not None:
+            move_doors(self, self.environment_time.age)
         self._previous, external = self.scene, self.scene.external
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
@@ -213,6 +222,7 @@ class PlanarWorld(PlanarLiveChanges):
             forgotten |= {*self.model.memory_at_start} - {MODEL, JOURNEY, WAY}
         for name, value in how.items():
             setattr(self, name, value)
+        self._plain_router = how.get("router", self._plain_router)
         if "model" in how:
             self._models = None
         self._check()
@@ -222,6 +232,8 @@ class PlanarWorld(PlanarLiveChanges):
         self.sources = sources
         memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
         self.scene = scene.replace(time=self.scene.time, memory=memory)
+        if self.doors is not None:
+            show_doors(self, bool(forgotten))
         if seed is not None:
             self.seed = seed
             self._rngs = RandomStreams(self._traffic.seeds.tolist(), "crowd")
@@ -284,7 +296,7 @@ class PlanarWorld(PlanarLiveChanges):
         if (count := len(self.slots)) > 1:
             raise InputError(f"bodies are added to one environment at a time; this world has {count}")
         self._bodies = [KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)]
-        self.people = self._bodies[0].people
+        self.people, self._bodies[0].doors = self._bodies[0].people, self.doors
         self._begin_activity(activity)
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
@@ -347,6 +359,8 @@ class PlanarWorld(PlanarLiveChanges):
         check_arguments(
             self.scene, self.drives, self.robot_margin, self.leave_radius, self.heading_jitter, self.substeps
         )
+        if self.doors is not None and self.scene.shape[0] > 1:
+            raise InputError(ONE_ENVIRONMENT)
 
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
         asked = check_commands(commands, self.twists, self.scene.active)

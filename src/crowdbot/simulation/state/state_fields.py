@@ -36,7 +36,7 @@ HOLDERS = {
     "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together wheels",
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"
-        " heading_jitter substeps latency ghosts reactions joined _models _segments _surfaces"
+        " heading_jitter substeps latency ghosts reactions joined _models _segments _surfaces _plain_router"
     ),
     "crowdbot.world.physics.world.PhysicsWorld": (
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
@@ -53,8 +53,9 @@ HOLDERS = {
         " friction _forces _lag _base"
     ),
     "crowdbot.world.physics.people_bodies.PeopleBodies": "_model _data step geoms bodies _place _speed _hold",
-    "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius",
-    "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer",
+    "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius ground",
+    "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer doors",
+    "crowdbot.world.doors.doors.Doors": "leaves pushed _walls _routers",
     "crowdbot.world.physics.contact_events.BodyContactTracker": "_step _window _mass_of _limb_mass_of _heading_of",
 }
 """Classes of objects that exist in a new simulation of the trial, with their constant fields."""

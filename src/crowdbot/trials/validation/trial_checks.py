@@ -34,6 +34,7 @@ from crowdbot.trials.trial import Trial
 
 from .context import DeclaredNames, Problems, ValidationContext
 from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
+from .ground_checks import ground_problems
 from .rates import fitting, misfits
 from .zones import areas, shape_problem
 
@@ -64,6 +65,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
             *(_exact_rates(trial, robot) for robot in trial.robots),
             *_names(checked),
             *names(checked),
+            *ground_problems(checked),
         ),
         *too_large,
     ]
@@ -332,7 +334,8 @@ def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
     if robot.planner is None:
         return
     try:
-        planner = PathPlanner.for_stage(stage.as_walls(), robot.radius, robot.planner.margin)
+        walls = stage.driving_walls(robot.body.max_step, robot.body.max_slope)
+        planner = PathPlanner.for_stage(walls, robot.radius, robot.planner.margin)
         planner.waypoints(robot.position, robot.goal.position)
     except InputError as error:
         reason = str(error).removeprefix("PathPlanner: ").removeprefix("no path: ").removeprefix("Router: ")

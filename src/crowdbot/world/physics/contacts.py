@@ -25,7 +25,8 @@ class ContactBody(NamedTuple):
 
     Fields:
         kind: ``robot``, ``person``, ``prop`` or ``wall``.
-        number: index of the agent, of the prop on the stage, or of the wall ring.
+        number: index of the agent, of the prop on the stage, or of the wall ring; -1, -2, ... for the first, second
+            ... door.
     """
 
     kind: str
@@ -218,6 +219,8 @@ def _sorted_out(name: str, prefixes: dict[int, str]) -> tuple[int, int, str]:
         return PROP, int(name.removeprefix("prop").split("/")[0]), ""
     if name.startswith("wall/"):
         return WALL, int(name.removeprefix("wall/").split(".")[0]), ""
+    if name.startswith("door"):  # the walls of doors have negative numbers
+        return WALL, -1 - int(name.removeprefix("door").split("/")[0]), ""
     for agent, prefix in prefixes.items():
         if name.startswith(prefix):
             return ROBOT, agent, name.removeprefix(prefix).rsplit("/", 1)[0].removesuffix("/seen")

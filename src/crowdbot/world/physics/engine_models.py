@@ -14,11 +14,13 @@ from crowdbot.core import Scene, Walls
 from crowdbot.world.robots.robot import Robot
 
 from .base_servo import release_base_motors
+from .castor_springs import soften_castors
 from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
 from .robot_body import RobotBody
+from .robot_height import is_level
 from .stage import PhysicsStage
 from .wheel_servo import WheelServos
 
@@ -106,6 +108,8 @@ class CompiledBodies:
         for start in design.robots:
             if start.robot.base == "planar":
                 release_base_motors(self.base, self.built.prefixes[start.agent])
+        if design.stage.ground is not None:
+            soften_castors(self.base, {self.built.prefixes[agent]: robot for agent, robot in robots.items()})
         self.first = engine().MjData(self.base)
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()
@@ -145,7 +149,8 @@ class CompiledBodies:
                 body.put(start.x, start.y, start.heading)
             mj.mj_step(model, data, round(SETTLING / design.step))
             for body, start in robots:
-                body.put(start.x, start.y, start.heading)
+                if is_level(design.stage.ground, start):
+                    body.put(start.x, start.y, start.heading)
             data.time = 0.0
             mj.mj_forward(model, data)
         return data

@@ -19,6 +19,7 @@ from crowdbot.world.urdf.geoms import row
 
 from .engine import engine
 from .layers import LIMB, PULLED, ROBOT, TRUNK
+from .robot_height import base_height
 from .scenery import scenery
 from .stage import PhysicsStage
 
@@ -94,7 +95,8 @@ def build_mjcf_model(
         if posed:
             made = mjcf(robot.model, base="kinematic", prefix=prefixes[agent], contact=ROBOT)
         else:
-            made = _robot(scene, agent, robot, prefixes[agent], (motors or {}).get(agent))
+            base = base_height(stage.ground, scene, agent, robot)
+            made = _robot(scene, agent, robot, prefixes[agent], (motors or {}).get(agent), base)
         files |= made.assets
         for section in made.root.children:
             if section.tag == "asset":
@@ -197,7 +199,7 @@ def _settings() -> list[Element]:
     ]
 
 
-def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None) -> Any:
+def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None, height: float) -> Any:
     planar = robot.base == "planar"
     steers = any(wheel.steering for wheel in robot.wheels)
     who = f"robot {robot.name} of agent {agent}"
@@ -215,7 +217,7 @@ def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[
     return mjcf(
         robot.model,
         base="planar" if planar else "free",
-        place=(0.0, 0.0, robot.lift) if planar else (float(x), float(y), robot.lift),
+        place=(0.0, 0.0, height) if planar else (float(x), float(y), height),
         heading=0.0 if planar else float(scene.heading[0, agent]),
         prefix=prefix,
         motors={**(motors or {}), **kinds},

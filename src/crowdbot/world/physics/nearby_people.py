@@ -53,7 +53,9 @@ def people_near(
 def movers(
     robots: Mapping[int, RobotBody], stage: PhysicsStage, movable: Sequence[int], data: Any, led: Sequence[int] = ()
 ) -> list[Mover]:
-    """Return x, y, radius [m], mass [kg] of robots and movable props, and whether contacts cannot move them.
+    """Return x, y, radius [m], mass [kg] of robots, movable props and doors that people push, and whether they are firm.
+
+    Contacts cannot move what is firm.
 
     Args:
         robots: bodies of the robots by agent.
@@ -70,4 +72,9 @@ def movers(
         x, y, _ = data.body(f"prop{number}").xpos.tolist()
         prop = stage.props[number]
         found.append((x, y, math.sqrt(0.5) * getattr(prop, "size", 1.0), prop.weight, False))
+    for k, leaf in enumerate(stage.doors):
+        if leaf.opening == "push":  # the leaf, and the place where it is when closed
+            x, y, _ = data.body(f"door{k}").xipos.tolist()
+            closed = leaf.line(0.0).mean(axis=0).tolist()
+            found += [(a, b, 0.5 * leaf.width, leaf.mass, False) for a, b in ((x, y), closed)]
     return found

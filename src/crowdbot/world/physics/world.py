@@ -13,6 +13,9 @@ from crowdbot.core import Bodies, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.ghosts import hide_ghosts
+from crowdbot.world.doors.doors import Doors
+from crowdbot.world.doors.motion import read_leaves, turn_leaves
+from crowdbot.world.ground.walking_speed import slow_people
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
@@ -29,6 +32,7 @@ from .mirrored_robots import MirroredRobots
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
+from .robot_height import stand_robot
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_bodies import WorldBodies
@@ -114,11 +118,13 @@ class PhysicsWorld(RigidWorld):
         self._slots_fixed = slots is not None
         self._steps = round(dt / physics_dt)
         self._outlined = add_rings(scene.walls, stage.outlines())
+        if stage.doors and planar.get("doors") is None:
+            planar["doors"] = Doors(stage.doors, pushed=True)
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
         self._prop_names = [f"prop{number}" for number in range(len(stage.props))]
-        self.people = PeopleMotion(self.scene, persons, people, seed, riders)
+        self.people = PeopleMotion(self.scene, persons, people, seed, riders, stage.ground)
         self._plane: tuple[Scene, Scene] | None = None
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
@@ -182,7 +188,10 @@ class PhysicsWorld(RigidWorld):
         robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
         moved = {number: self.prop(number) for number in self._movable}
         scene = hide_ghosts(self.scene, self.ghosts)
-        return scene_bodies(scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
+        doors = None if self.doors is None else self.doors.signed_share
+        return scene_bodies(
+            scene, self.people, robots, self.stage, frames=frames, props=moved, doors=doors, skins=skins
+        )
 
     def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
@@ -195,7 +204,9 @@ class PhysicsWorld(RigidWorld):
         return outline_props(self.scene.walls, self.stage, {number: self.prop(number) for number in self._movable})
 
     def _fixed(self, party: ContactBody) -> bool:
-        return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
+        if party.kind == "wall":
+            return party.number >= 0 or self.stage.doors[-1 - party.number].opening != "push"
+        return bool(party.kind == "prop" and not self.stage.props[party.number].movable)
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
         return command  # RobotBody applies the delay, in engine steps
@@ -217,11 +228,18 @@ class PhysicsWorld(RigidWorld):
     def _put(self, agent: int, scene: Scene) -> None:
         x, y = scene.position[0, agent]
         self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
+        if self.stage.ground is not None:
+            stand_robot(self.robot_bodies[agent], self.stage.ground, float(x), float(y))
         self._at[agent] = (float(x), float(y), float(scene.heading[0, agent]))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
-        earlier, crowd = super()._step_crowd(before.replace(walls=self._outlined))
-        return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
+        start = before.replace(walls=self._outlined)
+        if self.stage.ground is None:
+            earlier, crowd = super()._step_crowd(start)
+            return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
+        earlier, crowd = super()._step_crowd(slow_people(start, self.stage.ground))
+        kept = {name: getattr(before, name) for name in ("walls", "preferred_speed", "max_speed")}
+        return earlier.replace(**kept), crowd.replace(**kept)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Resolve overlaps of people as in the plane; robots are left to the engine."""
@@ -250,10 +268,14 @@ class PhysicsWorld(RigidWorld):
                 self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
             led.go(1.0)
         for ghost in self.rigid.ghosts.values():
+            if self.doors is not None:
+                turn_leaves(self.doors, ghost.compiled.base, ghost.data, 1.0, self.dt)
             ghost.step_alone(self._steps)
             if led.twists:
                 led.go(1.0)
                 ghost.step_alone(0)  # the frames follow
+        if self.doors is not None:
+            read_leaves(self.doors, self.rigid.main.compiled.base, self.data)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
         scene = self._lead_robots(before, after, scene)
@@ -310,6 +332,8 @@ class PhysicsWorld(RigidWorld):
         self._people_bodies.go(share)
         if self.rigid.links:
             self.rigid.links.begin(model, data)
+        if self.doors is not None:
+            turn_leaves(self.doors, model, data, share, self.dt)
         mj.mj_step1(model, data)
         self.rigid.main.apply_friction(model)
         self.rigid.main.compiled.servos.apply(data)
@@ -351,4 +375,10 @@ class PhysicsWorld(RigidWorld):
             return self.robot_bodies[party.number].mass
         if party.kind == "person":
             return float(self.people.people.mass[self.people.row[party.number]])
+        if (
+            party.kind == "wall"
+            and party.number < 0
+            and (leaf := self.stage.doors[-1 - party.number]).opening == "push"
+        ):
+            return leaf.mass
         return self.stage.props[party.number].weight if party.kind == "prop" else math.inf

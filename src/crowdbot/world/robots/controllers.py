@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from crowdbot.core import Element, InputError, parse_number, read_bytes
+from crowdbot.core import Element, InputError, parse_number, parse_yaml, read_bytes
 from crowdbot.world.urdf import robot_folder
-from crowdbot.world.xacro import parse_yaml
 
 __all__ = ["ControllerFile", "JointLimits", "find_controller_files", "read_controllers", "read_joint_limits"]
 

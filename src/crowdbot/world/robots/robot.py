@@ -32,6 +32,10 @@ CLEAR = 0.01
 """Ground clearance [m] of a robot made by :meth:`Robot.disc`, which avoids friction."""
 
 
+STEP, SLOPE = 0.2, 0.1
+"""Default step that a robot with wheels passes, relative to the radius of a driven wheel, and default slope."""
+
+
 @dataclass(frozen=True, eq=False)
 class Robot:
     """A robot for a world.
@@ -51,6 +55,9 @@ class Robot:
         seat: whether it has the seat of a wheelchair.
         rider: kind or body of the person in the seat, in trials that name no other; empty for none.
         links: drag of links, and links that contacts do not move.
+        max_step: height [m] of the largest step that it passes in the physics world (default: a fifth of the radius
+            of its smallest driven wheel; 0 with a planar base).
+        max_slope: largest slope that it passes, as rise over length (default: 0.1; 0 with a planar base).
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
@@ -70,6 +77,8 @@ class Robot:
     seat: bool = False
     rider: str = ""
     links: tuple[LinkDynamics, ...] = ()
+    max_step: float = math.nan
+    max_slope: float = math.nan
 
     def __post_init__(self) -> None:
         CommandDelay(self.latency)
@@ -92,6 +101,7 @@ class Robot:
                 raise InputError(f"Robot: <link> {problem}")
         if self.rider and not self.seat:
             raise InputError(f'Robot: rider={self.rider[:60]!r} needs a seat: extends="wheelchair"')
+        self._set_ground_limits()
         names = [mount.name for mount in self.mounts]
         for mount in self.mounts:
             if names.count(mount.name) > 1:
@@ -107,6 +117,17 @@ class Robot:
                 if name not in turning_joints:
                     meant = did_you_mean(name, self.model.joints)
                     raise InputError(f"Robot: the {what} joint {name!r} is not a rotating joint{meant}")
+
+    def _set_ground_limits(self) -> None:
+        """Set the largest step and slope that are not given, and check them."""
+        wheels = [wheel.radius for wheel in self.wheels if wheel.driven] if self.base == "wheels" else []
+        usual = {"max_step": STEP * min(wheels, default=0.0), "max_slope": SLOPE if wheels else 0.0}
+        for name, value in usual.items():
+            given = getattr(self, name)
+            if math.isnan(given):
+                object.__setattr__(self, name, value)
+            elif not 0.0 <= given < math.inf:
+                raise InputError(f"Robot: {name} = {given} of {self.name} must be finite and at least 0")
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False) -> Robot:

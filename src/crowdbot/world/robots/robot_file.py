@@ -43,7 +43,7 @@ SHIPPED = Path(str(importlib.resources.files("crowdbot").joinpath("assets", "rob
 """Folder of the built-in robots."""
 
 KNOWN: dict[str, tuple[str, ...]] = {
-    "robot": ("name", "urdf", "about", "base", "extends", "default-sensors", "seat", "rider"),
+    "robot": ("name", "urdf", "about", "base", "extends", "default-sensors", "seat", "rider", "max-step", "max-slope"),
     "footprint": ("points", "radius"),
     "wheel": ("joint", "radius", "steering", "driven", "rollers"),
     "posture": ("joint", "position"),
@@ -91,6 +91,7 @@ class _Reader:
         values: dict[str, Any] = {"name": row.get("name") or self.folder.resolve().name, "about": row.get("about", "")}
         values["base"] = row.get("base", "wheels")
         values |= {"seat": row.get("seat") == "true", "rider": row.get("rider", "")}
+        values |= self.ground_limits(root)
         parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": [], "link": []}
         once: set[str] = set()
         for inner in root.children:
@@ -119,6 +120,17 @@ class _Reader:
             "posture": posture,
             "links": tuple(parts["link"]),
         }
+
+    def ground_limits(self, root: Element) -> dict[str, float]:
+        """Return the largest step and slope that the robot passes, where the file gives them."""
+        found = {}
+        for key in ("max-step", "max-slope"):
+            if key in root.attributes:
+                value = self.number(root, key)
+                found[key.replace("-", "_")] = max(0.0, value)
+                if value < 0.0:
+                    self.say(root, f'{key}="{root.attributes[key][:40]}" must be at least 0')
+        return found
 
     def tag(self, element: Element, known: tuple[str, ...]) -> None:
         """Record an unknown element and return the tag that was probably meant."""

@@ -2,6 +2,5 @@
 
 from .expansion import Expansion, expand_xacro, is_xacro
 from .files import FileSource, SourceElement
-from .yaml import parse_yaml
 
-__all__ = ["Expansion", "FileSource", "SourceElement", "expand_xacro", "is_xacro", "parse_yaml"]
+__all__ = ["Expansion", "FileSource", "SourceElement", "expand_xacro", "is_xacro"]
