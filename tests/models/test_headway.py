@@ -102,7 +102,9 @@ def test_anticipation_counts_people_who_walk_ahead_and_oncoming_people_need_less
     ahead = file(0.0, 0.8, speed=0.5)
     assert speeds(ahead, headway_anticipation=0.2)[0] == pytest.approx(0.5 / 1.06)
     towards = Scene.of([[0, 0], [0.8, 0]], [[0, 0], [-1, 0]], radius=0.2, preferred_velocity=[[1.3, 0], [-1.3, 0]])
-    assert [speeds(towards, headway_oncoming=share)[0] for share in (1.0, 0.5)] == pytest.approx([0.4 / 1.06, 0.8 / 1.06])
+    assert [speeds(towards, headway_oncoming=share)[0] for share in (1.0, 0.5)] == pytest.approx(
+        [0.4 / 1.06, 0.8 / 1.06]
+    )
 
 
 def test_the_reaction_time_delays_the_limit():

@@ -161,13 +161,16 @@ def with_headway(kind: type[CrowdModel]) -> type[CrowdModel]:
     >>> slower.model == SocialForce(relaxation_time=0.4)
     True
     """
+    name = f"{kind.__name__}{HeadwayLayer.suffix}"
     if inspect.isabstract(kind) or not issubclass(kind, CrowdModel) or issubclass(kind, HeadwayLayer | Mixture):
-        raise InputError(f"{kind.__name__}{HeadwayLayer.suffix} is not a model: the layer is for a single crowd model without it")
+        raise InputError(
+            f"{kind.__name__}{HeadwayLayer.suffix} is not a model: the layer is for a single crowd model without it"
+        )
     if clash := {field.name for field in dataclasses.fields(kind)} & {*HeadwayLayer.__dataclass_fields__}:
-        raise InputError(f"{kind.__name__}{HeadwayLayer.suffix} is not a model: both have a parameter {min(clash)}")
+        raise InputError(f"{name} is not a model: both have a parameter {min(clash)}")
     hints = typing.get_type_hints(kind)
     fields = [(one.name, hints[one.name], copy_field(one)) for one in dataclasses.fields(kind) if one.init]
-    return make_class(f"{kind.__name__}{HeadwayLayer.suffix}", fields, kind, _description(kind))
+    return make_class(name, fields, kind, _description(kind))
 
 
 def make_class(name: str, fields: Sequence[tuple[str, Any, Any]], kind: type[CrowdModel], doc: str) -> type[CrowdModel]:
