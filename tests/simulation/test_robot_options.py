@@ -11,7 +11,7 @@ import pytest
 from crowdbot.core import InputError, TrialError, Twist
 from crowdbot.navigation import Action, Navigator, Observation
 from crowdbot.prediction import ConstantVelocity
-from crowdbot.simulation import Simulation, apply_overrides, simulate
+from crowdbot.simulation import RecordedDecisions, Simulation, apply_overrides, simulate
 from crowdbot.trials import Planner, Trial, check_trial, parse_trial, trial_xml
 from space_trials import LEAN, WORLDS, room
 from trial_schema import valid
@@ -229,12 +229,12 @@ def test_a_missed_decision_keeps_the_previous_command_and_is_replayed_without_a_
     trial = with_robot(parse_trial(STRAIGHT), navigator=Slower(), deadline=0.05)
     live = Simulation(trial, 0)
     robot = live.robots[0]
-    robot.timer = clock({1: 0.2, 3: 0.05, 4: 0.051})
+    robot.timer.clock = clock({1: 0.2, 3: 0.05, 4: 0.051})
     commands, missed = [], []
     live.begin()
     for _ in range(13):
         commands.append(robot.command[0, 0])
-        if len(robot.misses(live.ticks)):
+        if live.ticks[0] == robot.timer.missed[0]:
             missed.append(int(live.ticks[0]))
         live.advance()
     assert missed == [2, 8]
@@ -244,16 +244,16 @@ def test_a_missed_decision_keeps_the_previous_command_and_is_replayed_without_a_
         raise AssertionError("a replay reads a clock")
 
     again = Simulation(trial, 0)
-    again.robots[0].timer = refuse
-    again.robots[0].replay_misses(0, missed)
+    again.robots[0].timer.clock = refuse
+    again.robots[0].timer.replay(0, RecordedDecisions(frozenset(missed)))
     again.begin()
     for _ in range(13):
         again.advance()
     assert state(again) == state(live)
-    assert again.robots[0].missed.tolist() == live.robots[0].missed.tolist()
+    assert again.robots[0].timer.missed.tolist() == live.robots[0].timer.missed.tolist()
     copied = again.select([0, 0])
     copied.advance()
-    assert copied.robots[0].replayed == [frozenset({2, 8})] * 2
+    assert copied.robots[0].timer.recorded == [RecordedDecisions(frozenset({2, 8}))] * 2
 
 
 def test_a_deadline_that_is_kept_changes_nothing() -> None:

@@ -328,7 +328,7 @@ def test_a_branch_of_the_physics_world_keeps_its_stage(tmp_path: Path) -> None:
     slow = branch(episode, 0.52, changes={"robot[puck].drive.max-speed": 0.1})
     assert slow.digest != episode.digest
     assert slow.position[-1, 5, 0] < episode.position[-1, 5, 0]
-    with pytest.raises(InputError, match="the stage cannot change in a branch of the physics world"):
+    with pytest.raises(InputError, match="only walls, obstacles and props can change while it runs"):
         branch(episode, 0.52, changes={"stage.wall-height": 3})
     with pytest.raises(InputError, match="world cannot change in a branch"):
         branch(episode, 0.52, changes={"world": "planar"})

@@ -24,6 +24,7 @@ COMMANDS = {
     "branch": "continue a recorded episode from a given time with other settings",
     "repair": "repair the episode file of a killed run",
     "export": "write an episode as a table, Parquet or CSV",
+    "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
     "experiment": "run trials with participants, instructions and questionnaires",
     "measure": "measure density, speed and flow in recordings, episodes and trials",
     "predict": "score predictors on recordings of people",

@@ -1,18 +1,47 @@
-"""Recordings of people: readers, writers and windows; and forecasts."""
+"""Recordings of people: readers, writers and windows; and forecasts.
 
-from .example import example_windows
-from .file_formats import FORMATS, load
-from .forecast import Forecast
-from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
-from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
-from .protocols import PROTOCOLS
-from .readers.time_base import RowRateError
-from .readers.ucy import TO_METRES as UCY_TO_METRES
-from .recording import Recording
-from .track_writers import save
-from .trajectories import PrimaryScene, Trajectories
-from .walkable import walkable_rings
-from .windows import Windows
+Names are loaded on first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
+
+if TYPE_CHECKING:
+    from .example import example_windows
+    from .file_formats import FORMATS, load
+    from .forecast import Forecast
+    from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
+    from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
+    from .protocols import PROTOCOLS
+    from .readers.time_base import RowRateError
+    from .readers.ucy import UCY_TO_METRES
+    from .recording import Recording
+    from .track_writers import save
+    from .trajectories import PrimaryScene, Trajectories
+    from .walkable import walkable_rings
+    from .windows import Windows
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "example": ["example_windows"],
+        "file_formats": ["FORMATS", "load"],
+        "forecast": ["Forecast"],
+        "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
+        "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
+        "protocols": ["PROTOCOLS"],
+        "readers.time_base": ["RowRateError"],
+        "readers.ucy": ["UCY_TO_METRES"],
+        "recording": ["Recording"],
+        "track_writers": ["save"],
+        "trajectories": ["PrimaryScene", "Trajectories"],
+        "walkable": ["walkable_rings"],
+        "windows": ["Windows"],
+    },
+)
 
 __all__ = [
     "FORMATS",

@@ -2,6 +2,7 @@
 
 from .action import Action
 from .contract import check_navigator
+from .decision_thread import HungNavigatorError, call_within
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .external import ExternalNavigator
@@ -21,6 +22,7 @@ __all__ = [
     "Decisions",
     "DriveLimits",
     "ExternalNavigator",
+    "HungNavigatorError",
     "Navigator",
     "ORCANavigator",
     "Observation",
@@ -32,6 +34,7 @@ __all__ = [
     "VisiblePeople",
     "Waypoints",
     "WindowCosts",
+    "call_within",
     "check_navigator",
     "copy_memory",
     "dynamic_window_twist",

@@ -13,6 +13,7 @@ from typing import Any
 from crowdbot.core import InputError, Twist
 
 from .action import Action
+from .decision_thread import call_within
 from .decisions import Decisions
 from .navigator_memory import copy_memory
 from .observation import Observation
@@ -64,7 +65,7 @@ class Navigator(ABC):
         Raises:
             InputError: :meth:`act` returned something else or a twist that is not finite, or asks for joints.
         """
-        name = type(self).__name__ + (f" of robot {robot!r}" if robot else "")
+        name = self._name(robot)
         plain = not _takes_memory(type(self))
         answer: Any = self.act(observation) if plain else self.act(observation, memory)
         if plain and isinstance(answer, Twist):
@@ -90,17 +91,23 @@ class Navigator(ABC):
             InputError: the memory cannot be copied.
         """
         memory = self.begin(observation)
-        copy_memory(memory, type(self).__name__ + (f" of robot {robot!r}" if robot else ""))
+        copy_memory(memory, self._name(robot))
         return memory
 
-    def first_memories(self, batch: ObservationBatch, *, robot: str = "") -> tuple[list[Any], dict[int, Exception]]:
-        """Return the memories before the first decision in each environment, and what failed there."""
+    def first_memories(
+        self, batch: ObservationBatch, *, robot: str = "", limit: float | None = None
+    ) -> tuple[list[Any], dict[int, Exception]]:
+        """Return the memories before the first decision in each environment, and what failed there.
+
+        The arguments are those of :meth:`decide_batch`.
+        """
         memories: list[Any] = [None] * len(batch)
         failures: dict[int, Exception] = {}
         if type(self).begin is not Navigator.begin:
             for k in range(len(batch)):
                 try:
-                    memories[k] = self.first_memory(batch.environment(k), robot=robot)
+                    first = functools.partial(self.first_memory, batch.environment(k), robot=robot)
+                    memories[k] = call_within(limit, first, self.title(robot))
                 except Exception as error:  # the other environments go on
                     failures[k] = error
         return memories, failures
@@ -111,6 +118,7 @@ class Navigator(ABC):
         memories: Sequence[Any],
         robot: str = "",
         timer: Callable[[], float] | None = None,
+        limit: float | None = None,
     ) -> Decisions:
         """Return the decisions in N environments, the same as :meth:`decide` for each.
 
@@ -123,9 +131,11 @@ class Navigator(ABC):
             robot: name of the robot, for error messages.
             timer: clock such as ``time.perf_counter``, which measures the compute time of each decision; a navigator
                 reads no clock otherwise.
+            limit: real time [s] after which a decision that has not returned is a failure, by :func:`call_within`;
+                None: no limit.
         """
         decisions = Decisions.still(memories)
-        self._decide_rows(range(len(batch)), batch, decisions, robot, timer)
+        self._decide_rows(range(len(batch)), batch, decisions, robot, timer, limit)
         return decisions
 
     def _decide_rows(
@@ -135,16 +145,25 @@ class Navigator(ABC):
         decisions: Decisions,
         robot: str,
         timer: Callable[[], float] | None,
+        limit: float | None = None,
     ) -> None:
         """Decide in some environments, one by one."""
         for k in rows:
             begin = timer() if timer else 0.0
             try:
-                action, memory = self.decide(batch.environment(k), decisions.memories[k], robot=robot)
+                next_one = functools.partial(self.decide, batch.environment(k), decisions.memories[k], robot=robot)
+                action, memory = call_within(limit, next_one, self.title(robot))
                 decisions.twist[k], decisions.memories[k] = action.twist, memory
             except Exception as error:  # the other environments go on
                 decisions.failures[k] = error
             decisions.seconds[k] = timer() - begin if timer else 0.0
+
+    def title(self, robot: str = "") -> str:
+        """Return how messages name the navigator: ``navigator Straight of robot 'pepper'``."""
+        return f"navigator {self._name(robot)}"
+
+    def _name(self, robot: str) -> str:
+        return type(self).__name__ + (f" of robot {robot!r}" if robot else "")
 
     def _keeps(self, kind: type[Navigator], *names: str) -> bool:
         """Return whether no subclass of ``kind`` overrides these methods, which its batch form replaces."""

@@ -106,10 +106,11 @@ class ORCANavigator(Navigator):
         memories: Sequence[Any],
         robot: str = "",
         timer: Callable[[], float] | None = None,
+        limit: float | None = None,
     ) -> Decisions:
         """Return the decisions in N environments, with two kernels; see :meth:`Navigator.decide_batch`."""
         if not self._keeps(ORCANavigator, "act", "velocity", "_wish"):
-            return super().decide_batch(batch, memories, robot, timer)
+            return super().decide_batch(batch, memories, robot, timer, limit)
         decisions, begin = Decisions.still(memories), timer() if timer else 0.0
         asking = rows_for_kernels(batch, with_people=True)
         velocity = self._velocities(batch, asking)
@@ -120,7 +121,7 @@ class ORCANavigator(Navigator):
             dynamic_window_twists(batch, asking, velocity, self.speed, decisions.twist)
         share_time(decisions, asking, begin, timer)
         if not asking.all():
-            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer)
+            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
         return decisions
 
     def _velocities(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> Floats:

@@ -71,10 +71,11 @@ class Straight(Navigator):
         memories: Sequence[Any],
         robot: str = "",
         timer: Callable[[], float] | None = None,
+        limit: float | None = None,
     ) -> Decisions:
         """Return the decisions in N environments, with one kernel; see :meth:`Navigator.decide_batch`."""
         if not self._keeps(Straight, "act"):
-            return super().decide_batch(batch, memories, robot, timer)
+            return super().decide_batch(batch, memories, robot, timer, limit)
         decisions, begin = Decisions.still(memories), timer() if timer else 0.0
         asking = rows_for_kernels(batch, with_people=False)
         places, numbers = (batch.pose, batch.goal, batch.waypoint), drive_numbers(batch.limits, self.speed)
@@ -84,7 +85,7 @@ class Straight(Navigator):
             twists_towards(asking, *places, numbers, decisions.twist)
         share_time(decisions, asking, begin, timer)
         if not asking.all():
-            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer)
+            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
         return decisions
 
 

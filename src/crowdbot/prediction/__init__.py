@@ -1,46 +1,87 @@
 """Predictors of the next seconds of a crowd, and the training of those that are learned.
 
 ``SocialWaysTraining`` loads PyTorch on first use and is therefore not in ``__all__``.
+
+Names are loaded on first use.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .anchor_net import AnchorNet, Anchors, Modes
-from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
-from .contract import check_predictor
-from .degraded import DegradedWindows, degraded_windows
-from .kalman import Kalman, KalmanAcceleration
-from .learned_predictor import LearnedPredictor
-from .learners import WEIGHTS_FIELDS, make_learner
-from .live import Live
-from .predictor import Predictor, window_streams
-from .predictor_spec import PredictorSpec
-from .simulated import Simulated
-from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
-from .training import (
-    BEST,
-    LAST,
-    LOG,
-    LogRow,
-    Samples,
-    Trainable,
-    TrainingResult,
-    TrainingSchedule,
-    leave_out,
-    load_checkpoint,
-    save_checkpoint,
-    short_recordings,
-    split_in_time,
-    torch_device,
-    torch_module,
-    torch_threads,
-    train,
-)
+from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
+    from .anchor_net import AnchorNet, Anchors, Modes
+    from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
+    from .contract import check_predictor
+    from .degraded import DegradedWindows, degraded_windows
+    from .kalman import Kalman, KalmanAcceleration
+    from .learned_predictor import LearnedPredictor
+    from .learners import WEIGHTS_FIELDS, make_learner
+    from .live import Live
+    from .predictor import Predictor, window_streams
+    from .predictor_spec import PredictorSpec
+    from .simulated import Simulated
+    from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
+    from .training import (
+        BEST,
+        LAST,
+        LOG,
+        LogRow,
+        Samples,
+        Trainable,
+        TrainingResult,
+        TrainingSchedule,
+        leave_out,
+        load_checkpoint,
+        save_checkpoint,
+        short_recordings,
+        split_in_time,
+        torch_device,
+        torch_module,
+        torch_threads,
+        train,
+    )
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "anchor_net": ["AnchorNet", "Anchors", "Modes"],
+        "constant": ["ConstantAcceleration", "ConstantVelocity", "LeastSquares", "SampledConstantVelocity"],
+        "contract": ["check_predictor"],
+        "degraded": ["DegradedWindows", "degraded_windows"],
+        "kalman": ["Kalman", "KalmanAcceleration"],
+        "learned_predictor": ["LearnedPredictor"],
+        "learners": ["WEIGHTS_FIELDS", "make_learner"],
+        "live": ["Live"],
+        "predictor": ["Predictor", "window_streams"],
+        "predictor_spec": ["PredictorSpec"],
+        "simulated": ["Simulated"],
+        "social_ways": ["PRESETS", "STEADY", "SocialWays", "SocialWaysConfig"],
+        "training": [
+            "BEST",
+            "LAST",
+            "LOG",
+            "LogRow",
+            "Samples",
+            "Trainable",
+            "TrainingResult",
+            "TrainingSchedule",
+            "leave_out",
+            "load_checkpoint",
+            "save_checkpoint",
+            "short_recordings",
+            "split_in_time",
+            "torch_device",
+            "torch_module",
+            "torch_threads",
+            "train",
+        ],
+        "social_ways.training": ["SocialWaysTraining"],
+    },
+)
 
 __all__ = [
     "BEST",
@@ -85,11 +126,3 @@ __all__ = [
     "train",
     "window_streams",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name == "SocialWaysTraining":
-        from .social_ways.training import SocialWaysTraining
-
-        return SocialWaysTraining
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

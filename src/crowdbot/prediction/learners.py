@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from crowdbot.core import UnknownName
 
-from .training import Samples, Trainable
+if TYPE_CHECKING:
+    from .training import Samples, Trainable
 
 __all__ = ["WEIGHTS_FIELDS", "make_learner"]
 

@@ -27,7 +27,7 @@ from crowdbot.trials import Trial, apply_values, trial_xml
 from .attachments import unpack_attachments
 from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
-from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests, replay_misses
+from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSegment, digests, replay_decisions
 from .recorded_run import episode_path
 from .recorded_simulation import continue_from, simulate_to
 
@@ -172,7 +172,7 @@ def _run(
         _check_period(simulation, new, at)
         rest = tuple(row for row in last.orders if row[0] >= simulation.tick) if options.orders else ()
         if not options.orders:
-            replay_misses(simulation, None)
+            replay_decisions(simulation, None)
         part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed), rest)
         robots = simulation.world.ids[0, [control.agent for control in simulation.robots]].tolist()
         tally = kind(new, part.seed, comparison.digest, robots)

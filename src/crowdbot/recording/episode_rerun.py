@@ -13,7 +13,7 @@ from crowdbot.trials import Trial
 
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata
-from .provenance import OrderReplay, Provenance, replay_misses
+from .provenance import OrderReplay, Provenance, replay_decisions
 
 __all__ = ["EpisodeRerun", "open_rerun"]
 
@@ -24,7 +24,7 @@ class EpisodeRerun(NamedTuple):
     Fields:
         trial, seed: the trial and its seed.
         sources: the recorded orders.
-        prepare: to be called with a new simulation; decisions miss their deadline as recorded.
+        prepare: to be called with a new simulation; decisions miss their deadline or hang as recorded.
     """
 
     trial: Trial
@@ -60,5 +60,5 @@ def open_rerun(path: Path | str, *, folder: Path | None = None, trust: bool = Fa
             raise EpisodeError(f"{path} is a branch; render the episode from which it was made")
         (part,) = provenance.parts
         yield EpisodeRerun(
-            part.trial, part.seed, (OrderReplay(part.orders),), lambda one: replay_misses(one, part.orders)
+            part.trial, part.seed, (OrderReplay(part.orders),), lambda one: replay_decisions(one, part.orders)
         )

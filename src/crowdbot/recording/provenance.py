@@ -12,9 +12,10 @@ from typing import Any
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.data import McapReader
 from crowdbot.simulation import (
+    DecisionOrder,
     EpisodeDigest,
-    MissedDecisionOrder,
     Order,
+    RecordedDecisions,
     Simulation,
     SimulationRun,
     StepRecord,
@@ -36,7 +37,7 @@ __all__ = [
     "ProvenanceSegment",
     "digests",
     "recorded_orders",
-    "replay_misses",
+    "replay_decisions",
 ]
 
 
@@ -62,7 +63,7 @@ class OrderReplay:
     def __init__(self, orders: Iterable[tuple[int, Order]]) -> None:
         self._by_tick: dict[int, list[Order]] = {}
         for tick, order in orders:
-            if not isinstance(order, MissedDecisionOrder):
+            if not isinstance(order, DecisionOrder):
                 self._by_tick.setdefault(tick, []).append(order)
 
     def orders(self, simulation: Simulation) -> list[Order]:
@@ -92,16 +93,13 @@ class DigestComparison:
                 self.differs = frame.nanoseconds / 1e9
 
 
-def replay_misses(simulation: Simulation, orders: Iterable[tuple[int, Order]] | None) -> None:
-    """Let the recorded decisions miss their deadline, instead of measuring time; None measures again."""
-    rows = list(orders or ())
+def replay_decisions(simulation: Simulation, orders: Iterable[tuple[int, Order]] | None) -> None:
+    """Let decisions miss their deadline and hang as recorded, instead of measuring time; None measures again."""
+    rows = None if orders is None else list(orders)
     for control in simulation.robots:
-        if orders is None:
-            control.replayed = [None] * simulation.count
-            continue
-        name = control.robot.name
-        missed = [tick for tick, order in rows if isinstance(order, MissedDecisionOrder) and order.robot == name]
-        control.replay_misses(0, missed)
+        recorded = None if rows is None else RecordedDecisions.of(rows, control.robot.name)
+        for e in range(simulation.count):
+            control.timer.replay(e, recorded)
 
 
 @dataclass(frozen=True)
@@ -185,12 +183,12 @@ class Provenance:
         """
         first = self.parts[0]
         if start is not None:
-            replay_misses(start, [row for part in self.parts for row in part.orders])
+            replay_decisions(start, [row for part in self.parts for row in part.orders])
             if until is not None:
                 _on(start, until, sink, stop, progress, OrderReplay(self.parts[-1].orders))
             return start
         simulation = Simulation(first.trial, first.seed)
-        replay_misses(simulation, [row for part in self.parts for row in part.orders])
+        replay_decisions(simulation, [row for part in self.parts for row in part.orders])
         ends = [part.tick for part in self.parts[1:]] + ([] if until is None else [until])
         for number, end in enumerate(ends):
             _on(simulation, end, sink, stop, progress, OrderReplay(self.parts[number].orders))

@@ -6,10 +6,11 @@ from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
 from .orders.avatar_order import AvatarOrder
+from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
 from .orders.element_orders import AddElementOrder, RemoveElementOrder
 from .orders.goal_order import GoalOrder
 from .orders.joint_order import JointOrder
-from .orders.order import MissedDecisionOrder, Order, VelocityOrder, order_kinds, read_order, write_order
+from .orders.order import Order, VelocityOrder, order_kinds, read_order, write_order
 from .orders.parameter_order import ParameterOrder
 from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
 from .orders.trial_order import TrialOrder
@@ -45,17 +46,20 @@ __all__ = [
     "AvatarOrder",
     "BatchReadings",
     "BatchSink",
+    "DecisionOrder",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",
     "EpisodeStatistics",
     "GoalOrder",
+    "HungDecisionOrder",
     "JointOrder",
     "MissedDecisionOrder",
     "MoveOrder",
     "Order",
     "OrderSource",
     "ParameterOrder",
+    "RecordedDecisions",
     "RedirectOrder",
     "RemoveElementOrder",
     "RemoveOrder",

@@ -44,7 +44,8 @@ class RunFailure:
     def of(cls, error: Exception, time: float, folder: Path | None = None) -> RunFailure:
         """Describe an exception; files in ``folder`` have relative paths, others only their name."""
         message = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
-        return cls(message, _place(error, folder), time, "".join(traceback.format_exception(error)))
+        place = getattr(error, "place", "") or _place(error, folder)  # of a replayed decision that hangs
+        return cls(message, place, time, "".join(traceback.format_exception(error)))
 
     def __str__(self) -> str:
         """Return a sentence without full stop."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import copy
 import dataclasses
 import math
-import time
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, TickSchedule, Twist
 from crowdbot.navigation import (
-    Decisions,
     DriveLimits,
     ExternalNavigator,
     Observation,
@@ -28,6 +26,7 @@ from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import Twists, World, free_joints
 
+from .decision_timer import DecisionTimer
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
@@ -40,12 +39,12 @@ Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
-ROWS = ("command", "begun", "arrived", "path", "missed", "ordered", "goal", "tolerance", "joints")
+ROWS = ("command", "begun", "arrived", "path", "ordered", "goal", "tolerance", "joints")
 """Fields with one row for each environment."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
 NEVER = -1
-"""Tick of the latest missed decision, or of the latest order, before there is one."""
+"""Tick of the latest order before there is one."""
 
 
 class _Known(NamedTuple):
@@ -87,13 +86,11 @@ class RobotControl:
         planner: path planner, or None.
         path: ``[E, 9]`` state of the path planner; NaN before the first decision.
         tracks: history of the visible people in each environment, or empty.
-        missed: ``[E]`` tick of the latest decision that took longer than the deadline of the robot, -1 for none.
+        timer: real time of the decisions.
         goal: ``[E, 2]`` current goal [m], which orders can change.
         tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
         joints: ``[E, J]`` target of each joint [rad or m] that an order has moved, otherwise NaN.
-        replayed: ticks of the missed decisions of each environment that is replayed, otherwise None.
-        timer: clock of the compute times [s], used only with a deadline.
     """
 
     robot: RobotSpec
@@ -108,14 +105,11 @@ class RobotControl:
     planner: PathPlanner | None
     path: Floats
     tracks: TrackBatch
-    missed: Ints
+    timer: DecisionTimer
     ordered: Ints
     goal: Floats
     tolerance: Floats
     joints: Floats
-    replayed: list[frozenset[int] | None]
-    timer: Callable[[], float] = time.perf_counter
-    _warm: bool = field(default=False, init=False)
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:
@@ -138,12 +132,11 @@ class RobotControl:
             robot.path_planner(trial.stage.as_walls()) if robot.planner else None,
             np.full((count, PATH_COLUMNS), np.nan),
             _empty_tracks(robot, count),
-            np.full(count, NEVER, dtype=np.int64),
+            DecisionTimer.of(count),
             np.full(count, NEVER, dtype=np.int64),
             np.tile(np.array(robot.goal.position, dtype=np.float64), (count, 1)),
             np.full(count, robot.goal.tolerance),
             np.full((count, len(free_joints(robot.body))), np.nan),
-            [None] * count,
         )
 
     def change_memory(self, trial: Trial, robot: RobotSpec) -> RobotControl:
@@ -253,64 +246,36 @@ class RobotControl:
             for e in environments:
                 found |= self.decide(around, np.array([e]))
             return found
-        navigator, name = self.robot.navigator, self.robot.name
+        ticks = around.world.ticks[environments]
+        hangs = self.timer.recorded_hangs(self.robot, environments, ticks)
+        if hangs:
+            rest = environments[~np.isin(environments, list(hangs))]
+            return hangs | (self.decide(around, rest) if len(rest) else {})
         batch, known = self._observe(around, environments)
         failures: dict[int, Exception] = {}
         if not self.begun[environments].all():
             new = np.flatnonzero(~self.begun[environments])
             first = batch if len(new) == len(environments) else self.observations(around, environments[new])
-            memories, failed = navigator.first_memories(first, robot=name)
+            memories, failed = self.timer.first_memories(self.robot, first, environments[new])
             failures |= {int(new[k]): error for k, error in failed.items()}
             for k, memory in zip(new.tolist(), memories, strict=True):
                 self.memories[int(environments[k])] = memory
             self.begun[environments[new]] = True
-        ticks = around.world.ticks[environments]
-        decisions = self._decide(batch, environments)
-        failures = decisions.failures | failures | known.failures
+        decisions = self.timer.decide(self.robot, batch, [self.memories[e] for e in environments], environments)
+        decisions.failures.update(failures | known.failures)
+        failures = decisions.failures
         for error in failures.values():
             if isinstance(error, MissingExtra):
                 raise error
-        late = self._late(environments, ticks, decisions)
+        late = self.timer.judge(self.robot, environments, ticks, decisions)
         self._remember(environments, known)
         for k, e in enumerate(environments.tolist()):
             if k not in failures:
                 self.memories[e] = decisions.memories[k]
         decided = ~late
         decided[list(failures)] = False
-        self.missed[environments[late]] = ticks[late]
         self.command[environments[decided]] = decisions.twist[decided]
         return {int(environments[k]): error for k, error in failures.items()}
-
-    def misses(self, ticks: Ints) -> Ints:
-        """Return the environments whose decision at their current tick ``[E]`` missed the deadline."""
-        return np.flatnonzero(self.missed == ticks)
-
-    def replay_misses(self, environment: int, ticks: Collection[int]) -> None:
-        """Let exactly the decisions of an environment at these ticks miss the deadline, without measuring time."""
-        self.replayed[environment] = frozenset(int(tick) for tick in ticks)
-
-    def _decide(self, batch: ObservationBatch, environments: Ints) -> Decisions:
-        """Let the navigator decide, with compute times if they matter."""
-        navigator, name = self.robot.navigator, self.robot.name
-        memories = [self.memories[e] for e in environments]
-        if self.robot.deadline is None or all(self.replayed[e] is not None for e in environments):
-            return navigator.decide_batch(batch, memories, name)
-        if not self._warm:  # code is compiled and loaded at the first call, which says nothing about the others
-            navigator.decide_batch(batch, [copy_memory(memory, name) for memory in memories], name)
-            self._warm = True
-        return navigator.decide_batch(batch, memories, name, self.timer)
-
-    def _late(self, environments: Ints, ticks: Ints, decisions: Decisions) -> Bools:
-        """Return ``[N]`` which decisions missed the deadline."""
-        late = np.zeros(len(environments), dtype=np.bool_)
-        for k, e in enumerate(environments.tolist() if self.robot.deadline is not None else ()):
-            replayed = self.replayed[e]
-            if replayed is not None:
-                late[k] = int(ticks[k]) in replayed
-            else:
-                late[k] = decisions.seconds[k] > (self.robot.deadline or math.inf)
-        late[list(decisions.failures)] = False
-        return late
 
     def _remember(self, environments: Ints, known: _Known) -> None:
         self.path[environments] = known.path
@@ -355,7 +320,7 @@ class RobotControl:
         other.sensors = tuple(sensor.select(environments) for sensor in self.sensors)
         other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
         other.tracks = self.tracks.select(environments) if self.tracks else self.tracks
-        other.replayed = [self.replayed[e] for e in environments]
+        other.timer = self.timer.select(environments)
         for name in ROWS:
             setattr(other, name, getattr(self, name)[environments])
         return other
@@ -365,7 +330,8 @@ class RobotControl:
         for mine, new in zip(self.sensors, other.sensors, strict=True):
             mine.put(environments, new)
         for k, e in enumerate(environments.tolist()):
-            self.memories[e], self.replayed[e] = other.memories[k], other.replayed[k]
+            self.memories[e] = other.memories[k]
+        self.timer.put(environments, other.timer)
         if self.tracks:
             self.tracks = self.tracks.put(environments, other.tracks)
         for name in ROWS:

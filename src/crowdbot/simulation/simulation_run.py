@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
 
 from .failure import RunFailure
-from .orders.order import MissedDecisionOrder, Order
+from .orders.order import Order
 from .simulation import Simulation
 from .step_batch import StepBatch
 from .step_record import StepRecord
@@ -321,13 +321,10 @@ class SimulationRun:
             self._write(np.flatnonzero(ended & self._pending), last=True)
 
     def _note_misses(self) -> None:
-        """Keep the decisions of this step that missed their deadline for the records."""
+        """Keep the decisions of this step that missed their deadline or did not return for the records."""
         for control in self.simulation.robots:
-            if control.robot.deadline is None:
-                continue
-            for e in control.misses(self.simulation.ticks).tolist():
-                order = MissedDecisionOrder(robot=control.robot.name, environment=e)
-                self._orders.setdefault(e, []).append(order)
+            for order in control.timer.orders(control.robot, self.simulation.ticks, self.simulation.failures):
+                self._orders.setdefault(order.environment, []).append(order)
 
     def _end_where(self, chosen: Bools, stops: Bools) -> Bools:
         """Set the ends of environments ``[E]`` that end now, and return which ones."""

@@ -167,6 +167,12 @@ class RobotSpec:
         unit="s",
         exclusive_min=0.0,
     )
+    decision_limit: float = attribute(
+        60.0,
+        about="real time after which a decision of an own navigator that has not returned ends the run with an error",
+        unit="s",
+        exclusive_min=0.0,
+    )
     tracks: float | None = attribute(
         None,
         about="time span of the past positions of visible people for the navigator (default: none)",

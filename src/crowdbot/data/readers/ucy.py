@@ -20,18 +20,18 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER", "TO_METRES"]
+__all__ = ["READER", "UCY_TO_METRES"]
 
 VIDEO_FPS = 25.0
 MAX_INTERPOLATED = 2_000_000
 """Most rows after interpolation, ten times those of the longest UCY recording: two lines can span any time."""
 
-TO_METRES = np.array([[0.02104, 0.0, 7.577], [0.0, 0.02386, 6.873], [0.0, 0.0, 1.0]])
+UCY_TO_METRES = np.array([[0.02104, 0.0, 7.577], [0.0, 0.02386, 6.873], [0.0, 0.0, 1.0]])
 """From vsp pixels to the metres of the leave-one-out text files, fitted to zara01, zara02 and students003.
 
 For students01 and uni_examples it is likely (same camera as students03) but not checked. The obsmat files of the same
 people use other maps: turned by 90 degrees, shifted, and scaled 3 % and 9 % differently."""
-TO_METRES.setflags(write=False)
+UCY_TO_METRES.setflags(write=False)
 
 KNOWN = {(148, 279.0, -123.0), (204, 358.0, -66.0), (434, 70.0, -35.0)}
 """Splines and first control point of the recordings that the map was fitted to."""
@@ -57,7 +57,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(f"{source.name} has no control points")
     id, frame, x, y = (np.concatenate(column) for column in zip(*parts, strict=True))
     fitted = bool(len(splines[0])) and (len(splines), splines[0][0, 0], splines[0][0, 1]) in KNOWN
-    homography = TO_METRES if fitted and options.units is None else None
+    homography = UCY_TO_METRES if fitted and options.units is None else None
     note = "pixels, interpolated between control points"
     return assemble(
         source,

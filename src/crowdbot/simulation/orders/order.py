@@ -15,7 +15,7 @@ from crowdbot.core import InputError, Twist, did_you_mean, kebab_case
 from crowdbot.trials import Trial
 from crowdbot.world import World
 
-__all__ = ["MissedDecisionOrder", "Order", "OrderTarget", "VelocityOrder", "order_kinds", "read_order", "write_order"]
+__all__ = ["Order", "OrderTarget", "VelocityOrder", "order_kinds", "read_order", "write_order"]
 
 MOST_TEXT = 1_000_000
 """Largest size of an order [characters]."""
@@ -101,26 +101,6 @@ class VelocityOrder(Order):
     def apply(self, simulation: OrderTarget) -> None:
         """Set the command of the robot."""
         simulation.command(self.robot, self.twist, self.environment)
-
-
-@dataclass(frozen=True, kw_only=True)
-class MissedDecisionOrder(Order):
-    """Record that a decision took longer than the deadline of the robot, so that its command stayed in force.
-
-    A run writes such an order itself. A replay reads it instead of measuring time.
-
-    Fields:
-        robot: name of the robot.
-    """
-
-    robot: str
-
-    def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError`: nobody can give such an order."""
-        raise InputError("a missed-decision order is written by a run and cannot be given to one")
-
-    def apply(self, simulation: OrderTarget) -> None:
-        """Do nothing: the decision has been missed."""
 
 
 def order_kinds() -> dict[str, type[Order]]:

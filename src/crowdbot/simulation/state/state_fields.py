@@ -31,7 +31,8 @@ LAST = "readings"
 
 HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
-    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control planner timer _warm replayed",
+    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control planner",
+    "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
     "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together",
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"

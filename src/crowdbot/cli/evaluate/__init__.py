@@ -1,0 +1,142 @@
+"""``crowdbot evaluate TRIAL ...``: run navigators in many trials with many seeds, and compare them."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from crowdbot.cli.output import add_json, note, print_json, progress
+from crowdbot.cli.settings import add_settings, add_world, settings
+
+from .tables import print_comparisons, print_result, print_runs, print_verdicts, result_values
+
+if TYPE_CHECKING:
+    from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
+
+STATISTICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", "min-clearance")
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("trials", nargs="+", metavar="TRIAL", help="trial files or built-in names")
+    parser.add_argument(
+        "--navigators",
+        default="own",
+        metavar="LIST",
+        help='navigators with parameters, separated by commas: "orca, orca safety=0.2, mine.py:Mine"'
+        " (default: own, the navigator of each trial)",
+    )
+    parser.add_argument("--robots", default="", metavar="LIST", help="robot types, separated by commas (default: own)")
+    parser.add_argument("--seeds", default="0:20", metavar="SEEDS", help="seeds, such as 0:100 (default: 0:20)")
+    parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")
+    parser.add_argument(
+        "--require",
+        action="append",
+        default=[],
+        metavar="BOUND",
+        help='requirement for every row, such as "collision-rate<0.01@95%%"; exit status 1 if one does not hold',
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of result.json, report.html and junit.xml")
+    parser.add_argument(
+        "--worst", type=int, default=1, metavar="N", help="worst runs of each row to play in the report"
+    )
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="number of processes")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, or auto")
+    parser.add_argument("--trust", action="store_true", help="allow code outside the folders of the trials")
+    add_world(parser)
+    add_settings(parser)
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run the evaluation; return 1 if a requirement does not hold."""
+    from crowdbot.core import InputError
+    from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_requirement, parse_seeds
+    from crowdbot.trials import load_trial
+
+    if options.worst < 0:
+        raise InputError(f"--worst {options.worst} must be at least 0")
+    requirements = [parse_requirement(text) for text in options.require]
+    values = settings(options)
+    plan = EvaluationPlan(
+        [load_trial(name, trust=options.trust, **values) for name in options.trials],
+        parse_methods(options.navigators),
+        [name.strip() for name in options.robots.split(",")],
+        parse_seeds(options.seeds),
+    )
+    parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
+    try:
+        with progress(options.json) as report:
+            result = evaluate(
+                plan,
+                parts,
+                workers=options.workers,
+                cluster=options.cluster,
+                progress=lambda share: report("evaluate", share),
+            )
+    except KeyboardInterrupt:
+        if parts is not None:
+            note(f"crowdbot: what is done is stored in {options.out}; the same command continues")
+        raise
+    return _present(options, plan, result, requirements, time.perf_counter() - begin)
+
+
+def _present(
+    options: argparse.Namespace,
+    plan: EvaluationPlan,
+    result: EvaluationResult,
+    requirements: list[Requirement],
+    wall: float,
+) -> int:
+    from crowdbot.evaluation import parse_requirement, parse_statistic
+
+    names = [*STATISTICS] if options.metrics is None else [name.strip() for name in options.metrics.split(",")]
+    if options.metrics is None and result.failures:
+        names = [*names, "error-rate"]
+    statistics = [parse_statistic(name, result.metrics) for name in names]
+    requirements = [parse_requirement(one.text, result.metrics) for one in requirements]
+    verdicts = [
+        (cell, requirement, requirement.judge(cell.values(requirement.statistic.metric)))
+        for requirement in requirements
+        for cell in result.cells
+    ]
+    comparisons = result.compare()
+    if options.out is not None:
+        _write(options, plan, result, statistics, requirements)
+    if options.json:
+        print_json(result_values(result, statistics, comparisons, verdicts))
+    else:
+        print_result(result, statistics, wall)
+        print_comparisons(result, comparisons)
+        print_verdicts(verdicts)
+        print_runs(result)
+        if options.out is not None:
+            print(f"report    {options.out / 'report.html'}\nresult    {options.out / 'result.json'}")
+    return 0 if all(verdict.holds for _, _, verdict in verdicts) else 1
+
+
+def _write(
+    options: argparse.Namespace,
+    plan: EvaluationPlan,
+    result: EvaluationResult,
+    statistics: list[Statistic],
+    requirements: list[Requirement],
+) -> None:
+    from crowdbot.core import explain_write_errors
+    from crowdbot.evaluation import junit_xml, worst_runs, write_report
+
+    result.save(options.out / "result.json")
+    write_report(
+        result,
+        options.out / "report.html",
+        statistics,
+        worst=worst_runs(plan, result, options.worst),
+        requirements=requirements,
+        comparisons=result.compare(),
+    )
+    if requirements:
+        file = options.out / "junit.xml"
+        with explain_write_errors(file):
+            file.write_text(junit_xml(result, requirements), encoding="utf-8")

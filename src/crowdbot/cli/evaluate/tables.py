@@ -1,0 +1,115 @@
+"""Tables of an evaluation for the terminal, and its values for ``--json``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.cli.output import print_table
+
+if TYPE_CHECKING:
+    from crowdbot.evaluation import (
+        CellResult,
+        EvaluationResult,
+        PairedComparison,
+        Requirement,
+        RequirementVerdict,
+        Statistic,
+    )
+
+MOST_ROWS = 20
+"""Largest number of messages of failed or invalid runs that are printed."""
+
+
+def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall: float) -> None:
+    """Print a table with a row for each navigator for each trial."""
+    robots = any(cell.robot for cell in result.cells)
+    head = ["navigator", *(["robot"] if robots else []), "visible", "runs", *(one.name for one in statistics)]
+    count = sum(len(cell.runs) for cell in result.cells)
+    for trial in dict.fromkeys(cell.trial for cell in result.cells):
+        rows = [
+            [
+                cell.method,
+                *([cell.robot or "own"] if robots else []),
+                "yes" if cell.protocol.get("visible") else "no",
+                str(len(cell.valid)),
+                *(str(cell.estimate(one)) for one in statistics),
+            ]
+            for cell in result.cells
+            if cell.trial == trial
+        ]
+        print_table(trial, head, rows, words=2 if robots else 1)
+    print(f"{count} runs in {wall:.1f} s; intervals of 95 %: Wilson for rates, bootstrap for others\n")
+
+
+def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComparison]) -> None:
+    """Print the comparisons of each navigator with the first one."""
+    first = result.cells[0].method
+    rows = [
+        [one.trial, one.second, one.metric.replace("_", " "), str(one.difference), _p_value(one.corrected)]
+        for one in comparisons
+        if one.first == first and not math.isnan(one.p_value)
+    ]
+    if rows:
+        caption = f"paired by seed; p-values corrected for all {len(comparisons)} comparisons (Holm)"
+        head = ("trial", "navigator", "metric", f"difference to {first}", "p")
+        print_table(f"comparison with {first}", head, rows, caption, words=3)
+
+
+def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:
+    """Print whether the requirements hold."""
+    for cell, requirement, verdict in verdicts:
+        word = "holds" if verdict.holds else "DOES NOT HOLD"
+        where = ", ".join(filter(None, (cell.trial, cell.method, cell.robot)))
+        print(f"{requirement.text}: {word} for {where}: {verdict.sentence}")
+
+
+def print_runs(result: EvaluationResult) -> None:
+    """Print the failed and the invalid runs, one line for each message of a navigator in a trial."""
+    for word, runs in (("failed", result.failures), ("invalid", result.invalid)):
+        seeds: dict[tuple[str, str, str], list[int]] = {}
+        for cell, row in runs:
+            seeds.setdefault((cell.trial, cell.method, row.message), []).append(row.seed)
+        for (trial, method, message), own in list(seeds.items())[:MOST_ROWS]:
+            some = ", ".join(map(str, own[:5])) + (", ..." if len(own) > 5 else "")
+            print(f"{word}: {trial}, {method}, {len(own)} runs (seeds {some}): {message}")
+        if len(seeds) > MOST_ROWS:
+            print(f"{word}: {len(seeds) - MOST_ROWS} more messages, see --json or --out")
+
+
+def result_values(
+    result: EvaluationResult,
+    statistics: Sequence[Statistic],
+    comparisons: Sequence[PairedComparison],
+    verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]],
+) -> dict[str, Any]:
+    """Return the values of all tables."""
+    return {
+        "provenance": dict(result.provenance),
+        "cells": [
+            {
+                **_names(cell),
+                "runs": len(cell.valid),
+                "hash": cell.hash,
+                "protocol": dict(cell.protocol),
+                "statistics": {one.name: cell.estimate(one)._asdict() for one in statistics},
+            }
+            for cell in result.cells
+        ],
+        "comparisons": [one._asdict() | {"difference": one.difference._asdict()} for one in comparisons],
+        "requirements": [
+            {**_names(cell), "requirement": requirement.text, "holds": verdict.holds, "sentence": verdict.sentence}
+            for cell, requirement, verdict in verdicts
+        ],
+        "failed": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.failures],
+        "invalid": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.invalid],
+    }
+
+
+def _names(cell: CellResult) -> dict[str, str]:
+    return {"trial": cell.trial, "navigator": cell.method, "robot": cell.robot}
+
+
+def _p_value(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.3g}"

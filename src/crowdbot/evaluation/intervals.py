@@ -1,0 +1,120 @@
+"""Confidence intervals: Wilson for proportions, bootstrap for means and quantiles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from crowdbot.core import InputError, stream
+
+__all__ = ["Estimate", "bootstrap_interval", "wilson_interval"]
+
+Floats = NDArray[np.float64]
+RESAMPLES = 2000
+
+
+class Estimate(NamedTuple):
+    """A value with its confidence interval, and the number of runs that it comes from.
+
+    >>> print(Estimate(0.5, 0.31, 0.69, 24))
+    0.5 [0.31, 0.69]
+    """
+
+    value: float
+    low: float
+    high: float
+    runs: int
+
+    def __str__(self) -> str:
+        """Return the value and the interval."""
+        if math.isnan(self.value):
+            return "-"
+        return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
+
+
+def wilson_interval(successes: int, count: int, confidence: float = 0.95) -> Estimate:
+    """Return a proportion with its Wilson score interval.
+
+    Wilson 1927, Probable inference, the law of succession, and statistical inference,
+    https://doi.org/10.1080/01621459.1927.10502953.
+
+    Args:
+        successes: number of successes, 0 to ``count``.
+        count: number of runs; 0 gives NaN.
+        confidence: level, between 0 and 1.
+
+    Raises:
+        InputError: a number is out of range.
+
+    >>> [round(value, 4) for value in wilson_interval(8, 10)[:3]]
+    [0.8, 0.4902, 0.9433]
+    """
+    _check(confidence)
+    if not 0 <= successes <= count:
+        raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
+    if count == 0:
+        return Estimate(math.nan, math.nan, math.nan, 0)
+    z = float(special.ndtri(0.5 + confidence / 2.0))
+    share = successes / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    low = 0.0 if successes == 0 else max(0.0, middle - half)
+    high = 1.0 if successes == count else min(1.0, middle + half)
+    return Estimate(share, low, high, count)
+
+
+def bootstrap_interval(
+    values: Floats,
+    statistic: Callable[[Floats], Floats] | None = None,
+    confidence: float = 0.95,
+    seed: int = 0,
+) -> Estimate:
+    """Return a statistic with its bias-corrected bootstrap interval.
+
+    Values that are not finite are left out. Efron 1987, Better bootstrap confidence intervals,
+    https://doi.org/10.1080/01621459.1987.10478410, without the acceleration.
+
+    Args:
+        values: ``[N]`` one value for each run.
+        statistic: function of ``[R, N]`` that returns ``[R]`` (default: the mean).
+        confidence: level, between 0 and 1.
+        seed: seed of the resamples.
+
+    Raises:
+        InputError: the level is out of range.
+
+    >>> estimate = bootstrap_interval(np.arange(100.0))
+    >>> estimate.value, 40 < estimate.low < 49.5 < estimate.high < 60
+    (49.5, True)
+    """
+    _check(confidence)
+    kept = np.asarray(values, dtype=np.float64)
+    kept = kept[np.isfinite(kept)]
+    if not len(kept):
+        return Estimate(math.nan, math.nan, math.nan, 0)
+    find = statistic or _mean
+    value = float(find(kept[None])[0])
+    if len(kept) == 1 or np.all(kept == kept[0]):
+        spread = 0.0 if len(kept) > 1 else math.nan
+        return Estimate(value, value - spread, value + spread, len(kept))
+    rng = stream(seed, "bootstrap", len(kept))
+    found = np.sort(find(kept[rng.integers(0, len(kept), (RESAMPLES, len(kept)))]))
+    below = (np.sum(found < value) + 0.5 * np.sum(found == value)) / len(found)
+    shift = float(special.ndtri(np.clip(below, 1.0 / len(found), 1.0 - 1.0 / len(found))))
+    edges = special.ndtr(2.0 * shift + special.ndtri(np.array([0.5 - confidence / 2.0, 0.5 + confidence / 2.0])))
+    low, high = np.quantile(found, edges)
+    return Estimate(value, float(low), float(high), len(kept))
+
+
+def _mean(rows: Floats) -> Floats:
+    return np.asarray(np.mean(rows, axis=1))
+
+
+def _check(confidence: float) -> None:
+    if not 0.0 < confidence < 1.0:
+        raise InputError(f"confidence = {confidence} must be between 0 and 1")

@@ -1,0 +1,125 @@
+"""Jobs of an evaluation: some seeds of one cell, run as environments of one simulation."""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import CrowdbotError, MissingExtra
+from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
+from crowdbot.trials import parse_trial
+
+__all__ = ["RunJob", "RunRow", "read_rows", "run_job", "write_rows"]
+
+
+@dataclass(frozen=True)
+class RunJob:
+    """Some seeds of one cell.
+
+    Fields:
+        cell: index of the cell.
+        xml: text of the trial.
+        folder: folder of the trial, or None.
+        seeds: seeds to run.
+        trust: whether code from outside the folder may be loaded.
+    """
+
+    cell: int
+    xml: str
+    folder: Path | None
+    seeds: tuple[int, ...]
+    trust: bool
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """The result of one run.
+
+    Fields:
+        seed: seed of the run.
+        outcome: outcome of the episode; ``invalid`` if the trial is impossible with this seed.
+        digest: digest of the episode; empty for an invalid run.
+        metrics: metrics of the first robot, with ``error`` (1 for a navigator that failed).
+        message: why the run is invalid, or what ended it with an error.
+    """
+
+    seed: int
+    outcome: str
+    digest: str = ""
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    message: str = ""
+
+    @property
+    def valid(self) -> bool:
+        """Whether the run says something about the navigator."""
+        return self.outcome != "invalid"
+
+
+def run_job(job: RunJob) -> list[RunRow]:
+    """Run a job and return a row for each seed.
+
+    A seed with which the trial is impossible gives an invalid row; a navigator that raises, hangs or returns NaN gives
+    a failed one.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C has ended the runs.
+    """
+    trial = parse_trial(job.xml, folder=job.folder, trust=job.trust, quiet=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RunFailureWarning)
+        try:
+            episodes: Sequence[Episode | str] = simulate_seeds(trial, job.seeds)
+        except MissingExtra:
+            raise
+        except CrowdbotError:
+            episodes = [_one(trial, seed) for seed in job.seeds]
+    if any(isinstance(one, Episode) and one.outcome == "interrupted" for one in episodes):
+        raise KeyboardInterrupt
+    return [_row(seed, one) for seed, one in zip(job.seeds, episodes, strict=True)]
+
+
+def _one(trial: Any, seed: int) -> Episode | str:
+    try:
+        return simulate_seeds(trial, [seed])[0]
+    except MissingExtra:
+        raise
+    except CrowdbotError as error:
+        return " ".join(str(error).split())
+
+
+def _row(seed: int, episode: Episode | str) -> RunRow:
+    if isinstance(episode, str):
+        return RunRow(seed, "invalid", message=episode)
+    failed = episode.outcome == "error"
+    metrics = {name: float(value) for name, value in episode.metrics.items() if "." not in name}
+    if failed:
+        metrics |= {"success": 0.0}
+    message = "" if episode.failure is None else str(episode.failure)
+    return RunRow(seed, episode.outcome, episode.digest, metrics | {"error": float(failed)}, message)
+
+
+def write_rows(rows: Sequence[RunRow], path: Path) -> None:
+    """Write rows as JSON; NaN and infinite values are texts."""
+    path.write_text(json.dumps([row_values(row) for row in rows], allow_nan=False), encoding="utf-8")
+
+
+def read_rows(path: Path) -> list[RunRow]:
+    """Read rows from JSON."""
+    return [row_of(values) for values in json.loads(path.read_text(encoding="utf-8"))]
+
+
+def row_values(row: RunRow) -> dict[str, Any]:
+    """Return a row as JSON values; a value that is not finite is a text."""
+    metrics = {name: value if math.isfinite(value) else str(value) for name, value in row.metrics.items()}
+    return asdict(row) | {"metrics": metrics}
+
+
+def row_of(values: Mapping[str, Any]) -> RunRow:
+    """Return a row from JSON values."""
+    metrics = {str(name): float(value) for name, value in values["metrics"].items()}
+    return RunRow(int(values["seed"]), str(values["outcome"]), str(values["digest"]), metrics, str(values["message"]))

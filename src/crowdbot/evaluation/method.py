@@ -1,0 +1,123 @@
+"""Method: a navigator, and optionally a robot, put into a trial in place of its own."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from crowdbot.core import Element, InputError, TrialError, format_xml
+from crowdbot.trials import Trial, element_from, parse_trial
+
+__all__ = ["Method", "own_method", "parse_methods"]
+
+OWN = "own"
+"""Name of the method that leaves the navigator of a trial as it is."""
+SETTING = re.compile(r"([A-Za-z][\w-]*)=(\S+)")
+BY_TYPE = ("radius", "height", "mass", "latency", "rider")
+"""Attributes of a robot that its type gives."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A navigator with its parameters.
+
+    Fields:
+        name: text of the method, such as ``orca time-horizon=3``; ``own`` is the navigator of the trial.
+        type: name of a navigator, or a class in a file: ``mine.py:Mine``.
+        parameters: texts by name of the parameter.
+
+    >>> parse_methods("orca, orca time-horizon=3, own")[1]
+    Method(name='orca time-horizon=3', type='orca', parameters=(('time-horizon', '3'),))
+    """
+
+    name: str
+    type: str = ""
+    parameters: tuple[tuple[str, str], ...] = ()
+
+    def put_into(self, trial: Trial, robot_type: str = "", trust: bool = True) -> Trial:
+        """Return the trial with this navigator for its first robot.
+
+        Args:
+            trial: the trial; it needs a robot.
+            robot_type: another type for the robot, such as ``pepper`` or a robot folder; empty: as in the trial.
+                Radius, height, mass, latency, drive and sensors are then those of the type.
+            trust: whether code from outside the folder of the trial may be loaded.
+
+        Raises:
+            InputError: the trial has no robot.
+            TrialError: there is no such navigator, parameter or robot, or the trial is impossible with it.
+        """
+        if not trial.robots:
+            raise InputError(f"trial {trial.name!r} has no robot to evaluate")
+        if not self.type and not robot_type:
+            return trial
+        root = element_from("trial", trial, trial.folder)
+        robot = next(child for child in root.children if child.tag == "robot")
+        if self.type:
+            robot.children = [child for child in robot.children if child.tag != "navigator"]
+            robot.children.append(self._element(trial.folder))
+        if robot_type:
+            _change_type(robot, _relative(robot_type, trial.folder))
+        place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
+        try:
+            new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust, quiet=True)
+        except TrialError as error:
+            raise TrialError(*(re.sub(r":\d+:", ":", str(line), count=1) for line in error.args)) from None
+        return dataclasses.replace(new, name=trial.name)
+
+    def _element(self, folder: Path | None) -> Element:
+        element = Element("navigator")
+        element.attributes.update({"type": _relative(self.type, folder)} | dict(self.parameters))
+        return element
+
+
+def parse_methods(text: str) -> tuple[Method, ...]:
+    """Return the methods of a list, separated by commas; parameters follow the name, separated by blanks.
+
+    Raises:
+        InputError: the list is empty, has a method twice, or a parameter is not ``name=value``.
+    """
+    methods = tuple(_parse_method(part) for part in text.split(",") if part.strip())
+    if not methods:
+        raise InputError(f"navigators = {text!r} is empty; an example is 'orca, mine.py:Mine speed=0.8'")
+    names = [method.name for method in methods]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"navigators: {name!r} is there twice")
+    return methods
+
+
+def own_method() -> Method:
+    """Return the method that leaves the navigator of a trial as it is."""
+    return Method(OWN)
+
+
+def _parse_method(text: str) -> Method:
+    kind, *settings = text.split()
+    if kind == OWN and not settings:
+        return own_method()
+    parameters = []
+    for setting in settings:
+        match = SETTING.fullmatch(setting)
+        if match is None:
+            raise InputError(f"navigator {text.strip()!r}: {setting!r} must be name=value, such as time-horizon=3")
+        parameters.append((match[1], match[2]))
+    return Method(" ".join([kind, *settings]), kind, tuple(parameters))
+
+
+def _change_type(robot: Element, kind: str) -> None:
+    robot.attributes["type"] = kind
+    for name in BY_TYPE:
+        robot.attributes.pop(name, None)
+    robot.children = [child for child in robot.children if child.tag not in ("drive", "sensor")]
+
+
+def _relative(name: str, folder: Path | None) -> str:
+    """Return the address of a file in the working directory as seen from the folder of the trial."""
+    file, colon, rest = name.partition(":")
+    if folder is None or not (Path(file).is_file() or (not colon and Path(file).is_dir())):
+        return name
+    return f"{Path(os.path.relpath(Path(file).resolve(), folder.resolve())).as_posix()}{colon}{rest}"

@@ -1,0 +1,101 @@
+"""Pareto picture: success against time to the goal, with collisions as colour."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Callable, Sequence
+
+from .result import CellResult
+
+__all__ = ["pareto_front", "pareto_svg"]
+
+WIDTH, HEIGHT, MARGIN = 720, 380, 56
+NEAR = 20.0
+"""Distance of two points below which their labels are drawn one below the other."""
+
+
+def pareto_front(points: Sequence[tuple[float, ...]]) -> list[int]:
+    """Return the points that no other point beats; every value is better when it is lower.
+
+    >>> pareto_front([(0.1, 3.0), (0.2, 2.0), (0.2, 3.0)])
+    [0, 1]
+    """
+    return [
+        k for k, one in enumerate(points) if not any(_dominates(other, one) for j, other in enumerate(points) if j != k)
+    ]
+
+
+def _dominates(first: tuple[float, ...], second: tuple[float, ...]) -> bool:
+    pairs = list(zip(first, second, strict=True))
+    return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
+
+
+def pareto_svg(cells: Sequence[CellResult]) -> str:
+    """Return an SVG picture of all cells with a success, or an empty text.
+
+    The best cells of a trial, which no other beats in success, time and collisions, have a dark edge.
+    """
+    rows = [(cell, cell.estimate("success-rate"), cell.estimate("time_to_goal")) for cell in cells]
+    rows = [row for row in rows if not math.isnan(row[2].value) and not math.isnan(row[1].value)]
+    if not rows:
+        return ""
+    slowest = max(row[2].high if math.isfinite(row[2].high) else row[2].value for row in rows) * 1.05
+    fastest = min(row[2].low if math.isfinite(row[2].low) else row[2].value for row in rows) * 0.95
+    best = _best(rows)
+
+    def x_of(time: float) -> float:
+        return MARGIN + (WIDTH - 2 * MARGIN) * (time - fastest) / max(1e-9, slowest - fastest)
+
+    def y_of(share: float) -> float:
+        return HEIGHT - MARGIN - (HEIGHT - 1.6 * MARGIN) * share
+
+    parts = [_axes(fastest, slowest, x_of, y_of)]
+    labels: list[tuple[float, float]] = []
+    for k, (cell, success, time) in enumerate(rows):
+        collisions = cell.estimate("collision-rate").value
+        x, y = x_of(time.value), y_of(success.value)
+        edge = "#111" if k in best else "#9aa4b0"
+        low, high = (value if math.isfinite(value) else time.value for value in (time.low, time.high))
+        bars = f"M{x:.1f} {y_of(success.low):.1f}V{y_of(success.high):.1f}M{x_of(low):.1f} {y:.1f}H{x_of(high):.1f}"
+        parts.append(f'<path d="{bars}" stroke="#9aa4b0" fill="none"/>')
+        hue = 130.0 * (1.0 - min(1.0, collisions))
+        parts.append(
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="hsl({hue:.0f} 60% 50%)" stroke="{edge}" stroke-width="2"/>'
+        )
+        level = sum(math.hypot(x - other[0], y - other[1]) < NEAR for other in labels)
+        labels.append((x, y))
+        label = html.escape(", ".join(filter(None, (cell.trial, cell.method, cell.robot))))
+        side = ("end", -10) if x > WIDTH / 2 else ("start", 10)
+        parts.append(f'<text x="{x + side[1]:.1f}" y="{y + 4 + 14 * level:.1f}" text-anchor="{side[0]}">{label}</text>')
+    body = "".join(parts)
+    return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Success and time to the goal">{body}</svg>'
+
+
+def _best(rows: Sequence[tuple[CellResult, object, object]]) -> set[int]:
+    found: set[int] = set()
+    for trial in {row[0].trial for row in rows}:
+        own = [k for k, row in enumerate(rows) if row[0].trial == trial]
+        points = [
+            (
+                -rows[k][0].estimate("success-rate").value,
+                rows[k][0].estimate("time_to_goal").value,
+                rows[k][0].estimate("collision-rate").value,
+            )
+            for k in own
+        ]
+        found |= {own[k] for k in pareto_front(points)}
+    return found
+
+
+def _axes(fastest: float, slowest: float, x_of: Callable[[float], float], y_of: Callable[[float], float]) -> str:
+    base, left, right = y_of(0.0), MARGIN, WIDTH - MARGIN
+    parts = [f'<path d="M{left} {y_of(1.0):.1f}V{base:.1f}H{right}" stroke="#59636f" fill="none"/>']
+    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+        parts.append(f'<text x="{left - 8}" y="{y_of(share) + 4:.1f}" text-anchor="end">{share:g}</text>')
+    for k in range(5):
+        time = fastest + (slowest - fastest) * k / 4
+        parts.append(f'<text x="{x_of(time):.1f}" y="{base + 18:.1f}" text-anchor="middle">{time:.1f}</text>')
+    parts.append(f'<text x="{WIDTH / 2}" y="{base + 38:.1f}" text-anchor="middle">mean time to the goal [s]</text>')
+    parts.append(f'<text x="{left}" y="14">success rate; green: no collisions, red: all runs</text>')
+    return "".join(parts)

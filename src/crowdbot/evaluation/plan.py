@@ -1,0 +1,154 @@
+"""Plan of an evaluation: trials, navigators, robots and seeds, and the cells that they form."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import InputError
+from crowdbot.trials import Trial, expand_sweeps, load_trial, trial_xml
+
+from .method import Method, own_method
+
+__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
+
+MOST_SEEDS = 1_000_000
+MOST_CELLS = 10_000
+RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")
+
+
+@dataclass(frozen=True)
+class EvaluationCell:
+    """A trial with one navigator and one robot, to run with all seeds.
+
+    Fields:
+        trial: name of the trial, with the values of its sweeps.
+        method: name of the navigator.
+        robot: name of the robot type; empty as in the trial.
+        variant: the trial with this navigator and robot.
+    """
+
+    trial: str
+    method: str
+    robot: str
+    variant: Trial
+
+    @property
+    def xml(self) -> str:
+        """Text of the variant."""
+        return trial_xml(self.variant)
+
+    @property
+    def hash(self) -> str:
+        """Hash of that text: SHA-256 in hexadecimal."""
+        return hashlib.sha256(self.xml.encode()).hexdigest()
+
+    @property
+    def protocol(self) -> dict[str, Any]:
+        """What a reader must know to compare the numbers: world, visibility, sensors, time steps."""
+        robot = self.variant.robots[0]
+        sensors = sorted({type(mount.sensor).__name__ for mount in (*robot.type_sensors, *robot.sensors)})
+        return {
+            "world": self.variant.world,
+            "visible": robot.visible,
+            "ghost": robot.ghost,
+            "robot": robot.type or f"disc of {robot.radius:g} m",
+            "drive": type(robot.drive).__name__,
+            "holonomic": robot.holonomic,
+            "senses": sensors,
+            "people": self.variant.people,
+            "crowd": type(self.variant.crowd).__name__,
+            "step": self.variant.step,
+            "control_period": robot.control_period,
+            "latency": robot.latency,
+            "duration": self.variant.duration,
+            "goal_tolerance": robot.goal.tolerance,
+        }
+
+
+@dataclass(frozen=True)
+class EvaluationPlan:
+    """Trials times navigators times robots times seeds.
+
+    Args:
+        trials: trials; those with sweeps count as all their variants.
+        methods: navigators (default: that of each trial).
+        robots: types of robots; an empty name keeps the robot of the trial (default).
+        seeds: seeds of the runs, the same for all navigators.
+        trust: whether code from outside the folders of the trials may be loaded.
+
+    Raises:
+        InputError: a list is empty, a name or a seed is there twice, or there are too many cells.
+        TrialError: a navigator or robot is not possible in a trial.
+
+    >>> from crowdbot.evaluation import EvaluationPlan, parse_methods
+    >>> from crowdbot.trials import load_trial
+    >>> plan = EvaluationPlan([load_trial("frontal")], parse_methods("orca, straight"), seeds=range(10))
+    >>> [(cell.trial, cell.method) for cell in plan.cells]
+    [('frontal', 'orca'), ('frontal', 'straight')]
+    """
+
+    trials: Sequence[Trial]
+    methods: Sequence[Method] = (own_method(),)
+    robots: Sequence[str] = ("",)
+    seeds: Sequence[int] = range(20)
+    trust: bool = True
+    cells: tuple[EvaluationCell, ...] = dataclasses.field(init=False)
+
+    def __post_init__(self) -> None:
+        lists = {"trials": self.trials, "navigators": self.methods, "robots": self.robots, "seeds": self.seeds}
+        for name, values in lists.items():
+            if not len(values):
+                raise InputError(f"an evaluation needs {name}; the list is empty")
+        for name, labels in (("robots", [*map(repr, self.robots)]), ("seeds", [*map(str, self.seeds)])):
+            again = [label for label, count in Counter(labels).items() if count > 1]
+            if again:
+                raise InputError(f"{name}: {again[0]} is there twice")
+        trials = [variant for trial in self.trials for variant in expand_sweeps(trial, trust=self.trust)]
+        names = [trial.name for trial in trials]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"trials: {name!r} is there twice")
+        count = len(trials) * len(self.methods) * len(self.robots)
+        if count > MOST_CELLS:
+            raise InputError(f"the evaluation has {count} cells, at most {MOST_CELLS} are allowed")
+        cells = tuple(
+            EvaluationCell(trial.name, method.name, robot, method.put_into(trial, robot, self.trust))
+            for trial in trials
+            for robot in self.robots
+            for method in self.methods
+        )
+        object.__setattr__(self, "cells", cells)
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Return the seeds in a text: ``0:100`` for 0 to 99, or numbers and ranges separated by commas.
+
+    Raises:
+        InputError: the text has another form, is empty, or has too many seeds.
+
+    >>> parse_seeds("0:3, 10")
+    (0, 1, 2, 10)
+    """
+    seeds: list[int] = []
+    for part in text.split(","):
+        match = RANGE.fullmatch(part.strip())
+        if match is None:
+            raise InputError(f"seeds {text!r}: {part.strip()!r} must be a number or a range such as 0:100")
+        first = int(match[1])
+        end = first + 1 if match[2] is None else int(match[2])
+        if end <= first or end - first > MOST_SEEDS:
+            raise InputError(f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} numbers")
+        seeds += range(first, end)
+    return tuple(seeds)
+
+
+def load_trials(names: Sequence[str], trust: bool = False, **values: Any) -> list[Trial]:
+    """Return trials from files or built-in names."""
+    return [load_trial(str(Path(name)) if Path(name).is_file() else name, trust=trust, **values) for name in names]

@@ -1,0 +1,152 @@
+"""Report of an evaluation: one HTML page with tables, comparisons, a Pareto picture and the worst runs to play."""
+
+from __future__ import annotations
+
+import html
+import importlib.resources
+import json
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from string import Template
+
+from crowdbot.core import explain_write_errors
+
+from .comparison import PairedComparison
+from .pareto import pareto_svg
+from .requirement import Requirement
+from .result import CellResult, EvaluationResult
+from .statistic import Statistic
+from .worst_run import WorstRun
+
+__all__ = ["write_report"]
+
+
+def write_report(
+    result: EvaluationResult,
+    path: Path,
+    statistics: Sequence[Statistic],
+    *,
+    worst: Sequence[WorstRun] = (),
+    requirements: Sequence[Requirement] = (),
+    comparisons: Sequence[PairedComparison] = (),
+) -> None:
+    """Write one HTML page that needs no other file and asks nothing from the network.
+
+    Args:
+        result: the evaluation.
+        path: the page.
+        statistics: columns of the table.
+        worst: runs to play.
+        requirements: bounds with their verdicts.
+        comparisons: comparisons of the navigators.
+
+    Raises:
+        InputError: the page cannot be written.
+    """
+    seeds = max((len(cell.runs) for cell in result.cells), default=0)
+    page = Template(_asset("report.html")).substitute(
+        style=_asset("report.css"),
+        script=_asset("report.js"),
+        lead=html.escape(
+            f"{len(result.cells)} combinations of trial, navigator and robot, {seeds} seeds each; intervals are 95 %."
+        ),
+        table=_results(result, statistics),
+        protocol=_protocol(result.cells),
+        requirements=_requirements(result, requirements),
+        comparisons=_comparisons(comparisons),
+        pareto=pareto_svg(result.cells),
+        failures=_failures(result),
+        runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
+        provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),
+        data=json.dumps([run.drawing for run in worst], allow_nan=False).replace("<", "\\u003c"),
+    )
+    with explain_write_errors(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(page, encoding="utf-8")
+
+
+def _asset(name: str) -> str:
+    return importlib.resources.files("crowdbot").joinpath("assets", "evaluation", name).read_text(encoding="utf-8")
+
+
+def _title(run: WorstRun) -> str:
+    cell, note = run.cell, "" if run.same else " (another digest on this computer)"
+    where = " on ".join(filter(None, (cell.method, cell.robot)))
+    return f"{cell.trial}, {where}, seed {run.row.seed}: {run.row.outcome}{note}"
+
+
+def _names(cell: CellResult) -> tuple[str, str, str]:
+    return cell.trial, cell.method, cell.robot or "-"
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    table = [list(row) for row in rows]
+    if not table:
+        return ""
+    empty = [k for k, name in enumerate(head) if name == "robot" and all(row[k] == "-" for row in table)]
+    names = "".join(f"<th>{html.escape(name)}</th>" for k, name in enumerate(head) if k not in empty)
+    cells = ["".join(f"<td>{html.escape(cell)}</td>" for k, cell in enumerate(row) if k not in empty) for row in table]
+    body = "".join(f"<tr>{row}</tr>" for row in cells)
+    return f"<div class='wide'><table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table></div>"
+
+
+def _results(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
+    head = ["trial", "navigator", "robot", "runs", *(one.name for one in statistics)]
+    rows = [
+        [*_names(cell), str(len(cell.valid)), *(str(cell.estimate(one)) for one in statistics)] for cell in result.cells
+    ]
+    return _table(head, rows)
+
+
+def _protocol(cells: Sequence[CellResult]) -> str:
+    keys = list(dict.fromkeys(key for cell in cells for key in cell.protocol))
+    rows = [[*_names(cell), *(_words(cell.protocol.get(key)) for key in keys)] for cell in cells]
+    return _table(["trial", "navigator", "robot type", *(key.replace("_", " ") for key in keys)], rows)
+
+
+def _words(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value)) or "the true state"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _requirements(result: EvaluationResult, requirements: Sequence[Requirement]) -> str:
+    rows = []
+    for requirement in requirements:
+        for cell in result.cells:
+            verdict = requirement.judge(cell.values(requirement.statistic.metric))
+            passed = "holds" if verdict.holds else "does not hold"
+            rows.append([*_names(cell), requirement.text, passed, verdict.sentence])
+    table = _table(["trial", "navigator", "robot", "requirement", "verdict", "measured"], rows)
+    return f"<h2>Requirements</h2>{table}" if table else ""
+
+
+def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
+    rows = [
+        [one.trial, one.robot or "-", one.metric.replace("_", " "), one.first, one.second, str(one.difference),
+         _p_value(one.p_value), _p_value(one.corrected)]
+        for one in comparisons
+        if not math.isnan(one.p_value)
+    ]  # fmt: skip
+    head = ["trial", "robot", "metric", "first", "second", "second - first", "p", "p corrected"]
+    table = _table(head, rows)
+    about = "<p>Runs with the same seed are compared in pairs; p-values are corrected for all comparisons (Holm).</p>"
+    return f"<h2>Comparisons</h2>{about}{table}" if table else ""
+
+
+def _p_value(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.3g}"
+
+
+def _failures(result: EvaluationResult) -> str:
+    rows = [[cell.trial, cell.method, str(row.seed), "failed", row.message] for cell, row in result.failures]
+    rows += [[cell.trial, cell.method, str(row.seed), "invalid", row.message] for cell, row in result.invalid]
+    table = _table(["trial", "navigator", "seed", "kind", "message"], rows)
+    about = (
+        "<p>A failed run counts as a run without success. An invalid run is impossible whatever the navigator does,"
+        " and counts nowhere.</p>"
+    )
+    return f"<h2>Failed and invalid runs</h2>{about}{table}" if table else ""

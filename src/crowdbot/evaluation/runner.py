@@ -1,0 +1,86 @@
+"""Evaluate navigators: run a plan over processes or a cluster, and resume what has been done."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+
+from crowdbot.core import run_saved_jobs, source_digest
+from crowdbot.trials import code_references
+
+from .job import RunJob, RunRow, read_rows, run_job, write_rows
+from .plan import EvaluationPlan
+from .result import CellResult, EvaluationResult, provenance
+
+__all__ = ["evaluate"]
+
+CHUNK = 32
+"""Seeds that run together; a killed evaluation loses at most these."""
+
+
+def evaluate(
+    plan: EvaluationPlan,
+    folder: Path | None = None,
+    *,
+    workers: int = 1,
+    cluster: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> EvaluationResult:
+    """Run all cells of a plan with all seeds.
+
+    The result depends on the plan only, not on workers, chunks or interruptions.
+
+    Args:
+        plan: what to run.
+        folder: folder of partial results, from which an interrupted evaluation continues; results of other versions
+            of the program, the trial or the navigator are not used.
+        workers: number of processes.
+        cluster: address of a Ray cluster; see :func:`crowdbot.core.each`.
+        progress: called with the completed share, 0 to 1.
+
+    Raises:
+        InputError: ``workers`` is below 1, or a partial result is damaged.
+        MissingExtra: a navigator or the cluster needs a package that is not installed.
+
+    >>> from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
+    >>> from crowdbot.trials import load_trial
+    >>> trial = load_trial("frontal", duration=3.0)
+    >>> result = evaluate(EvaluationPlan([trial], parse_methods("orca, straight"), seeds=range(3)))
+    >>> [str(cell.estimate("collision-rate")) for cell in result.cells]
+    ['0 [0, 0.561]', '0 [0, 0.561]']
+    """
+    jobs = [
+        RunJob(k, cell.xml, cell.variant.folder, tuple(map(int, plan.seeds[begin : begin + CHUNK])), plan.trust)
+        for k, cell in enumerate(plan.cells)
+        for begin in range(0, len(plan.seeds), CHUNK)
+    ]
+    files = [] if folder is None else [folder / f"{_key(job)}.json" for job in jobs]
+    rows: dict[int, list[RunRow]] = {}
+    for number, found in run_saved_jobs(run_job, jobs, files, write_rows, read_rows, workers, cluster):
+        rows[number] = found
+        if progress is not None:
+            progress(len(rows) / len(jobs))
+    cells = tuple(
+        CellResult(
+            cell.trial,
+            cell.method,
+            cell.robot,
+            cell.hash,
+            cell.protocol,
+            tuple(row for number, job in enumerate(jobs) if job.cell == k for row in rows[number]),
+        )
+        for k, cell in enumerate(plan.cells)
+    )
+    return EvaluationResult(cells, provenance())
+
+
+def _key(job: RunJob) -> str:
+    """Return a name for the result of a job, which changes with everything that the result depends on."""
+    found = hashlib.blake2b(digest_size=12)
+    for part in (source_digest(), job.xml, str(job.seeds)):
+        found.update(part.encode() + b"\0")
+    folder = job.folder or Path.cwd()
+    for name in code_references({"trial": job.xml}, folder):
+        found.update(name.encode() + b"\0" + (folder / name).read_bytes())
+    return found.hexdigest()

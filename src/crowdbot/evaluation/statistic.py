@@ -1,0 +1,96 @@
+"""Statistics of a metric over runs, by name: ``collision-rate``, ``mean-jerk``, ``p95:min-clearance``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean
+
+from .intervals import Estimate, bootstrap_interval, wilson_interval
+
+__all__ = ["RATES", "Statistic", "parse_statistic"]
+
+Floats = NDArray[np.float64]
+RATES = {
+    "success-rate": "success",
+    "collision-rate": "collision",
+    "timeout-rate": "timeout",
+    "error-rate": "error",
+}
+"""Names of the shares of runs, with their metric."""
+QUANTILE = re.compile(r"p(\d{1,2})")
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """A number that summarises a metric over runs.
+
+    Fields:
+        name: as given, such as ``collision-rate``.
+        metric: name of the metric, such as ``collision``.
+        kind: ``rate``, ``mean``, ``median``, ``max``, ``min``, or ``p5`` to ``p99``.
+    """
+
+    name: str
+    metric: str
+    kind: str
+
+    def estimate(self, values: Floats, confidence: float = 0.95) -> Estimate:
+        """Return the statistic of one value for each run, with its interval.
+
+        A run without the metric (NaN), such as the time to the goal of a run that fails, does not count. The interval
+        of ``max`` and ``min`` ends at the value: a bootstrap cannot go beyond what has been seen.
+        """
+        kept = np.asarray(values, dtype=np.float64)
+        kept = kept[~np.isnan(kept)]
+        if self.kind == "rate":
+            return wilson_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
+        if not len(kept):
+            return bootstrap_interval(kept, confidence=confidence)
+        kept = np.where(np.isinf(kept), np.nan, kept) if np.isfinite(kept).any() else kept
+        return bootstrap_interval(kept, _FUNCTIONS.get(self.kind) or _quantile(self.kind), confidence)
+
+
+def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> Statistic:
+    """Return the statistic with a name.
+
+    Args:
+        name: ``success-rate``, ``collision-rate``, ``timeout-rate`` or ``error-rate``; a metric, of which the mean is
+            taken; or a metric after ``median:``, ``min:``, ``max:`` or a percentile such as ``p95:``.
+        metrics: known metrics, to refuse others.
+
+    Raises:
+        InputError: there is no such metric or kind.
+
+    >>> parse_statistic("collision-rate").metric, parse_statistic("p95:time-to-goal").kind
+    ('collision', 'p95')
+    """
+    kind, colon, word = name.rpartition(":")
+    if not colon and word in RATES:
+        return Statistic(name, RATES[word], "rate")
+    kind = kind if colon else "mean"
+    if kind not in _FUNCTIONS and not QUANTILE.fullmatch(kind):
+        raise InputError(f"statistic {name!r}: {kind!r} is unknown; possible are {', '.join(_FUNCTIONS)} and p5 to p99")
+    metric = word.replace("-", "_")
+    if metrics is not None and metric not in metrics:
+        known = [*RATES, *(one.replace("_", "-") for one in metrics)]
+        raise InputError(f"there is no metric {word!r}{did_you_mean(word, known)}; known are {', '.join(known)}")
+    return Statistic(name, metric, kind)
+
+
+_FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {
+    "mean": lambda rows: np.asarray(np.mean(rows, axis=1)),
+    "median": lambda rows: np.asarray(np.median(rows, axis=1)),
+    "min": lambda rows: np.asarray(np.min(rows, axis=1)),
+    "max": lambda rows: np.asarray(np.max(rows, axis=1)),
+}
+
+
+def _quantile(kind: str) -> Callable[[Floats], Floats]:
+    share = int(kind[1:]) / 100.0
+    return lambda rows: np.asarray(np.quantile(rows, share, axis=1))

@@ -1,0 +1,174 @@
+"""DecisionTimer: deadline and limit of the decisions of a robot, measured, or as recorded."""
+
+from __future__ import annotations
+
+import functools
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.navigation import (
+    Decisions,
+    HungNavigatorError,
+    Navigator,
+    ObservationBatch,
+    call_within,
+    copy_memory,
+)
+from crowdbot.trials import RobotSpec
+
+from .failure import RunFailure
+from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
+
+__all__ = ["DecisionTimer"]
+
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+NEVER = -1
+"""Tick of the latest decision of a kind before there is one."""
+
+
+@dataclass
+class DecisionTimer:
+    """Real time of the decisions of one robot in E environments.
+
+    A decision that takes longer than the deadline is missed, one that takes longer than the limit of the robot fails.
+    The code of crowdbot itself has no limit. A replay measures nothing.
+
+    Fields:
+        missed: ``[E]`` tick of the latest decision that took longer than the deadline, -1 for none.
+        hung: ``[E]`` tick of the decision that did not return, -1 for none.
+        recorded: recorded decisions of each environment that is replayed, otherwise None.
+        clock: clock of the compute times [s], used only with a deadline.
+    """
+
+    missed: Ints
+    hung: Ints
+    recorded: list[RecordedDecisions | None]
+    clock: Callable[[], float] = time.perf_counter
+    _warm: bool = field(default=False, init=False)
+
+    @classmethod
+    def of(cls, count: int) -> DecisionTimer:
+        """Return the state before the first decision."""
+        return cls(np.full(count, NEVER, dtype=np.int64), np.full(count, NEVER, dtype=np.int64), [None] * count)
+
+    def first_memories(
+        self, robot: RobotSpec, batch: ObservationBatch, environments: Ints
+    ) -> tuple[list[Any], dict[int, Exception]]:
+        """Return the memories of the navigator before the first decision, and what failed."""
+        return robot.navigator.first_memories(batch, robot=robot.name, limit=self._limit(robot, environments))
+
+    def decide(self, robot: RobotSpec, batch: ObservationBatch, memories: list[Any], environments: Ints) -> Decisions:
+        """Let the navigator decide, with compute times if they matter."""
+        navigator, name = robot.navigator, robot.name
+        decide = functools.partial(_decide, navigator, batch, name, self._limit(robot, environments))
+        if robot.deadline is None or self._is_replay(environments):
+            return decide(memories, None)
+        if not self._warm:  # code is compiled and loaded at the first call, which says nothing about the others
+            decide([copy_memory(memory, name) for memory in memories], None)
+            self._warm = True
+        return decide(memories, self.clock)
+
+    def judge(self, robot: RobotSpec, environments: Ints, ticks: Ints, decisions: Decisions) -> Bools:
+        """Return ``[N]`` which decisions missed the deadline, and keep these and the ones that did not return."""
+        late = np.zeros(len(environments), dtype=np.bool_)
+        for k, e in enumerate(environments.tolist() if robot.deadline is not None else ()):
+            recorded = self.recorded[e]
+            if recorded is not None:
+                late[k] = int(ticks[k]) in recorded.missed
+            else:
+                late[k] = decisions.seconds[k] > (robot.deadline or math.inf)
+        late[list(decisions.failures)] = False
+        self.missed[environments[late]] = ticks[late]
+        for k, error in decisions.failures.items():
+            if isinstance(error, HungNavigatorError):
+                self.hung[environments[k]] = ticks[k]
+        return late
+
+    def recorded_hangs(self, robot: RobotSpec, environments: Ints, ticks: Ints) -> dict[int, Exception]:
+        """Return the errors of the replayed environments whose decision at their tick ``[N]`` did not return."""
+        found: dict[int, Exception] = {}
+        for e, tick in zip(environments.tolist(), ticks.tolist(), strict=True):
+            recorded = self.recorded[e]
+            order = None if recorded is None else recorded.hung.get(tick)
+            if order is not None:
+                found[e] = HungNavigatorError(robot.navigator.title(robot.name), order.seconds, order.place)
+                self.hung[e] = tick
+        return found
+
+    def orders(self, robot: RobotSpec, ticks: Ints, failures: Sequence[RunFailure | None]) -> list[DecisionOrder]:
+        """Return what a recording must keep about the decisions at the current ticks ``[E]``.
+
+        Args:
+            robot: the robot.
+            ticks: ``[E]`` current ticks.
+            failures: failure of each environment.
+        """
+        found: list[DecisionOrder] = [
+            MissedDecisionOrder(robot=robot.name, environment=e) for e in np.flatnonzero(self.missed == ticks).tolist()
+        ]
+        for e in np.flatnonzero(self.hung == ticks).tolist():
+            failure, recorded = failures[e], self.recorded[e]
+            known = None if recorded is None else recorded.hung.get(int(ticks[e]))
+            seconds = robot.decision_limit if known is None else known.seconds
+            place = "" if failure is None else failure.place
+            found.append(HungDecisionOrder(robot=robot.name, seconds=seconds, place=place, environment=e))
+        return found
+
+    def replay(self, environment: int, recorded: RecordedDecisions | None) -> None:
+        """Let the decisions of an environment be missed and hang as recorded; None: measure again."""
+        self.recorded[environment] = recorded
+
+    def select(self, environments: Ints) -> DecisionTimer:
+        """Return an independent state of some environments."""
+        recorded = [self.recorded[e] for e in environments]
+        other = DecisionTimer(self.missed[environments], self.hung[environments], recorded, self.clock)
+        other._warm = self._warm
+        return other
+
+    def put(self, environments: Ints, other: DecisionTimer) -> None:
+        """Replace the state of some environments."""
+        self.missed[environments], self.hung[environments] = other.missed, other.hung
+        for k, e in enumerate(environments.tolist()):
+            self.recorded[e] = other.recorded[k]
+
+    def _is_replay(self, environments: Ints) -> bool:
+        return all(self.recorded[e] is not None for e in environments)
+
+    def _limit(self, robot: RobotSpec, environments: Ints) -> float | None:
+        """Return the limit of real time [s]; None for the code of crowdbot and in a replay."""
+        if _is_own(type(robot.navigator)) and robot.predictor is None:
+            return None
+        return None if self._is_replay(environments) else robot.decision_limit
+
+
+def _is_own(kind: type) -> bool:
+    return kind.__module__.startswith("crowdbot.")
+
+
+def _decide(
+    navigator: Navigator,
+    batch: ObservationBatch,
+    name: str,
+    limit: float | None,
+    memories: Sequence[Any],
+    clock: Callable[[], float] | None,
+) -> Decisions:
+    """Return the decisions of a navigator; one with a ``decide_batch`` of its own has the limit for all of them."""
+    owner = next(kind for kind in type(navigator).__mro__ if "decide_batch" in vars(kind))
+    if _is_own(owner):
+        return navigator.decide_batch(batch, memories, name, clock, limit)
+    try:
+        decide = functools.partial(navigator.decide_batch, batch, memories, name, clock)
+        return call_within(limit, decide, navigator.title(name))
+    except HungNavigatorError as error:
+        decisions = Decisions.still(memories)
+        decisions.failures.update(dict.fromkeys(range(len(batch)), error))
+        return decisions

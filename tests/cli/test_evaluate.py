@@ -1,0 +1,109 @@
+"""``crowdbot evaluate``: tables, JSON, requirements, report, interruption, wrong input."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from crowdbot.cli import main
+from crowdbot.core import parse_xml
+
+QUICK = ["evaluate", "frontal", "--set", "duration=2", "--seeds", "0:3"]
+
+
+def _json(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
+    main([*words, "--json"])
+    return json.loads(capsys.readouterr().out)
+
+
+def test_tables_and_requirements_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*QUICK, "--navigators", "straight, orca", "--require", "collision-rate<0.9@90%"]) == 0
+    text = capsys.readouterr().out
+    assert re.search(r"straight +yes +3 +0 \[0, 0\.561\]", text)
+    assert "6 runs in" in text
+    assert "comparison with straight" in text
+    assert "collision-rate<0.9@90%: holds for frontal, orca: collision-rate is 0 in 3 runs" in text
+
+
+def test_a_requirement_that_does_not_hold_gives_status_1_and_a_failure_in_junit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [*QUICK, "--navigators", "straight, orca", "--require", "success-rate>0.5", "--out", str(tmp_path)]
+    assert main(words) == 1
+    assert "DOES NOT HOLD for frontal, straight: success-rate is 0 in 3 runs" in capsys.readouterr().out
+    root = parse_xml((tmp_path / "junit.xml").read_bytes(), "junit.xml")
+    (suite,) = root.children
+    assert (suite.attributes["tests"], suite.attributes["failures"]) == ("2", "2")
+    report = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "success-rate is 0 in 3 runs" in report
+    assert "http" not in re.sub(r"<pre>.*</pre>", "", report, flags=re.S)
+    drawing = json.loads(re.search(r'type="application/json">(.*?)</script>', report, re.S)[1])  # type: ignore[index]
+    assert len(drawing) == 2
+    assert {agent["robot"] for agent in drawing[0]["agents"]} == {True, False}
+    result = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
+    assert [cell["navigator"] for cell in result["cells"]] == ["straight", "orca"]
+
+
+def test_json_has_all_values(capsys: pytest.CaptureFixture[str]) -> None:
+    found = _json(capsys, *QUICK, "--metrics", "success-rate,p95:min-clearance", "--navigators", "orca safety=0.2")
+    (cell,) = found["cells"]
+    assert (cell["trial"], cell["navigator"], cell["runs"]) == ("frontal", "orca safety=0.2", 3)
+    assert set(cell["statistics"]) == {"success-rate", "p95:min-clearance"}
+    assert cell["protocol"]["control_period"] == 0.1
+    assert found["failed"] == found["invalid"] == found["requirements"] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--navigators", "orcaa"], "unknown navigator 'orcaa', did you mean 'orca'"),
+        (["--seeds", "3:1"], "the range '3:1' must have 1 to"),
+        (["--require", "collision"], "requirement 'collision' must be like collision-rate<0.01@95%"),
+        (["--metrics", "sucess-rate"], "there is no metric 'sucess-rate', did you mean 'success-rate'"),
+        (["--robots", "peper"], "peper"),
+        (["--workers", "0"], "workers = 0 must be at least 1"),
+        (["--worst", "-1"], "--worst -1 must be at least 0"),
+    ],
+)
+def test_wrong_input_is_told_in_a_sentence(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*QUICK, *words]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert "Traceback" not in error
+
+
+def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = [
+        "evaluate",
+        "frontal",
+        "--set",
+        "duration=3",
+        "--seeds",
+        "0:96",
+        "--navigators",
+        "straight, orca",
+        "--json",
+    ]
+    assert main(words) == 0
+    whole = json.loads(capsys.readouterr().out)
+    command = [sys.executable, "-m", "crowdbot", *words, "--out", str(tmp_path), "--worst", "0"]
+    program = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ))
+    end = time.monotonic() + 120.0
+    while not list(tmp_path.glob("parts/*.json")) and time.monotonic() < end:
+        time.sleep(0.02)
+    program.send_signal(signal.SIGKILL)
+    program.wait()
+    assert list(tmp_path.glob("parts/*.json"))
+    assert main([*words, "--out", str(tmp_path), "--worst", "0"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["cells"] == whole["cells"]
+    assert again["comparisons"] == whole["comparisons"]
