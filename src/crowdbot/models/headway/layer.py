@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Neighbors, PerAgent, Scene, parameter, per_agent
+from crowdbot.core import InputError, Neighbors, PerAgent, Scene, parameter, per_agent, unread_fields
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.mixture import Mixture
 from crowdbot.models.model import CrowdModel, begin_step, launch, rows
@@ -182,7 +182,7 @@ def make_class(name: str, fields: Sequence[tuple[str, Any, Any]], kind: type[Cro
         kind: class of the model.
         doc: docstring.
     """
-    space = {"base": kind, "paper": getattr(kind, "paper", None), "__doc__": doc}
+    space = {"base": kind, "paper": getattr(kind, "paper", None), "__doc__": doc, "_unread_fields": unread_fields(kind)}
     made = dataclasses.make_dataclass(name, fields, bases=(HeadwayLayer,), namespace=space, frozen=True, kw_only=True)
     # the module of the model: the world asks it whether one call may step several environments
     made.__module__ = kind.__module__
