@@ -53,7 +53,7 @@ class EvaluationCell:
     def protocol(self) -> dict[str, Any]:
         """What a reader must know to compare the numbers: world, visibility, sensors, time steps."""
         robot = self.variant.robots[0]
-        sensors = sorted({type(mount.sensor).__name__ for mount in (*robot.type_sensors, *robot.sensors)})
+        sensors = sorted({type(mount.sensor).__name__ for mount in robot.sensors})
         return {
             "world": self.variant.world,
             "visible": robot.visible,

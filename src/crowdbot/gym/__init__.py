@@ -1,0 +1,49 @@
+"""Environments for reinforcement learning with the interface of Gymnasium, over any trial.
+
+``CrowdEnv`` and ``CrowdVectorEnv`` need the extra ``gym``: ``pip install 'crowdbot[gym]'``. Names are loaded on
+first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.core import import_optional
+from crowdbot.lazy import lazy_exports
+
+if TYPE_CHECKING:
+    from .action_form import ActionForm
+    from .crowd_task import CrowdTask, TaskStep
+    from .environment import CrowdEnv
+    from .observation_form import PERSON_VALUES, ROBOT_VALUES, ObservationForm
+    from .registration import register_environments
+    from .reward import Reward
+    from .vector_environment import CrowdVectorEnv
+
+import_optional("gymnasium", "crowdbot.gym", "gym")
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "action_form": ["ActionForm"],
+        "crowd_task": ["CrowdTask", "TaskStep"],
+        "environment": ["CrowdEnv"],
+        "observation_form": ["PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"],
+        "registration": ["register_environments"],
+        "reward": ["Reward"],
+        "vector_environment": ["CrowdVectorEnv"],
+    },
+)
+
+__all__ = [
+    "PERSON_VALUES",
+    "ROBOT_VALUES",
+    "ActionForm",
+    "CrowdEnv",
+    "CrowdTask",
+    "CrowdVectorEnv",
+    "ObservationForm",
+    "Reward",
+    "TaskStep",
+    "register_environments",
+]

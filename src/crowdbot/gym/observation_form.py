@@ -1,0 +1,140 @@
+"""ObservationForm: what a learning robot observes, as arrays with one row for each environment."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+from crowdbot.navigation import ObservationBatch
+
+__all__ = ["FORMS", "PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"]
+
+Floats = NDArray[np.float64]
+Arrays = dict[str, NDArray[np.float32]]
+
+FORMS = ("people", "scan", "both")
+ROBOT_VALUES = (
+    "waypoint_distance", "waypoint_cos", "waypoint_sin", "goal_distance", "forward", "turn", "left", "radius",
+    "max_speed", "max_turn_rate",
+)  # fmt: skip
+"""Values of ``robot``: distances [m], direction of the waypoint seen from the robot, twist [m/s], [rad/s], limits."""
+PERSON_VALUES = ("x", "y", "vx", "vy", "radius", "clearance", "there")
+"""Values of each row of ``people``: position [m] and velocity [m/s] in the frame of the robot, 1 for a person."""
+FAR = 1e3
+"""Largest value of a distance or speed; larger ones are clipped."""
+
+
+@dataclass(frozen=True)
+class ObservationForm:
+    """Parts of an observation.
+
+    Fields:
+        form: ``people`` (the nearest people that the robot sees), ``scan`` (ranges of its laser scanner) or ``both``.
+        max_people: number of rows of people; the nearest come first, free rows are 0.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> ObservationForm("people", max_people=3).shapes(beams=0)
+    {'robot': (10,), 'people': (3, 7)}
+    """
+
+    form: str = "people"
+    max_people: int = 10
+
+    def __post_init__(self) -> None:
+        if self.form not in FORMS:
+            raise InputError(f"observation = {self.form!r} must be one of {', '.join(FORMS)}")
+        if not 1 <= self.max_people <= 1000:
+            raise InputError(f"max_people = {self.max_people} must be from 1 to 1000")
+
+    @property
+    def with_people(self) -> bool:
+        """Whether people are part of it."""
+        return self.form in ("people", "both")
+
+    @property
+    def with_scan(self) -> bool:
+        """Whether a scan is part of it."""
+        return self.form in ("scan", "both")
+
+    def shapes(self, beams: int) -> dict[str, tuple[int, ...]]:
+        """Return the shape of each part for one environment."""
+        found: dict[str, tuple[int, ...]] = {"robot": (len(ROBOT_VALUES),)}
+        if self.with_people:
+            found["people"] = (self.max_people, len(PERSON_VALUES))
+        if self.with_scan:
+            found["scan"] = (beams,)
+        return found
+
+    def arrays(self, batch: ObservationBatch, scan: Floats | None) -> Arrays:
+        """Return the parts ``[N, ...]`` as float32.
+
+        Args:
+            batch: what the robot knows in N environments.
+            scan: ``[N, B]`` ranges [m], for a form with a scan.
+        """
+        parts: dict[str, Floats] = {"robot": _robot(batch)}
+        if self.with_people:
+            parts["people"] = _people(batch, self.max_people)
+        if scan is not None and self.with_scan:
+            parts["scan"] = scan
+        return {name: np.clip(np.nan_to_num(value), -FAR, FAR).astype(np.float32) for name, value in parts.items()}
+
+
+def bounds_of(name: str, longest: float) -> tuple[Floats, Floats]:
+    """Return the smallest and the largest values of a part, for its last axis or for all of it; values are clipped."""
+    if name == "scan":
+        return np.zeros(1), np.full(1, longest)
+    if name == "people":
+        return np.array([*[-FAR] * 4, 0.0, -FAR, 0.0]), np.array([*[FAR] * 6, 1.0])
+    low = np.array([0.0, -1.0, -1.0, 0.0, *[-FAR] * 3, 0.0, 0.0, 0.0])
+    return low, np.array([FAR, 1.0, 1.0, *[FAR] * 7])
+
+
+def _robot(batch: ObservationBatch) -> Floats:
+    ahead = batch.waypoint - batch.pose[:, :2]
+    bearing = np.arctan2(ahead[:, 1], ahead[:, 0]) - batch.pose[:, 2]
+    goal = batch.goal - batch.pose[:, :2]
+    count = len(batch)
+    limits = (np.full(count, value if math.isfinite(value) else FAR) for value in batch.limits[:2])
+    return np.stack(
+        [
+            np.hypot(*ahead.T),
+            np.cos(bearing),
+            np.sin(bearing),
+            np.hypot(*goal.T),
+            *batch.twist.T,
+            batch.radius,
+            *limits,
+        ],
+        axis=1,
+    )
+
+
+def _people(batch: ObservationBatch, count: int) -> Floats:
+    people, pose = batch.people, batch.pose
+    away = np.where(people.seen[..., None], people.position - pose[:, None, :2], np.inf)
+    gap = np.hypot(away[..., 0], away[..., 1]) - people.radius - batch.radius[:, None]
+    clearance = np.where(people.seen, gap, np.inf)
+    order = np.argsort(clearance, axis=1, kind="stable")[:, :count]
+    rows = np.arange(len(batch))[:, None]
+    there = people.seen[rows, order]
+    cos, sin = np.cos(pose[:, 2])[:, None], np.sin(pose[:, 2])[:, None]
+    position, velocity = np.where(there[..., None], away[rows, order], 0.0), people.velocity[rows, order]
+    values = [
+        cos * position[..., 0] + sin * position[..., 1],
+        cos * position[..., 1] - sin * position[..., 0],
+        cos * velocity[..., 0] + sin * velocity[..., 1],
+        cos * velocity[..., 1] - sin * velocity[..., 0],
+        people.radius[rows, order],
+        np.where(there, clearance[rows, order], 0.0),
+        np.ones_like(there, dtype=np.float64),
+    ]
+    found = np.zeros((len(batch), count, len(PERSON_VALUES)))
+    found[:, : order.shape[1]] = np.where(there[..., None], np.stack(values, axis=-1), 0.0)
+    return found
