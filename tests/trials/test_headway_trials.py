@@ -78,8 +78,6 @@ def test_a_model_in_a_file_takes_the_layer(tmp_path):
 
 @pytest.mark.parametrize("world", ["planar", "physics"])
 def test_nobody_runs_into_the_person_ahead_in_either_world(world):
-    if world == "physics":
-        pytest.importorskip("mujoco")
     trial = dataclasses.replace(parse("people"), world=world)
     tracks = run(trial, seed=0).tracks(dt=0.1)
     slow, fast = ((tracks.x[tracks.id == one], tracks.y[tracks.id == one]) for one in np.unique(tracks.id))
