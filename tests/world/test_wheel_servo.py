@@ -10,7 +10,7 @@ from physics_worlds import alone, ram
 
 from crowdbot.core import Twist, Walls
 from crowdbot.world import PhysicsStage, Robot
-from crowdbot.world.physics.wheel_servo import lag
+from crowdbot.world.physics.robots.wheel_servo import lag
 
 WHEELED = ("cuybot", "differential", "qolo", "turtlebot2", "wheelchair")
 

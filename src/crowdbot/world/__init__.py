@@ -10,6 +10,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from crowdbot.world.physics.robots.robot_body import RobotBody
+    from crowdbot.world.robots.drives.ackermann import AckermannDrive, SteeredTwists
+    from crowdbot.world.robots.drives.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from crowdbot.world.robots.drives.legged import LeggedDrive
+    from crowdbot.world.robots.drives.mecanum import MecanumDrive
+    from crowdbot.world.robots.drives.omni_wheels import OmniWheelDrive
+    from crowdbot.world.robots.drives.servo import CommandDelay, Pending, VelocityServo
+    from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
+    from crowdbot.world.robots.drives.tricycle import TricycleDrive
+    from crowdbot.world.robots.drives.wheeled import WheeledDrive
+
     from .crowd.arrivals import arrival_counts
     from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
@@ -48,7 +59,6 @@ if TYPE_CHECKING:
     from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.contacts import ContactBody
     from .physics.people_motion import LimbCapsules, PeopleMotion
-    from .physics.robot_body import RobotBody
     from .physics.scenery import add_rings
     from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
@@ -60,58 +70,49 @@ if TYPE_CHECKING:
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
-    from .robots.ackermann import AckermannDrive, SteeredTwists
-    from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
     from .robots.guess_table import Guess
     from .robots.joint_motion import check_joint, free_joints, move_joint
-    from .robots.legged import LeggedDrive
-    from .robots.mecanum import MecanumDrive
     from .robots.mount import MountPlacement, SensorMount
-    from .robots.omni_wheels import OmniWheelDrive
     from .robots.robot import Robot, builtin_robots
     from .robots.robot_description import robot_description
     from .robots.robot_import import RobotFolder, import_robot
-    from .robots.servo import CommandDelay, Pending, VelocityServo
-    from .robots.skid_steer import SkidSteerDrive
-    from .robots.tricycle import TricycleDrive
     from .robots.wheel import Wheel
     from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
-    from .robots.wheeled import WheeledDrive
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
 
 _LAZY = {
-    "AckermannDrive": "robots.ackermann",
+    "AckermannDrive": "robots.drives.ackermann",
     "Avatars": "crowd.avatars",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
     "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
     "CameraImages": "rendering.camera",
-    "CommandDelay": "robots.servo",
+    "CommandDelay": "robots.drives.servo",
     "Contact": "world",
     "ContactBody": "physics.contacts",
     "ContactForce": "physics.contact_events",
     "ContactModel": "crowd.contact",
     "CrowdLimits": "crowd.limits",
     "CubeBody": "physics.stage",
-    "DifferentialDrive": "robots.drive",
+    "DifferentialDrive": "robots.drives.drive",
     "DoorLeaf": "doors.leaf",
     "Doors": "doors.doors",
-    "Drive": "robots.drive",
+    "Drive": "robots.drives.drive",
     "Ground": "ground.ground",
     "GroundPart": "ground.part",
     "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
-    "LeggedDrive": "robots.legged",
+    "LeggedDrive": "robots.drives.legged",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
-    "MecanumDrive": "robots.mecanum",
+    "MecanumDrive": "robots.drives.mecanum",
     "MountPlacement": "robots.mount",
-    "OmniWheelDrive": "robots.omni_wheels",
-    "Omnidirectional": "robots.drive",
-    "Pending": "robots.servo",
+    "OmniWheelDrive": "robots.drives.omni_wheels",
+    "Omnidirectional": "robots.drives.drive",
+    "Pending": "robots.drives.servo",
     "PeopleMotion": "physics.people_motion",
     "PeopleSource": "crowd.source",
     "PhysicsStage": "physics.stage",
@@ -126,7 +127,7 @@ _LAZY = {
     "ReplayedPeople": "crowd.replay",
     "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
-    "RobotBody": "physics.robot_body",
+    "RobotBody": "physics.robots.robot_body",
     "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
     "RobotReaction": "reactions.reaction",
@@ -134,17 +135,17 @@ _LAZY = {
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
-    "SkidSteerDrive": "robots.skid_steer",
-    "SteeredTwists": "robots.ackermann",
+    "SkidSteerDrive": "robots.drives.skid_steer",
+    "SteeredTwists": "robots.drives.ackermann",
     "TableBody": "physics.stage",
     "TreeBody": "physics.stage",
-    "TricycleDrive": "robots.tricycle",
-    "Twists": "robots.drive",
-    "VelocityServo": "robots.servo",
+    "TricycleDrive": "robots.drives.tricycle",
+    "Twists": "robots.drives.drive",
+    "VelocityServo": "robots.drives.servo",
     "Waypoint": "crowd.waypoint",
     "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
-    "WheeledDrive": "robots.wheeled",
+    "WheeledDrive": "robots.drives.wheeled",
     "World": "world",
     "add_person": "live_changes",
     "add_rings": "physics.scenery",
@@ -161,7 +162,7 @@ _LAZY = {
     "free_joints": "robots.joint_motion",
     "give_pose": "crowd.avatars",
     "import_robot": "robots.robot_import",
-    "integrate_twist": "robots.drive",
+    "integrate_twist": "robots.drives.drive",
     "join_worlds": "environments",
     "joint_states": "robots.wheel_encoders",
     "move_agent": "live_changes",

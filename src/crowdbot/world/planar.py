@@ -14,6 +14,8 @@ from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, Spa
 from crowdbot.metrics import step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
+from crowdbot.world.robots.drives.drive import Drive, Twists
+from crowdbot.world.robots.drives.servo import CommandDelay, Pending
 
 from .crowd.contact import ContactModel, ContactSurfaces
 from .crowd.environment_rows import trim_scene, works_in_batches
@@ -34,9 +36,7 @@ from .phases.robot_contacts import find_contacts
 from .phases.robot_motion import check_commands, initial_twist, move_robots
 from .planar_checks import check_arguments
 from .planar_live_changes import PlanarLiveChanges, keep_added_robots
-from .robots.drive import Drive, Twists
 from .robots.mount import MountPlacement
-from .robots.servo import CommandDelay, Pending
 from .world import Contact
 
 if TYPE_CHECKING:

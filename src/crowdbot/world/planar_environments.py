@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, MissingExtra, Scene, Twist
 from crowdbot.models import CrowdModel
+from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.robots.drives.servo import Pending
 
 from .crowd.environment_rows import (
     concatenate_arrays,
@@ -27,8 +29,6 @@ from .crowd.environment_rows import (
 from .crowd.people_flow import PeopleFlow
 from .doors.motion import ONE_ENVIRONMENT
 from .planar import PlanarWorld
-from .robots.drive import Twists
-from .robots.servo import Pending
 
 __all__ = [
     "join_worlds",

@@ -48,7 +48,7 @@ HOLDERS = {
     "crowdbot.world.crowd.people_flow.PeopleFlow": "router journeys mixture",
     "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
     "crowdbot.world.crowd.arrivals._Queues": "sources",
-    "crowdbot.world.physics.robot_body.RobotBody": (
+    "crowdbot.world.physics.robots.robot_body.RobotBody": (
         "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay _slip"
         " friction _forces _lag _base"
     ),
@@ -75,7 +75,7 @@ VALUES = {
     "ImuState": "crowdbot.sensors.imu",
     "Odometry": "crowdbot.sensors.odometry.wheel_odometry",
     "OdometryState": "crowdbot.sensors.odometry.wheel_odometry",
-    "Pending": "crowdbot.world.robots.servo",
+    "Pending": "crowdbot.world.robots.drives.servo",
     "PointCloud": "crowdbot.sensors.lidar3d",
     "Pose": "crowdbot.core.pose",
     "PoseTrack": "crowdbot.humans.pose_source",
@@ -89,12 +89,12 @@ VALUES = {
     "SensorReadings": "crowdbot.simulation.mounted_sensor",
     "SpatialPose": "crowdbot.core.pose",
     "StateGroups": "crowdbot.sensors.state_rows",
-    "SteeredTwists": "crowdbot.world.robots.ackermann",
+    "SteeredTwists": "crowdbot.world.robots.drives.ackermann",
     "TrackBatch": "crowdbot.navigation.track_batch",
     "TrackHistory": "crowdbot.navigation.track_history",
     "TrackedPeople": "crowdbot.sensors.ground_truth_people",
     "Twist": "crowdbot.core.pose",
-    "Twists": "crowdbot.world.robots.drive",
+    "Twists": "crowdbot.world.robots.drives.drive",
     "_Pressed": "crowdbot.world.physics.contact_events",
     "_Running": "crowdbot.world.physics.contact_events",
 }

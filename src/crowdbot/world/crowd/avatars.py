@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.drives.drive import Twists
 
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion

@@ -11,18 +11,18 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from crowdbot.core import Scene, Walls
+from crowdbot.world.physics.robots.base_servo import release_base_motors
+from crowdbot.world.physics.robots.castor_springs import soften_castors
+from crowdbot.world.physics.robots.robot_body import RobotBody
+from crowdbot.world.physics.robots.robot_height import is_level
+from crowdbot.world.physics.robots.wheel_servo import WheelServos
 from crowdbot.world.robots.robot import Robot
 
-from .base_servo import release_base_motors
-from .castor_springs import soften_castors
 from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
-from .robot_body import RobotBody
-from .robot_height import is_level
 from .stage import PhysicsStage
-from .wheel_servo import WheelServos
 
 __all__ = ["BodyDesign", "CompiledBodies", "RobotStart", "compile_bodies", "motors_of"]
 

@@ -10,16 +10,16 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
-from crowdbot.world.robots.ackermann import AckermannDrive
+from crowdbot.world.physics.robots.robot_height import base_height
+from crowdbot.world.robots.drives.ackermann import AckermannDrive
+from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot
-from crowdbot.world.robots.tricycle import TricycleDrive
 from crowdbot.world.robots.wheel import Wheel
 from crowdbot.world.urdf import BaseServo, mjcf
 from crowdbot.world.urdf.geoms import row
 
 from .engine import engine
 from .layers import LIMB, PULLED, ROBOT, TRUNK
-from .robot_height import base_height
 from .scenery import scenery
 from .stage import PhysicsStage
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
+from crowdbot.world.physics.robots.robot_body import RobotBody
 
-from .robot_body import RobotBody
 from .stage import PhysicsStage
 
 __all__ = ["movers", "people_near"]
@@ -53,7 +53,7 @@ def people_near(
 def movers(
     robots: Mapping[int, RobotBody], stage: PhysicsStage, movable: Sequence[int], data: Any, led: Sequence[int] = ()
 ) -> list[Mover]:
-    """Return x, y, radius [m], mass [kg] of robots, movable props and doors that people push, and whether they are firm.
+    """Return x, y, radius [m] and mass [kg] of robots, movable props and pushed doors, and whether they are firm.
 
     Contacts cannot move what is firm.
 

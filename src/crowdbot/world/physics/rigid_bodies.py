@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.world.physics.robots.link_forces import LinkForces
+from crowdbot.world.physics.robots.robot_body import RobotBody
+
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
-from .link_forces import LinkForces
-from .robot_body import RobotBody
 
 __all__ = ["RigidBodies", "copy_state"]
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.world.crowd.ghosts import hide_ghosts
+from crowdbot.world.physics.robots.robot_body import RobotBody
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.planar_live_changes import (
     check_robot_place,
@@ -34,7 +35,6 @@ from .mjcf_model import MjcfModel
 from .people_bodies import PeopleBodies
 from .people_motion import PeopleMotion
 from .rider import seat_rider
-from .robot_body import RobotBody
 from .scenery import add_rings
 from .stage import AbsentProp, PhysicsStage, PropBody, without_prop
 from .world_bodies import WorldBodies

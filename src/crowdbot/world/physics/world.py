@@ -16,8 +16,10 @@ from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.doors.doors import Doors
 from crowdbot.world.doors.motion import read_leaves, turn_leaves
 from crowdbot.world.ground.walking_speed import slow_people
+from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
+from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.rendering.renderer import Renderer
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.robot import spatial as spatial_pose
@@ -28,11 +30,9 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
-from .mirrored_robots import MirroredRobots
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
 from .rigid_world import SLOTS, RigidWorld
-from .robot_height import stand_robot
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_bodies import WorldBodies

@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from crowdbot.core import Walls
+from crowdbot.world.physics.robots.link_forces import LinkForces
+from crowdbot.world.physics.robots.robot_body import RobotBody
 
 from .contacts import ContactReader
 from .engine_models import BodyDesign, RobotStart, compile_bodies
-from .link_forces import LinkForces
 from .people_bodies import PeopleBodies
 from .rigid_bodies import RigidBodies, update_frames
-from .robot_body import RobotBody
 from .stage import AbsentProp, PhysicsStage, PropBody
 
 __all__ = ["WorldBodies"]

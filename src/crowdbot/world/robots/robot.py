@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
+from crowdbot.world.robots.drives.drive import Drive
+from crowdbot.world.robots.drives.servo import CommandDelay
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
-from .drive import Drive
 from .link_dynamics import LinkDynamics, link_problem
 from .mount import SensorMount
 from .robot_file import FILE, read_robot_file
-from .servo import CommandDelay
 from .wheel import Wheel
 
 __all__ = ["Robot", "builtin_robots", "spatial"]

@@ -28,9 +28,9 @@ from crowdbot.core import (
     read_bytes,
 )
 from crowdbot.sensors import Sensor, preset
+from crowdbot.world.robots.drives.drive import Drive
 from crowdbot.world.urdf import RobotModel, read_urdf
 
-from .drive import Drive
 from .link_dynamics import LinkDynamics, read_link
 from .mount import SensorMount
 from .robot_base_file import extend_robot

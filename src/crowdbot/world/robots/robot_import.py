@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crowdbot.core import Element, RobotError, format_xml
+from crowdbot.world.robots.drives.base_drive import drive_type, middle_angle, rollers_of, turns_wheels, wheel_attributes
 from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
-from .base_drive import drive_type, middle_angle, rollers_of, turns_wheels, wheel_attributes
 from .base_kind import BaseKind, recognize_base
 from .controllers import JointLimits, find_controller_files, read_controllers, read_joint_limits
 from .gazebo_tags import DriveParameters, find_sensors, guess_sensors, read_drive_parameters

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Twist
 from crowdbot.sensors import WheelGeometry, WheelRotation
-
-from .drive import Omnidirectional
+from crowdbot.world.robots.drives.drive import Omnidirectional
 
 if TYPE_CHECKING:
-    from crowdbot.world.physics.robot_body import RobotBody
+    from crowdbot.world.physics.robots.robot_body import RobotBody
     from crowdbot.world.world import World
 
     from .robot import Robot

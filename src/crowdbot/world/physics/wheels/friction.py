@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.world.physics.engine import engine
+from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
-from crowdbot.world.robots.skid_steer import SkidSteerDrive
 
 __all__ = ["WheelFriction"]
 

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from crowdbot.core import Twist
+from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
-from crowdbot.world.robots.skid_steer import SkidSteerDrive
 
 __all__ = ["SlipControl", "SlipState"]
 

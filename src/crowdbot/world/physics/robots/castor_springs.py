@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.world.physics.engine import engine
 from crowdbot.world.robots.robot import Robot
-
-from .engine import engine
 
 __all__ = ["soften_castors"]
 

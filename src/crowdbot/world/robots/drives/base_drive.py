@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from crowdbot.world.robots.base_kind import BaseKind, FoundWheel
 from crowdbot.world.urdf import RobotModel
 
-from .base_kind import BaseKind, FoundWheel
 from .skid_steer import slip_of
 
 __all__ = ["drive_type", "middle_angle", "rollers_of", "turns_wheels", "wheel_attributes"]

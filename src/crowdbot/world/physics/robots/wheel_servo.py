@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import engine
+from crowdbot.world.physics.engine import engine
 
 __all__ = ["LAG", "WheelServos"]
 

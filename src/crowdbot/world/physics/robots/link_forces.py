@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import engine
+from crowdbot.world.physics.engine import engine
+
 from .robot_body import RobotBody
 
 __all__ = ["LinkForces"]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Twist
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.drives.drive import Twists
 
 from .robot_body import RobotBody
 

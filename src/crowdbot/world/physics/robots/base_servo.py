@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.robot import Robot
 
-from .engine import engine
 from .wheel_servo import lag
 
 __all__ = ["BASE_MOTORS", "BaseForces", "release_base_motors"]

@@ -48,9 +48,7 @@ class LeggedDrive(Drive):
 
     def __post_init__(self) -> None:
         check_limits(self)
-        check_number(
-            "LeggedDrive", "max_side_speed", self.max_side_speed, "m/s", exclusive_min=0.0, max=self.max_speed
-        )
+        check_number("LeggedDrive", "max_side_speed", self.max_side_speed, "m/s", exclusive_min=0.0, max=self.max_speed)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`LeggedDrive`."""

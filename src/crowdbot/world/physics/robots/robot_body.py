@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
-from crowdbot.world.robots.ackermann import AckermannDrive, SteeredTwists
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.wheels.friction import WheelFriction
+from crowdbot.world.physics.wheels.skid_steering import SlipControl, SlipState
+from crowdbot.world.robots.drives.ackermann import AckermannDrive, SteeredTwists
+from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.robots.drives.servo import CommandDelay, Pending
+from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot, spatial
-from crowdbot.world.robots.servo import CommandDelay, Pending
-from crowdbot.world.robots.tricycle import TricycleDrive
 
 from .base_servo import BASE_MOTORS, BaseForces
-from .engine import engine
 from .wheel_servo import lag
-from .wheels.friction import WheelFriction
-from .wheels.skid_steering import SlipControl, SlipState
 
 __all__ = ["RobotBody"]
 
