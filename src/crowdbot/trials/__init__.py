@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from .stage_contract import check_stage
     from .sweep import Sweep
     from .trial import End, EndCondition, RecordingSpec, Trial
+    from .validation.model_ranges import MODEL_RANGES, ModelRange, model_range
     from .validation.rates import trial_remarks
     from .validation.trial_checks import robot_place_problem
     from .variants import apply_values, expand_sweeps
@@ -99,6 +100,7 @@ __getattr__, __dir__ = lazy_exports(
         "stage_contract": ["check_stage"],
         "sweep": ["Sweep"],
         "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
+        "validation.model_ranges": ["MODEL_RANGES", "ModelRange", "model_range"],
         "validation.rates": ["trial_remarks"],
         "validation.trial_checks": ["robot_place_problem"],
         "variants": ["apply_values", "expand_sweeps"],
@@ -115,6 +117,7 @@ __all__ = [
     "DENSITIES",
     "FLOWS",
     "GAP",
+    "MODEL_RANGES",
     "OVERVIEW",
     "PRESETS",
     "SIZES",
@@ -138,6 +141,7 @@ __all__ = [
     "Journey",
     "Light",
     "Limits",
+    "ModelRange",
     "Mount",
     "Obstacle",
     "OldNameWarning",
@@ -192,6 +196,7 @@ __all__ = [
     "kind_of",
     "load_trial",
     "map_files",
+    "model_range",
     "needs_trust",
     "outline",
     "overview",

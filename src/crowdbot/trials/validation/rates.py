@@ -9,6 +9,8 @@ from crowdbot.core import FreeClock, whole_ticks
 from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
+from .model_ranges import range_remarks
+
 __all__ = ["fitting", "misfits", "trial_remarks"]
 
 
@@ -39,7 +41,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 
 
 def trial_remarks(trial: Trial) -> list[str]:
-    """Return a sentence for every robot whose sensors measure at other rates than those of its type.
+    """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -50,7 +52,7 @@ def trial_remarks(trial: Trial) -> list[str]:
     >>> [sentence[-32:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
     ['step="0.01" no period is rounded']
     """
-    found = []
+    found = range_remarks(trial)
     clock = FreeClock(trial.step)
     for robot in trial.robots:
         rows: dict[str, list[str]] = {}
