@@ -66,11 +66,12 @@ def main(options: argparse.Namespace) -> int:
 def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> int:
     """Measure contacts, write the page and print the table."""
     from crowdbot.core import InputError, explain_write_errors
-    from crowdbot.validation import CONTACT_REASONS, compare_contacts, write_contact_page
+    from crowdbot.validation import CONTACT_REASONS, OTHER_VALUES, compare_contacts, write_contact_page
 
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
-    file = options.out / "contacts.json"
+    models = models if options.models else {**models, **OTHER_VALUES}
+    file = options.out / "validation" / "contacts.json"
     seconds = {"seconds": 4.0} if options.quick else {}
     with progress(options.json) as report, explain_write_errors(options.out):
         rows = compare_contacts(models, file, lambda part: report("contacts", part), starts=options.starts, **seconds)
@@ -79,9 +80,8 @@ def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> 
     if options.json:
         print_json({"models": rows, "page": str(page)})
         return 0
-    table = [
-        (name, ", ".join(key for key, one in row.items() if not one["passed"]) or "-") for name, row in rows.items()
-    ]
+    failed = {name: [key for key, one in row.items() if not one["passed"]] for name, row in rows.items()}
+    table = [(name, ", ".join(keys) or "-") for name, keys in failed.items()]
     print_table("contacts", ("model", "limits exceeded in"), table)
     print(f"page      {page}")
     return 0
