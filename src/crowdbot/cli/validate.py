@@ -66,15 +66,17 @@ def main(options: argparse.Namespace) -> int:
 def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> int:
     """Measure contacts, write the page and print the table."""
     from crowdbot.core import InputError, explain_write_errors
-    from crowdbot.validation import CONTACT_REASONS, OTHER_VALUES, compare_contacts, write_contact_page
+    from crowdbot.validation import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
 
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
     models = models if options.models else {**models, **OTHER_VALUES}
     file = options.out / "validation" / "contacts.json"
-    seconds = {"seconds": 4.0} if options.quick else {}
+    seconds = 4.0 if options.quick else CONTACT_SECONDS
     with progress(options.json) as report, explain_write_errors(options.out):
-        rows = compare_contacts(models, file, lambda part: report("contacts", part), starts=options.starts, **seconds)
+        rows = compare_contacts(
+            models, file, lambda part: report("contacts", part), starts=options.starts, seconds=seconds
+        )
         command = f"crowdbot validate --contacts --starts {options.starts} --out docs/results"
         page = write_contact_page(rows, options.out / "contacts.md", command, CONTACT_REASONS)
     if options.json:

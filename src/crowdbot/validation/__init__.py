@@ -1,6 +1,6 @@
 """Validation of crowd models against experiments with people and the RiMEA tests."""
 
-from .contact_table import CONTACT_REASONS, OTHER_VALUES, compare_contacts, write_contact_page
+from .contact_table import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
 from .contacts import ContactSummary, measure_contacts
 from .page import write_page
 from .run import CHECKS, CheckOutcome, Validation, select_models, validate
@@ -9,6 +9,7 @@ from .scenario import Check, Verdict
 __all__ = [
     "CHECKS",
     "CONTACT_REASONS",
+    "CONTACT_SECONDS",
     "OTHER_VALUES",
     "Check",
     "CheckOutcome",
