@@ -53,10 +53,10 @@ ENGINES = """
 ## Crowd models against other engines
 
 One step from the same state, compared with a reference engine: the share of samples that agree within a tolerance. The
-docstring of each test explains the samples that differ. `variant` is the variant of the model that is compared; parameters
-are those of the engine. Agreement of a variant says nothing about another one: the defaults of boids, social-force,
-escape-panic and group-force follow their papers and differ from these engines by medians of 0.99, 0.11, 0.14 and
-0.29 m/s. `variant="crowdbot"`, `"umans2018"` or `"pysocialforce"` in a trial selects the variant of the table.
+docstring of each test explains the samples that differ. `variant` is the variant of the model that is compared;
+parameters are those of the engine. Agreement of a variant says nothing about another one: the defaults of boids,
+social-force, escape-panic and group-force follow their papers and differ from these engines by medians of 0.99, 0.11,
+0.14 and 0.29 m/s. `variant="crowdbot"`, `"umans2018"` or `"pysocialforce"` in a trial selects the variant of the table.
 
 `pytest tests/models -q -s`"""
 ENGINE_OF = (
@@ -232,9 +232,8 @@ def engines_text(said: str) -> str:
     """Return the section about other engines from what the tests of the models print."""
     rows = [row for line in said.splitlines() if (row := _engine_row(line.lstrip("."))) is not None]
     rows.sort(key=lambda row: (row[0].lower(), row[2], row[3]))
-    return "\n".join(
-        [ENGINES, *_lines(["model", "variant", "engine", "steps compared", "agree", "within", "median", "worst"], rows)]
-    )
+    head = ["model", "variant", "engine", "steps compared", "agree", "within", "median", "worst"]
+    return "\n".join([ENGINES, *_lines(head, rows)])
 
 
 def _engine_row(line: str) -> list[str] | None:
