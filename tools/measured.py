@@ -237,7 +237,7 @@ def engines_text(said: str) -> str:
 
 
 def _engine_row(line: str) -> list[str] | None:
-    """Return model, variant, engine, scene, share, tolerance, median and worst of one printed line, None for other lines."""
+    """Return the cells of one printed line (model, variant, engine, scene, share, ...), None for other lines."""
     share = re.search(r"([\d.]+)%(?: of (\d+))?[^,]*? within (\S+?)(?: (m/s|m))?(?:[,;]|$)", line)
     middle, worst = re.search(r"median ([\d.e+-]+)", line), re.search(r"worst ([\d.e+-]+)", line)
     known = next(((model, engine) for part, model, engine in ENGINE_OF if re.search(part, line)), None)
