@@ -1,5 +1,6 @@
 """Statistics of the checks: steady windows, intervals over starts, sections and contacts."""
 
+import argparse
 import json
 from typing import ClassVar
 
@@ -8,12 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import Scene, stream
+from crowdbot.cli import validate as command
+from crowdbot.core import InputError, Scene, stream
 from crowdbot.measurement import compute_individual_speed
 from crowdbot.models import ORCA, AnticipationVelocity, CollisionFreeSpeed, CrowdModel
+from crowdbot.validation import corridor
 from crowdbot.validation.bottleneck import steady_flow
 from crowdbot.validation.contact_table import compare_contacts, write_contact_page
-from crowdbot.validation.contacts import measure_contacts
+from crowdbot.validation.contacts import CONTACT_TRIALS, measure_contacts
 from crowdbot.validation.scenario import STEP, CrowdTracks, corridor_walls, simulate_periodic, substeps
 from crowdbot.validation.section import section_of, section_values
 from crowdbot.validation.statistics import find_steady_window, summarize_starts, text_of
@@ -125,3 +128,27 @@ def test_the_table_resumes_and_says_why(tmp_path):
     assert "| orca | 30.1 | 0.0, 0 % | ✓ |" in text
     assert "* **blind**: it sees nobody." in text
     assert "* **orca**" not in text
+
+
+def test_the_corridor_has_intervals_over_starts(monkeypatch):
+    for name, value in {"STARTS": 2, "DENSITIES": (0.5, 1.0), "SECONDS": 8.0}.items():
+        monkeypatch.setattr(corridor, name, value)
+    found = corridor.CORRIDOR.run(ORCA(), False, _quiet)
+    assert (found["starts"], found["initial_density"]) == (2, [0.5, 1.0])
+    assert all(begin is None or 0.0 <= begin < 8.0 for begin in found["steady_from"])
+    assert len(found["steady_from"]) == 2
+    for low, mean, high in zip(found["low"], found["speed"], found["high"], strict=True):
+        assert low <= mean <= high
+    assert found["speed"] == pytest.approx([1.34] * len(found["speed"]), abs=0.1)  # ORCA has no fundamental diagram
+
+
+def test_the_command_measures_contacts(tmp_path, capsys):
+    parser = argparse.ArgumentParser()
+    command.arguments(parser)
+    given = ["--contacts", "--models", "orca", "--quick", "--starts", "1", "--out", str(tmp_path), "--json"]
+    assert command.main(parser.parse_args(given)) == 0
+    rows = json.loads(capsys.readouterr().out)["models"]["orca"]
+    assert set(rows) == {*CONTACT_TRIALS, "rimea-1"}
+    assert (tmp_path / "contacts.md").read_text().startswith("# Contacts and free walking")
+    with pytest.raises(InputError, match="--starts 0 must be at least 1"):
+        command.main(parser.parse_args(["--contacts", "--starts", "0", "--out", str(tmp_path)]))

@@ -90,7 +90,9 @@ def _head(done: Validation, command: str) -> list[str]:
         "```",
         "",
         *(["**Quick runs with few people and short times. The verdicts mean little.**", ""] if done.quick else []),
-        f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s. All models start from the same initial"
+        f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s, in substeps of 0.01 s for the models that"
+        " are made for it (collision-free-speed and anticipation-velocity). Values in brackets are 95 % bootstrap"
+        f" intervals over {STARTS} starts; the RiMEA tests have one start. All models start from the same initial"
         " states, and results are reproducible. The results of each model are in a JSON file beside the plots.",
         "",
         "Crowds are chaotic: rounding errors can decide whether a single run jams. Two implementations of ORCA that"
