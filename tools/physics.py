@@ -42,7 +42,7 @@ def crowd(robot: Robot, people: int) -> PhysicsWorld:
 def robots(folder: Path) -> None:
     """Draw every robot that ships beside a person."""
     figure = Figure(figsize=(12, 7), layout="constrained")
-    for axes, name in zip(figure.subplots(2, 3).flat, builtin_robots(), strict=True):
+    for axes, name in zip(figure.subplots(2, 4).flat, builtin_robots(), strict=True):
         robot = Robot.load(name)
         place = [[0.0, 0.0], [-0.3, 1.1]]
         scene = Scene.of(place, goal=place, heading=[0.0, 0.0], external=[True, False], radius=[robot.radius, 0.25])

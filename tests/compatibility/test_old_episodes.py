@@ -22,8 +22,15 @@ SENSORS = {
     "wheel-odometry",
 }  # fmt: skip
 """Every sensor of the earlier version, with the words of its trial files."""
-CHANGED = "all-sensors-physics"
-"""0.1.0 ignored the latency of a robot without a type in the physics world; see CHANGELOG."""
+CHANGED = {
+    "all-sensors-physics": "0.1.0 ignored the latency of a robot without a type in the physics world",
+    "pepper-physics": "odometry of its robot with wheels was the true pose in the physics world",
+}
+"""Episodes that do not replay with the same digest, and why; see CHANGELOG."""
+MOVED = {name for name, row in EPISODES.items() if row["world"] == "physics"}
+"""Robots of the physics world drive otherwise since: 0.1.0 let tyres slip, and bases lag behind; see CHANGELOG."""
+NEAR = 0.1
+"""Distance [m] within which a moved robot is after the seconds of these episodes."""
 DRAWN = "camera"
 """The episode with a colour camera; another graphics library draws other shades."""
 RENAMED = {
@@ -82,7 +89,7 @@ def test_an_old_episode_replays(name: str) -> None:
     assert (found.software, found.complete) == ("crowdbot 0.1.0", old["complete"])
     assert f"(made with crowdbot 0.1.0{'' if found.complete else ', killed before its end'})" in str(found)
     assert found.outcomes == (old["outcome"], old["outcome"])
-    if name == CHANGED:
+    if name in CHANGED or name in MOVED:
         assert not found.equal
     elif SAME_MACHINE:
         assert (found.equal, found.replayed) == (True, old["digest"]), str(found)
@@ -92,7 +99,7 @@ def test_an_old_episode_replays(name: str) -> None:
 def test_an_old_episode_with_a_colour_camera_runs_to_the_same_pictures() -> None:
     old = read_episode(episode_file(DRAWN))
     new = run(parse_trial(old.xml, quiet=True), seed=old.seed)
-    assert new.position == pytest.approx(old.position, abs=1e-6)
+    assert new.position == pytest.approx(old.position, abs=NEAR)
     pictures, before = new.readings["puck/eye"], old.readings["puck/eye"]
     assert len(pictures) == len(before)
     for picture, other in zip(pictures, before, strict=True):
@@ -138,7 +145,8 @@ def test_an_old_episode_branches(name: str, tmp_path: Path) -> None:
     assert new.times == pytest.approx(np.arange(len(new.times)) * 0.1 + at)
     k = len(old.times) // 2
     first = old.position[k, old.active[k]]
-    assert new.position[0, new.active[0]] == pytest.approx(first, abs=0.0 if SAME_MACHINE else 1e-6)
+    exact = 0.0 if SAME_MACHINE else NEAR if name in MOVED else 1e-6
+    assert new.position[0, new.active[0]] == pytest.approx(first, abs=exact)
 
 
 def test_an_old_episode_that_was_killed_is_repaired(tmp_path: Path) -> None:

@@ -143,3 +143,31 @@ def test_wrong_files_are_refused_with_the_line(name: str, text: str, message: st
     with pytest.raises(InputError) as told:
         read_pose_file(text.encode(), name)
     assert message in str(told.value)
+
+
+def test_parts_come_at_their_own_rates() -> None:
+    """The head is sampled four times as often as the hand, in samples that lack the other."""
+    times, poses = [], []
+    for k in range(42):
+        time = 0.025 * k
+        head = (time, 0.0, 1.6, 1.0, 0.0, 0.0, 0.0)
+        hand = (time + 0.3, -0.2, 1.0 + time, 1.0, 0.0, 0.0, 0.0)
+        times.append(time)
+        poses.append(BodyPose(time, 0.0, 0.0, head=head, right_hand=hand if k % 4 == 0 else None))
+    track = PoseTrack.of(times, poses, part_timeout=0.15, extrapolation=0.5)
+    alone = PoseTrack.of(times, poses)
+    for time in (0.0, 0.01, 0.03, 0.06, 0.1, 0.33, 0.99):
+        found = track.at(time)
+        assert found.right_hand is not None
+        assert found.right_hand[:3] == pytest.approx((time + 0.3, -0.2, 1.0 + time))
+        assert found.head is not None
+        assert found.head[:3] == pytest.approx((time, 0.0, 1.6))
+        assert track.motion(time).vx == alone.motion(time).vx
+    assert alone.at(0.03).right_hand is None
+    late = track.at(1.1)
+    assert late.right_hand is not None
+    assert late.right_hand[:3] == pytest.approx((1.4, -0.2, 2.0))  # it moves with the person
+    assert track.at(1.2).right_hand is None
+    gap = PoseTrack.of([0.0, 0.5, 1.0], [poses[0], BodyPose(0.5, 0.0), poses[40]], part_timeout=0.2)
+    assert gap.at(0.45).right_hand is not None  # the sample before has it
+    assert gap.at(0.7).right_hand is None

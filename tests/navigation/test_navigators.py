@@ -180,11 +180,11 @@ def test_a_wrong_answer_is_rejected(navigator, words):
         navigator.decide(meeting(), None)
 
 
-def test_joints_cannot_be_commanded_yet():
+def test_joint_targets_must_be_numbers():
     @dataclass(frozen=True)
     class Waving(Navigator):
         def act(self, observation, memory):
-            return Action(Twist(), {"arm": 1.0}), memory
+            return Action(Twist(), {"arm": "up"}), memory
 
-    with pytest.raises(InputError, match=r"Waving: joints = \{'arm': 1.0\} cannot be commanded yet"):
+    with pytest.raises(InputError, match="Waving returned the target 'up' for joint 'arm'; it must be a finite number"):
         Waving().decide(meeting(), None)

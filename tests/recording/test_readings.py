@@ -129,7 +129,9 @@ def test_a_viewer_finds_points_pixels_and_frames(recorded: tuple[Path, Episode])
     frames = {row.child_frame_id: row for row in found["/tf_static"].transforms}
     assert frames["robot/us"].transform.rotation.z == pytest.approx(math.sin(0.25))
     assert frames["robot/depth_optical"].header.frame_id == "robot/depth"
-    assert frames["robot/odom"].header.frame_id == "map"
+    assert "robot/odom" not in frames
+    moving = {row.child_frame_id: row.header.frame_id for row in found["/tf"].transforms}
+    assert moving == {"robot/odom": "map", "robot/base_link": "robot/odom"}
 
 
 def test_mounts_in_space_are_fixed_frames() -> None:

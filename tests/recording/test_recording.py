@@ -71,8 +71,9 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
 
 def expected(episode: Episode) -> dict[str, int]:
     count = len(episode.times)
-    topics = dict.fromkeys(("/clock", "/tf", "/people", "/robot/odom", "/robot/cmd_vel", "/robot/scan"), count)
-    topics |= {"/tf_static": count, "/robot/scan/reading": count}
+    robot = ("/robot/odom", "/robot/ground_truth/odom", "/robot/cmd_vel", "/robot/scan", "/robot/scan/reading")
+    topics = dict.fromkeys(("/clock", "/tf", "/people", *robot), count)
+    topics |= {"/tf_static": 1, "/robot/robot_description": 1}
     topics["/crowdbot/digest"] = count
     return topics | {"/crowd/markers": 9}
 
@@ -90,15 +91,16 @@ def test_rosbags_opens_the_file(recorded: tuple[Path, Episode]) -> None:
             if connection.topic == "/people":
                 assert [int(person.name) for person in message.people] == np.flatnonzero(episode.active[k, :4]).tolist()
                 assert [person.position.x for person in message.people] == episode.position[k, :4, 0].tolist()
-            if connection.topic == "/robot/odom":
-                assert (message.header.frame_id, message.child_frame_id) == ("map", "robot/base_link")
+            if connection.topic in ("/robot/odom", "/robot/ground_truth/odom"):  # equal without odometry
+                frame = "robot/odom" if connection.topic == "/robot/odom" else "map"
+                assert (message.header.frame_id, message.child_frame_id) == (frame, "robot/base_link")
                 assert message.pose.pose.position.y == episode.position[k, 4, 1]
             if connection.topic == "/robot/scan":
                 assert message.header.frame_id == "robot/scan"
                 assert message.ranges.shape == (90,)
             if connection.topic == "/tf":
                 frames = [(t.header.frame_id, t.child_frame_id) for t in message.transforms]
-                assert frames == [("map", "robot/base_link")]
+                assert frames == [("map", "robot/odom"), ("robot/odom", "robot/base_link")]
             if connection.topic == "/tf_static":
                 (mount,) = message.transforms
                 assert (mount.header.frame_id, mount.child_frame_id) == ("robot/base_link", "robot/scan")

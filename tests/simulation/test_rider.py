@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from crowdbot.core import Scene, TrialError
 from crowdbot.humans import LIMBS
 from crowdbot.rendering import RenderRequest, render_images
-from crowdbot.simulation import Simulation, SimulationRun
-from crowdbot.trials import parse_trial, trial_xml
-from crowdbot.world import PeopleMotion
+from crowdbot.simulation import AvatarOrder, Simulation, SimulationRun, VelocityOrder
+from crowdbot.trials import Trial, parse_trial, trial_xml
+from crowdbot.world import PeopleMotion, Robot
 from trial_schema import valid
 
 ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">
@@ -77,11 +79,83 @@ def test_a_picture_shows_the_rider_as_a_part_of_the_robot(world: str) -> None:
     assert counts[0] > 1.15 * counts[1]
 
 
-@pytest.mark.parametrize("world", ["planar", "physics"])
-def test_a_rider_changes_nothing_of_how_everybody_moves(world: str) -> None:
-    with_rider, without = simulated(world), simulated(world, ROOM.replace(' rider="woman-36"', ""))
+def test_a_rider_changes_nothing_of_how_everybody_moves_in_the_plane() -> None:
+    with_rider, without = (simulated("planar", text) for text in (ROOM, ROOM.replace(' rider="woman-36"', "")))
     assert np.array_equal(with_rider.world.scene.position, without.world.scene.position)
     assert np.array_equal(walkers_of(with_rider).ends[0], walkers_of(without).ends[0])
+
+
+def chair_world(attributes: str, others: str = "") -> Simulation:
+    return Simulation(
+        parse_trial(f"""<trial name="ride" duration="6" world="physics"><stage/><crowd type="orca"/>
+        <agent x="9" y="9"/><robot name="chair" {attributes} x="0" y="0" default-sensors="false"><goal x="9" y="0"/>
+        <navigator type="external"/></robot>{others}<end collision="false" goal="false"/></trial>""")
+    )
+
+
+def test_a_rider_has_mass_and_the_chair_still_drives() -> None:
+    empty, seated = (chair_world(f'type="wheelchair" {rider}') for rider in ("", 'rider="woman-36"'))
+    bodies: list[Any] = [one.world.robot_bodies[1] for one in (empty, seated)]  # type: ignore[attr-defined]
+    mass = float(walkers_of(seated).people.mass[1])
+    assert mass > 40.0
+    assert bodies[1].mass == pytest.approx(bodies[0].mass + mass)
+    engine = [float(one._model.body_subtreemass[one.body]) for one in bodies]
+    assert engine[1] - engine[0] == pytest.approx(mass)
+    again: Any = Simulation(seated.trial, 7).world
+    assert again.engine_model is seated.world.engine_model  # type: ignore[attr-defined]
+    run = SimulationRun(seated)
+    for _ in range(60):
+        run.step([VelocityOrder(robot="chair", forward=0.6)])
+    assert seated.world.twists[1].forward[0] == pytest.approx(0.6, rel=0.03)
+    assert bodies[1].tilt < 0.02
+
+
+def test_a_robot_that_hits_a_rider_hits_a_person() -> None:
+    pepper = """<robot name="pepper" type="pepper" x="1.4" y="0" heading="3.14159" default-sensors="false">
+    <goal x="9" y="0"/><navigator type="external"/></robot>"""
+    simulation = chair_world('type="wheelchair" rider="man-36"', pepper)
+    run = SimulationRun(simulation)
+    contacts: set[tuple[int, int]] = set()
+    for _ in range(70):
+        run.step([VelocityOrder(robot="pepper", forward=0.8)])
+        contacts |= {(one.robot, one.other) for one in simulation.contacts()}
+    (event,) = [one for one in simulation.world.contact_events if one.second.kind == "person"]
+    assert (event.first.number, event.second.number) == (2, 1)
+    assert event.limb in NAMES
+    assert event.peak_force > 50.0
+    assert event.severity > 0.0
+    assert contacts == {(1, 2)}
+
+
+def test_a_person_who_walks_into_a_rider_touches_the_robot() -> None:
+    person = '<avatar name="guide" source="external" x="0" y="1.2" heading="-1.5708"/>'
+    trial = simulated_chair(person)
+    run = SimulationRun(Simulation(trial))
+    links: set[str] = set()
+    rest = [1.0, 0.0, 0.0, 0.0] * 28
+    for tick in range(1, 24):
+        y = 1.2 - 0.04 * tick
+        order = AvatarOrder(avatar="guide", time=0.05 * tick, x=0, y=y, heading=-1.5708, skeleton=(0.0, y, 1.35, *rest))
+        run.step([order])
+        links |= {one.first_part for one in run.simulation.world.forces if one.second.kind == "person"}
+    assert any(link.startswith("rider/") for link in links), links
+
+
+def simulated_chair(people: str) -> Trial:
+    return parse_trial(f"""<trial name="ride" duration="6" world="physics"><stage/><crowd type="orca"/>{people}
+    <robot name="chair" type="wheelchair-rider" rider="man-36" x="0" y="0" default-sensors="false"><goal x="9" y="0"/>
+    <navigator type="external"/></robot><end collision="false" goal="false"/></trial>""")
+
+
+def test_the_wheelchair_with_a_rider_seats_an_adult_and_that_with_other_sensors_nobody() -> None:
+    for name, riders in (("wheelchair", 0), ("wheelchair-rider", 1), ("wheelchair-3d", 0)):
+        people = walkers_of(chair_world(f'type="{name}"'))
+        assert len(people.agents) - len(people.afoot) == riders
+    trial = parse_trial(ROOM.replace('type="wheelchair" rider="woman-36"', 'type="wheelchair-rider"'))
+    assert trial.robots[1].rider == ""
+    assert parse_trial(trial_xml(trial)) == trial
+    names = [mount.name for mount in Robot.load("wheelchair-3d").mounts]
+    assert names == ["velodyne", "depth_front", "depth_rear", "color_front", "odometry", "imu"]
 
 
 def test_a_trial_with_a_rider_is_written_and_read() -> None:

@@ -3,6 +3,7 @@
 import json
 import logging
 import struct
+import types
 
 import numpy as np
 import pytest
@@ -37,7 +38,7 @@ def test_points_of_two_coordinates_are_rejected(tmp_path):
 
 class _Scene:
     def __init__(self):
-        self.geometry = {}
+        self.geometry, self.graph = {}, types.SimpleNamespace(nodes_geometry=[])
 
     def dump(self):
         return [trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]], process=False)]

@@ -176,3 +176,33 @@ def test_omnidirectional_limits_speed_and_acceleration_as_vectors():
     assert (pushed.forward[0], pushed.left[0]) == pytest.approx((0.12, 0.16))
     _, turned = slow.step(pose, Twists.of(Twist(0.6, 0.0, left=0.8), 1), Twist(0.6, 0.0, left=-0.8), 0.1)
     assert (turned.forward[0], turned.left[0]) == pytest.approx((0.6, 0.6))
+
+
+@few
+@given(speeds, speeds, speeds, speeds, st.floats(0.2, 5.0), st.floats(0.005, 0.1))
+def test_the_lateral_acceleration_is_kept_once_it_is_reached(forward, turn, start, turning, most, dt):
+    """Whatever is asked for, speed times turn rate falls below the limit, and stays there."""
+    drive = DifferentialDrive(
+        max_speed=2.0, max_turn_rate=3.0, max_acceleration=2.0, max_turn_acceleration=6.0, max_lateral_acceleration=most
+    )
+    pose, twist = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(start / 3.0, turning / 3.0), 1)
+    for _ in range(round(1.5 / dt)):
+        pose, twist = drive.step(pose, twist, Twist(forward, turn), dt)
+    assert abs(twist.forward[0] * twist.turn[0]) <= most + 1e-9
+    goal = np.clip(forward, -2.0, 2.0)
+    assert twist.forward[0] == pytest.approx(goal, abs=1e-9)  # the speed is not reduced
+    free = np.clip(turn, -3.0, 3.0)
+    if abs(goal * free) < most:
+        assert twist.turn[0] == pytest.approx(free, abs=1e-9)
+
+
+def test_without_a_limit_of_lateral_acceleration_nothing_changes():
+    free, wide = DifferentialDrive(**FREE), DifferentialDrive(**FREE, max_lateral_acceleration=1e300)
+    pose, twist = Pose.of((0.0, 0.0), 0.3), Twists.of(Twist(1.0, 2.0), 1)
+    one, other = (drive.step(pose, twist, Twist(9.0, -9.0), 0.1) for drive in (free, wide))
+    assert one[0].position.tobytes() == other[0].position.tobytes()
+    assert one[1].turn[0] == other[1].turn[0] == -9.0
+    with pytest.raises(InputError, match=r"max_lateral_acceleration = 0.0 m/s2 must be above 0"):
+        DifferentialDrive(max_lateral_acceleration=0.0)
+    with pytest.raises(InputError, match="max_lateral_acceleration = nan m/s2 must be above 0"):
+        DifferentialDrive(max_lateral_acceleration=math.nan)

@@ -151,15 +151,17 @@ def test_a_cube_is_pushed_and_a_fixed_one_is_not():
     robot = Robot.load("cuybot")
     free = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, mass=5.0),)))
     fast = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, fixed=True),)))
+    forces = []
     for _ in range(60):
         free.step({0: Twist(0.5, 0.0)})
         fast.step({0: Twist(0.5, 0.0)})
+        forces.append(sum(row.force for row in free.forces))
     assert free.prop(0)[0, 3] > 1.4
     assert free.prop(0)[2, 3] == pytest.approx(0.2, abs=0.01)
     assert fast.prop(0)[0, 3] == 1.0
     assert fast.scene.position[0, 0, 0] < 0.55
     assert {event.second.kind for event in free.contact_events} == {"prop"}
-    assert sum(row.force for row in free.forces) == pytest.approx(0.5 * 5.0 * 9.81, rel=0.5)
+    assert np.mean(forces[-20:]) == pytest.approx(0.5 * 5.0 * 9.81, rel=0.5)  # it slides in jerks
 
 
 def test_tissues():

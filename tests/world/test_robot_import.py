@@ -1,5 +1,7 @@
 """A maker's file becomes a robot folder that runs in both worlds, and everything guessed is listed."""
 
+import math
+
 import numpy as np
 import pytest
 from base_texts import BASES, base_file
@@ -18,6 +20,13 @@ def convert(folder, text, *words, name="maker"):
     return folder / name
 
 
+DRIVES = {
+    "differential": "DifferentialDrive", "skid-steer": "SkidSteerDrive", "mecanum": "MecanumDrive",
+    "omnidirectional": "OmniWheelDrive", "ackermann": "AckermannDrive", "tricycle": "TricycleDrive",
+    "legged": "LeggedDrive",
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("kind", BASES)
 def test_every_kind_of_base_is_recognized_and_runs(tmp_path, capsys, kind):
     folder = convert(tmp_path, base_file(kind))
@@ -26,10 +35,8 @@ def test_every_kind_of_base_is_recognized_and_runs(tmp_path, capsys, kind):
     robot = Robot.load(folder)
     check_robot(robot)
     assert robot.model.mass == read_urdf(tmp_path / "maker.urdf.xacro").mass
-    drive = {"ackermann": "AckermannDrive", "tricycle": "AckermannDrive"}.get(kind, "DifferentialDrive")
-    drive = "Omnidirectional" if kind in ("mecanum", "omnidirectional", "legged") else drive
-    assert type(robot.drive).__name__ == drive
-    assert robot.base == ("wheels" if kind in ("differential", "ackermann", "tricycle") else "planar")
+    assert type(robot.drive).__name__ == DRIVES[kind]
+    assert robot.base == ("planar" if kind == "legged" else "wheels")
     lidar = robot.mount("scan").sensor
     assert (lidar.rays, lidar.rate, lidar.range_max, round(lidar.field_of_view, 6)) == (181, 20.0, 12.0, 3.14)
     assert lidar.noise
@@ -48,7 +55,7 @@ def test_the_printed_commands_run(tmp_path, capsys, monkeypatch, kind):
     (tmp_path / "maker.xacro").write_text(base_file(kind))
     assert main(["new", "robot", "maker.xacro"]) == 0
     lines = [line for line in capsys.readouterr().out.splitlines() if "  crowdbot " in line]
-    assert len(lines) == 3
+    assert len(lines) == 4
     for line in lines:
         words = line.split("  crowdbot ")[1].split()
         if words[0] != "render":
@@ -61,7 +68,8 @@ def test_the_origin_of_a_car_is_its_rear_axle(tmp_path):
     places = robot.model.poses()
     assert abs(places["rear_left"][0, 3]) < 1e-9
     assert robot.drive.wheelbase == pytest.approx(0.4)
-    assert robot.drive.max_steering == 0.5
+    inner = 0.4 / math.tan(robot.drive.max_steering) - 0.2  # turning radius of the inner wheel
+    assert math.atan(0.4 / inner) == pytest.approx(0.5)
     assert sorted(wheel.steering for wheel in robot.wheels if wheel.steering) == [
         "front_left_steer",
         "front_right_steer",

@@ -101,7 +101,7 @@ def test_a_flat_mesh_can_touch(tmp_path):
         ("a.stl", b"", "cannot be used: it"),
         ("a.stl", b"\x00" * 80 + b"\xff\xff\xff\xff", "cannot be used: it"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "cannot be used: it"),
-        ("a.glb", b"glTF\x02\x00\x00\x00\xff\xff\xff\xff", "cannot be read as glb"),
+        ("a.glb", b"glTF\x02\x00\x00\x00\xff\xff\xff\xff", "it has no GLB header"),
         ("a.obj", b"v 1 2\nf 1 2 3", "cannot be used: it"),
         ("a.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "cannot be used: it"),
         ("a.obj", b"v 1e9 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "farther than 10 km from the origin"),
@@ -119,11 +119,16 @@ def test_broken_meshes_are_replaced_and_said(tmp_path, name, content, message):
     assert model.links["a"].visuals[0].shape == Sphere(0.5)
 
 
-def test_materials_beside_an_obj_are_not_read(tmp_path):
+def test_materials_outside_the_folder_are_not_read(tmp_path):
     (tmp_path / "a.obj").write_text(
         "mtllib ../../../../etc/passwd\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n"
     )
-    assert read_urdf(write(tmp_path, mesh("a.obj"))).warnings == ()
+    model = read_urdf(write(tmp_path, mesh("a.obj")))
+    (warning,) = model.warnings
+    assert (
+        "'../../../../etc/passwd' of the mesh a.obj is outside the folder of the robot; its colour is used" in warning
+    )
+    assert model.links["a"].visuals[0].shape.colors is None
 
 
 def test_a_mesh_that_is_too_large_is_not_loaded(tmp_path, monkeypatch):

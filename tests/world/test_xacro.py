@@ -4,11 +4,10 @@ import pytest
 from real_robots import XACRO
 from xacro_texts import ERRORS, EXPANSIONS, HEAD
 
-from crowdbot.core import InputError, RobotError, parse_xml
+from crowdbot.core import InputError, RobotError, parse_xml, parse_yaml
 from crowdbot.world import read_urdf
 from crowdbot.world.urdf.folders import Folders
 from crowdbot.world.xacro import expand_xacro
-from crowdbot.world.xacro.yaml import parse_yaml
 
 
 def tree(element):

@@ -11,6 +11,23 @@ from typing import TYPE_CHECKING, Any
 _MODULES = {
     "catalogue": ("builtin_names", "cite", "papers"),
     "demo": ("Demo", "run_demo"),
+    "drives": (
+        "DRIVE_BARS",
+        "DRIVE_COLUMNS",
+        "DriveFigures",
+        "DriveReport",
+        "DriveRow",
+        "DriveTrace",
+        "Manoeuvre",
+        "compare_traces",
+        "grid_cells",
+        "manoeuvres",
+        "measure_drives",
+        "speed_grid",
+        "trace_physics",
+        "trace_planar",
+        "write_drives_page",
+    ),
     "environments": ("BenchmarkSizes", "EnvironmentReport", "EnvironmentRow", "PeerRate", "measure_environments"),
     "report": ("PredictionResult", "write_report"),
     "prediction": (
@@ -52,6 +69,21 @@ if TYPE_CHECKING:
     from .catalogue import papers as papers
     from .demo import Demo as Demo
     from .demo import run_demo as run_demo
+    from .drives import DRIVE_BARS as DRIVE_BARS
+    from .drives import DRIVE_COLUMNS as DRIVE_COLUMNS
+    from .drives import DriveFigures as DriveFigures
+    from .drives import DriveReport as DriveReport
+    from .drives import DriveRow as DriveRow
+    from .drives import DriveTrace as DriveTrace
+    from .drives import Manoeuvre as Manoeuvre
+    from .drives import compare_traces as compare_traces
+    from .drives import grid_cells as grid_cells
+    from .drives import manoeuvres as manoeuvres
+    from .drives import measure_drives as measure_drives
+    from .drives import speed_grid as speed_grid
+    from .drives import trace_physics as trace_physics
+    from .drives import trace_planar as trace_planar
+    from .drives import write_drives_page as write_drives_page
     from .environments import BenchmarkSizes as BenchmarkSizes
     from .environments import EnvironmentReport as EnvironmentReport
     from .environments import EnvironmentRow as EnvironmentRow

@@ -51,6 +51,7 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
         "experiments": _experiments,
         "robots": _robots,
         "humans": _humans,
+        "presets": _presets,
         "protocols": _protocols,
         "formats": _formats,
     }
@@ -139,6 +140,12 @@ def _humans() -> dict[str, str]:
         who = [one.sex, f"{one.years} years"] if one.years else ["a plain figure"]
         found[one.name] = ", ".join([*filter(None, who), f"{one.height:.2f} m", f"{one.mass:.0f} kg"])
     return found
+
+
+def _presets() -> dict[str, str]:
+    from crowdbot.models import crowd_presets
+
+    return {name: preset.about for name, preset in crowd_presets().items()}
 
 
 def _protocols() -> dict[str, str]:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from .output import add_json, json_text, note, number, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import EnvironmentReport
+    from crowdbot.benchmark import DriveReport, EnvironmentReport
     from crowdbot.benchmark.environments.work_rate import WorkRate
 
 ENVIRONMENTS = "environments"
 """Name of the benchmark of environments, which has tables of its own."""
+DRIVES = "drives"
+"""Name of the drive laboratory, which measures motion and not speed of computing."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         nargs="*",
         help=f"measurements (default: all), or {ENVIRONMENTS}: simulations of many environments, compared with"
-        " navground and ir-sim",
+        f" navground and ir-sim, or {DRIVES}: how robots follow velocity commands in the physics world",
     )
     parser.add_argument("--repeats", type=int, default=7, help="timed repetitions after a warm-up (default: 7)")
     parser.add_argument(
@@ -33,7 +35,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="FILE.json", help="output file for the measurements (default: none)"
     )
     parser.add_argument(
-        "--quick", action="store_true", help=f"tiny counts for {ENVIRONMENTS}: a test of the command, not of the speed"
+        "--quick",
+        action="store_true",
+        help=f"tiny counts for {ENVIRONMENTS}, or few manoeuvres for {DRIVES}: a test of the command",
+    )
+    parser.add_argument(
+        "--robot",
+        metavar="NAME",
+        nargs="+",
+        default=[],
+        help=f"robots or their folders for {DRIVES} (default: built-in)",
+    )
+    parser.add_argument(
+        "--page", type=Path, metavar="FILE.md", help=f"page for {DRIVES}, with its plots in a folder of the same name"
     )
     add_json(parser)
 
@@ -44,11 +58,17 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
 
     if ENVIRONMENTS in options.names:
-        if len(options.names) > 1 or options.data is not None:
+        if len(options.names) > 1 or options.data is not None or options.robot or options.page is not None:
             raise InputError(f"{ENVIRONMENTS} is measured alone, without other measurements and without --data")
         return _measure_environments(options)
+    if DRIVES in options.names:
+        if len(options.names) > 1 or options.data is not None:
+            raise InputError(f"{DRIVES} is measured alone, without other measurements and without --data")
+        return _measure_drives(options)
+    if options.robot or options.page is not None:
+        raise InputError(f"--robot and --page belong to crowdbot bench {DRIVES}")
     if options.quick:
-        raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS}; use --repeats 1")
+        raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS} or {DRIVES}; use --repeats 1")
     with progress(options.json) as report:
         rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
     table = [row.as_dict() for row in rows]
@@ -83,6 +103,35 @@ def _measure_environments(options: argparse.Namespace) -> int:
     else:
         _print_environments(found)
     return 0
+
+
+def _measure_drives(options: argparse.Namespace) -> int:
+    from crowdbot.benchmark import measure_drives, write_drives_page
+
+    with progress(options.json) as report:
+        found = measure_drives(options.robot, quick=options.quick, report=report)
+    _write(options.out, found.as_dict())
+    if options.page is not None:
+        words = [*(["--robot", *options.robot] if options.robot else []), *(["--quick"] if options.quick else [])]
+        write_drives_page(
+            found, options.page, " ".join(["crowdbot bench", DRIVES, *words, "--page", options.page.name])
+        )
+    if options.json:
+        print_json(found.as_dict())
+    else:
+        _print_drives(found)
+    return 0
+
+
+def _print_drives(found: DriveReport) -> None:
+    from crowdbot.benchmark import DRIVE_COLUMNS, grid_cells
+
+    cells = [
+        (row.robot, row.base, f"{1000.0 * row.step:g}", *grid_cells(row.grid), ", ".join(row.failures))
+        for row in found.rows
+    ]
+    head = ("robot", "base", "ms", *(title for _, title in DRIVE_COLUMNS), "beyond the bars")
+    print_table("drives: largest figures over the grid", head, cells, caption=found.machine, words=2)
 
 
 def _print_environments(found: EnvironmentReport) -> None:

@@ -17,9 +17,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--table",
         default="people",
         metavar="NAME",
-        help="people (including robots), persons (one row for each person), robots, contacts, forces, collisions;"
-        " of sensors: scans, points, ranges, images (depth), pictures (colour, with a folder of PNG files), inertial,"
-        " odometry, bumpers, tracked (default: people)",
+        help="people (including robots), persons (one row for each person), robots, joints, transforms, contacts,"
+        " forces, collisions; of sensors: scans, points, ranges, images (depth), pictures (colour, with a folder of PNG"
+        " files), inertial, odometry, bumpers, tracked (default: people)",
     )
     add_json(parser)
 

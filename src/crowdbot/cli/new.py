@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import re
-import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .output import note
 from .settings import add_settings, settings
 from .templates import CLASSES, FOLLOW_UP, class_files, robot_files, stage_files, trial_test
+from .templates.maker_file import add_robot_options, convert_robot, is_robot_file
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
-    from crowdbot.world import RobotFolder
 
 KINDS = (*CLASSES, "robot", "stage", "trial", "schema")
-ENDINGS = (".urdf", ".xacro", ".xml", ".sdf")
-MOST_ROWS = 60
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +39,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim or the CrowdBot simulator (2021)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim or the CrowdBot simulator (2021), or a drawing (DXF)",
     )
     begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
     group.add_argument(
@@ -52,10 +48,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="project folder of the CrowdBot simulator, for files that FILE refers to (default: folder of FILE)",
     )
+    group.add_argument(
+        "--layer", metavar="NAME", action="append", default=[], help="layer of a drawing (default: all visible ones)"
+    )
+    group.add_argument(
+        "--unit", choices=("mm", "cm", "m", "km", "in", "ft"), help="unit of a drawing (default: from the file)"
+    )
     add_settings(group)
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
     group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
-    _add_robot_options(parser)
+    add_robot_options(parser)
     group = parser.add_argument_group("trial from a recording")
     group.add_argument("--fps", type=float, help="frame rate of the recording in Hz (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
@@ -67,8 +69,10 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
     from crowdbot.trials import trial_xml
 
-    if options.kind == "robot" and _is_robot_file(options.file):
-        return _convert_robot(options)
+    if options.kind == "robot" and is_robot_file(options.file):
+        return convert_robot(options)
+    if options.json:
+        raise InputError("--json is for a robot from a file")
     files = _files(options)
     for file in (options.file, *files):
         if file.exists() and not options.force:
@@ -166,7 +170,7 @@ def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
     from crowdbot.trials import check_trial, import_trial, trial_xml
 
-    done = import_trial(options.original, options.root)
+    done = import_trial(options.original, options.root, options.layer, options.unit or "")
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1
@@ -197,143 +201,3 @@ def _write(file: Path, text: str) -> None:
             part.unlink(missing_ok=True)
         raise InputError(f"cannot write {file}: {error.strerror or error}") from None
     print(f"wrote {file}")
-
-
-def _add_robot_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of a robot from a file."""
-    group = parser.add_argument_group("robot from a URDF, xacro or SDF file")
-    group.add_argument("--out", type=Path, metavar="DIR", help="robot folder to write (default: name of the robot)")
-    for option, metavar, text in (
-        ("--package", "NAME=FOLDER", "folder of a package that the file names"),
-        ("--arg", "NAME:=VALUE", "argument of the xacro file"),
-        ("--env", "NAME=VALUE", "environment variable of the xacro file"),
-    ):
-        group.add_argument(option, metavar=metavar, action="append", default=[], help=text)
-    group.add_argument("--base", default="", metavar="KIND", help="kind of base (default: recognized)")
-
-
-def _is_robot_file(path: Path) -> bool:
-    """Return whether a path is a robot file to convert, not the name of a new robot folder.
-
-    Raises:
-        InputError: the path ends as a robot file, but there is none.
-    """
-    from crowdbot.core import InputError
-
-    if path.suffix.lower() not in ENDINGS:
-        return False
-    if not path.is_file():
-        raise InputError(f"there is no robot file {path}")
-    return True
-
-
-def _convert_robot(options: argparse.Namespace) -> int:
-    """Write the robot folder and a trial, and print what was recognized."""
-    from crowdbot.core import InputError
-    from crowdbot.world import Robot, import_robot
-
-    out = options.out or Path(_robot_name(options.file))
-    if not re.fullmatch(r"[A-Za-z][\w-]*", out.name, re.ASCII):
-        raise InputError(f"{out.name!r} is not a valid robot name; give --out with letters, digits, - and _")
-    trial = out.parent / f"{out.name}-hall.xml"
-    for path in (out, trial):
-        if path.exists() and not options.force:
-            raise InputError(f"{path} already exists; give another --out, or --force to replace it")
-    if not out.parent.is_dir():
-        raise InputError(f"the folder {out.parent} of {out.name} does not exist")
-    packages = {name: Path(folder) for name, folder in _pairs(options.package, "=", "--package").items()}
-    for name, folder in packages.items():
-        if not folder.is_dir():
-            raise InputError(f"--package {name}={folder} must name an existing folder")
-    made = import_robot(
-        options.file,
-        out.name,
-        packages=packages,
-        arguments=_pairs(options.arg, ":=", "--arg"),
-        environment=_pairs(options.env, "=", "--env"),
-        kind=options.base,
-    )
-    _write_folder(out, made)
-    robot = Robot.load(out)
-    _write(trial, _hall(out.name, robot.radius))
-    _print_guesses(made)
-    print(f"\ncheck it    crowdbot check {out}")
-    print(f"look at it  crowdbot render {trial} --out {out.name}.png")
-    print(f"run it      crowdbot run {trial}")
-    return 0
-
-
-def _robot_name(path: Path) -> str:
-    name = path.name.partition(".")[0]
-    return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)
-
-
-def _pairs(words: list[str], sign: str, option: str) -> dict[str, str]:
-    from crowdbot.core import InputError
-
-    found = {}
-    for word in words:
-        name, has, value = word.partition(sign)
-        if not (name and has):
-            raise InputError(f"{option} {word!r} must be NAME{sign}VALUE")
-        found[name] = value
-    return found
-
-
-def _write_folder(out: Path, made: RobotFolder) -> None:
-    """Write the folder beside its place first, so that no half of it remains after an error."""
-    from crowdbot.core import InputError
-
-    part = out.with_name(out.name + ".part")
-    try:
-        shutil.rmtree(part, ignore_errors=True)
-        part.mkdir()
-        for name, path in made.copies.items():
-            (part / name).parent.mkdir(exist_ok=True)
-            shutil.copyfile(path, part / name)
-        for name, text in made.texts.items():
-            (part / name).write_text(text, encoding="utf-8")
-        if out.is_dir() and not out.is_symlink():
-            if not (out / "robot.xml").is_file():
-                raise InputError(f"{out} is not a robot folder and is not replaced; give another --out")
-            shutil.rmtree(out)
-        part.replace(out)
-    except OSError as error:
-        raise InputError(f"cannot write {out}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-    print(f"wrote {out}")
-
-
-def _print_guesses(made: RobotFolder) -> None:
-    rows = [("what", "value", "from", "change it with"), *made.guesses[:MOST_ROWS]]
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    print()
-    for row in rows:
-        print("  ".join([*(row[k].ljust(min(widths[k], 48)) for k in range(3)), row[3]]).rstrip())
-    if len(made.guesses) > MOST_ROWS:
-        print(f"and {len(made.guesses) - MOST_ROWS} more")
-    if made.remarks:
-        print(f"\n{len(made.remarks)} remarks:")
-        for remark in made.remarks[:20]:
-            print(f"  - {remark}")
-
-
-def _hall(name: str, radius: float) -> str:
-    """Return a trial with the robot and five people in a hall."""
-    width = 6.0 + 4.0 * radius
-    return f"""<?xml version="1.0" encoding="UTF-8"?>
-<trial name="{name}-hall" duration="20">
-  <stage walkable="0,0 16,0 16,{width:g} 0,{width:g}"/>
-  <crowd type="orca"/>
-  <agent name="ann" x="14" y="{0.5 * width:g}" goal="1,{0.5 * width:g}"/>
-  <agent name="ben" x="13" y="{0.25 * width:g}" goal="1,{0.25 * width:g}"/>
-  <agent name="eva" x="12" y="{0.75 * width:g}" goal="1,{0.75 * width:g}"/>
-  <agent name="tom" x="8" y="1" goal="8,{width - 1:g}"/>
-  <agent name="zoe" x="9" y="{width - 1:g}" goal="9,1"/>
-  <robot type="{name}" x="{1.0 + radius:g}" y="{0.5 * width:g}" sensor-rates="nearest">
-    <goal x="{15.0 - radius:g}" y="{0.5 * width:g}"/>
-    <navigator type="orca"/>
-  </robot>
-</trial>
-"""

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
+    from .markup.yaml import parse_yaml
     from .neighbors import CHUNK, SMALL, Neighbors
     from .random_streams import RandomStreams, draw_uniform, next_uniform, stream_states
     from .workers import each, run_saved_jobs
@@ -65,6 +66,7 @@ __getattr__, __dir__ = lazy_exports(
         "random_streams": ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"],
         "workers": ["each", "run_saved_jobs"],
         "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
+        "markup.yaml": ["parse_yaml"],
     },
 )
 
@@ -138,6 +140,7 @@ __all__ = [
     "parameters",
     "parse_number",
     "parse_xml",
+    "parse_yaml",
     "per_agent",
     "plugin_address",
     "plugin_sources",

@@ -12,6 +12,7 @@ from .pose_file import read_pose_file
 from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
 from .seat import CHAIR, WHEELCHAIR, Seat
+from .uneven import ankle_positions, stand_on_ground
 from .wardrobe import Outfit, outfit
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "PoseTrack",
     "Posture",
     "Seat",
+    "ankle_positions",
     "mass_shares",
     "names",
     "outfit",
@@ -41,4 +43,5 @@ __all__ = [
     "posing_and_skinning",
     "reach_poses",
     "read_pose_file",
+    "stand_on_ground",
 ]

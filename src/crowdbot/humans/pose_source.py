@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .body_pose import ROW, BodyPose, blend_rows, shift_row
+from .body_pose import PARTS, ROW, BodyPose, blend_rows, shift_row
 
 __all__ = ["PoseMotion", "PoseSource", "PoseTrack"]
 
@@ -81,6 +81,9 @@ class PoseTrack(PoseSource):
         start: pose before the first sample; None: the first sample.
         extrapolation: longest time [s] after the last sample with the last velocity.
         max_speed: speed [m/s] above which a change of position is a teleport.
+        part_timeout: longest time [s] for which head, hands and skeleton keep their latest sample while other samples
+            lack them: each part comes at its own rate. 0: a sample without a part ends it.
+        turning: whether ``heading`` continues with its last rate, too, during the extrapolation, as that of a robot.
 
     Raises:
         InputError: shapes do not fit, times do not increase, or there is neither a sample nor a start.
@@ -97,6 +100,8 @@ class PoseTrack(PoseSource):
     start: BodyPose | None = None
     extrapolation: float = 0.0
     max_speed: float = MAX_SPEED
+    part_timeout: float = 0.0
+    turning: bool = False
 
     def __post_init__(self) -> None:
         if self.time.ndim != 1 or self.rows.shape != (len(self.time), ROW):
@@ -115,10 +120,11 @@ class PoseTrack(PoseSource):
         start: BodyPose | None = None,
         extrapolation: float = 0.0,
         max_speed: float = MAX_SPEED,
+        part_timeout: float = 0.0,
     ) -> PoseTrack:
         """Return the track of poses with time stamps [s]."""
         rows = np.array([pose.row() for pose in poses], dtype=np.float64).reshape(-1, ROW)
-        return cls(np.array(time, dtype=np.float64), rows, start, extrapolation, max_speed)
+        return cls(np.array(time, dtype=np.float64), rows, start, extrapolation, max_speed, part_timeout)
 
     def at(self, time: float) -> BodyPose:
         """Return the pose at a time [s]."""
@@ -127,12 +133,41 @@ class PoseTrack(PoseSource):
     def motion(self, time: float) -> PoseMotion:
         """Return pose and velocity at a time [s]."""
         k = int(np.searchsorted(self.time, time + EARLY, side="right")) - 1
+        found = self._whole(time, k)
+        if self.part_timeout <= 0.0 or k < 0:
+            return found
+        return found._replace(row=self._with_parts(found.row, time, k))
+
+    def _with_parts(self, row: Floats, time: float, k: int) -> Floats:
+        """Return the row with the parts that have samples of their own before sample k + 1, at a time [s]."""
+        row = row.copy()
+        for first, last in PARTS.values():
+            given = np.flatnonzero(~np.isnan(self.rows[:, first]))
+            number = int(np.searchsorted(given, k, side="right")) - 1
+            if number < 0 or time - self.time[given[number]] > self.part_timeout + EARLY:
+                continue
+            j = int(given[number])
+            part = shift_row(self.rows[j], *(row[:2] - self.rows[j, :2]))
+            if number + 1 < len(given):
+                i = int(given[number + 1])
+                span = float(self.time[i] - self.time[j])
+                if span <= self.part_timeout + EARLY:
+                    part = blend_rows(self.rows[j], self.rows[i], max(0.0, (time - float(self.time[j])) / span))
+            row[first:last] = part[first:last]
+        return row
+
+    def _whole(self, time: float, k: int) -> PoseMotion:
+        """Return pose and velocity at a time [s] after sample k, in which a sample without a part ends it."""
         if k < 0:
             return PoseMotion(self.rows[0] if self.start is None else self.start.row(), 0.0, 0.0)
         if k + 1 == len(self.time):
             late = max(0.0, time - float(self.time[k]))
             vx, vy = self._velocity(k - 1) if k > 0 else (0.0, 0.0)
             row = shift_row(self.rows[k], *(min(late, self.extrapolation) * one for one in (vx, vy)))
+            if self.turning and k > 0:
+                turn = float(self.rows[k, 2] - self.rows[k - 1, 2])
+                turn -= 2.0 * math.pi * math.floor((turn + math.pi) / (2.0 * math.pi))
+                row[2] += min(late, self.extrapolation) * turn / float(self.time[k] - self.time[k - 1])
             return PoseMotion(row, vx, vy) if late < self.extrapolation - EARLY else PoseMotion(row, 0.0, 0.0)
         velocity = self._velocity(k)
         if velocity == (0.0, 0.0) and np.any(self.rows[k, :2] != self.rows[k + 1, :2]):

@@ -1,13 +1,14 @@
 """ROS 2 message types (Humble, people_msgs and crowdbot_msgs) and their CDR encoding.
 
-Frames follow REP-103 and REP-105: ``map``, ``<robot>/base_link``, ``<robot>/<sensor>``. Ranges follow REP-117.
+Frames follow REP-103 and REP-105: ``map``, ``<robot>/odom``, ``<robot>/base_link`` and the links of the robot,
+``<robot>/<sensor>``. Ranges follow REP-117.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -140,14 +141,25 @@ class Messages:
         return people_bytes(nanoseconds, ids[there], *(row[0, there] for row in rows))
 
     def odometry(
-        self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float], frame: str = MAP
+        self,
+        nanoseconds: int,
+        name: str,
+        x: float,
+        y: float,
+        heading: float,
+        twist: Sequence[float],
+        frame: str = MAP,
+        child: str = "",
     ) -> Any:
-        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the robot frame."""
+        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the child frame.
+
+        The child frame is that of the robot (default: its ``base_link``).
+        """
         forward, turn, left = map(float, twist)
         return self.make(
             "nav_msgs/msg/Odometry",
             header=self.header(nanoseconds, frame),
-            child_frame_id=f"{name}/base_link",
+            child_frame_id=child or f"{name}/base_link",
             pose=self.make(
                 "geometry_msgs/msg/PoseWithCovariance", pose=self.pose(x, y, heading), covariance=np.zeros(36)
             ),
@@ -156,6 +168,22 @@ class Messages:
                 twist=self.twist(forward, turn, left),
                 covariance=np.zeros(36),
             ),
+        )
+
+    def joint_states(self, nanoseconds: int, states: Mapping[str, tuple[float, float]]) -> Any:
+        """Return ``sensor_msgs/JointState`` from position [rad or m] and velocity of joints by name.
+
+        >>> Messages().joint_states(0, {"HeadYaw": (0.5, 0.0)}).position.tolist()
+        [0.5]
+        """
+        values = np.array(list(states.values()), dtype=np.float64).reshape(-1, 2)
+        return self.make(
+            "sensor_msgs/msg/JointState",
+            header=self.header(nanoseconds, ""),
+            name=list(states),
+            position=values[:, 0].copy(),
+            velocity=values[:, 1].copy(),
+            effort=np.zeros(0),
         )
 
     def transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, float, float, float]]) -> Any:

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crowdbot.core import EpisodeError, Pose, SpatialPose
+from crowdbot.core import EpisodeError
 from crowdbot.sensors import (
     BumperReading,
     DepthImage,
@@ -251,18 +251,13 @@ def _read_tracked(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
     }
 
 
-def _odometry_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
-    """Return the odometry frame; odometry starts at the true pose, so the frame is that of the map."""
-    return [("map", f"{robot}/odom", Pose.of((0.0, 0.0), 0.0).to_spatial(0.0))]
-
-
 CODECS: dict[type[Reading], Codec] = {
     Scan: Codec(_write_scan, _read_scan, rest=("cos_incidence", "part"), short=("facing",)),
     PointCloud: cloud_codec,
     RangeReading: Codec(_write_echo, _read_echo, rest=("hit", "part", "direction")),
     DepthImage: depth_codec,
     ImuReading: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
-    Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks"), frames=_odometry_frames),
+    Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks")),
     RgbImage: picture_codec,
     BumperReading: touch_codec,
     TrackedPeople: Codec(_write_tracked, _read_tracked, rest=("present",)),

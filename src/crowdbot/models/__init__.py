@@ -9,8 +9,10 @@ from .forces.group_force import GroupForce
 from .forces.power_law import PowerLaw
 from .forces.social_force import SocialForce
 from .goals import CurrentDirection, Goal, GroundTruth
+from .headway import HeadwayLayer, find_layered, with_headway
 from .mixture import Mixture
 from .model import CrowdModel
+from .presets import CrowdPreset, People, crowd_presets
 from .speed_models.anticipation_velocity import AnticipationVelocity
 from .speed_models.collision_free_speed import CollisionFreeSpeed
 from .velocity_obstacles.orca import ORCA
@@ -29,18 +31,24 @@ __all__ = [
     "CollisionFreeSpeed",
     "CostModel",
     "CrowdModel",
+    "CrowdPreset",
     "CurrentDirection",
     "EscapePanic",
     "Goal",
     "GroundTruth",
     "GroupForce",
+    "HeadwayLayer",
     "Heuristics",
     "Mixture",
     "PLEdestrians",
+    "People",
     "PowerLaw",
     "SocialForce",
     "Tangent",
     "check_goal",
     "check_model",
     "costs",
+    "crowd_presets",
+    "find_layered",
+    "with_headway",
 ]

@@ -16,10 +16,11 @@ class Action:
 
     Fields:
         twist: velocity asked of the drive [m/s], [rad/s].
-        joints: target positions of joints by name [rad] or [m]; must be empty, since only orders move joints.
+        joints: target positions of joints by name [rad] or [m], clipped to the limits of each joint. A joint that is
+            left out keeps its target.
 
-    >>> Action(Twist(0.5))
-    Action(twist=Twist(forward=0.5, turn=0.0, left=0.0), joints={})
+    >>> Action(Twist(0.5), {"HeadYaw": 0.3}).joints
+    {'HeadYaw': 0.3}
     """
 
     twist: Twist = field(default_factory=Twist)

@@ -2,13 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Decisions"]
+from crowdbot.core import InputError
+
+__all__ = ["Decisions", "checked_joints"]
+
+
+def checked_joints(joints: Any, name: str) -> dict[str, float]:
+    """Return the joint targets of a navigator, by the name of the joint.
+
+    Raises:
+        InputError: they are no mapping of texts to finite numbers; the message names the navigator.
+
+    >>> checked_joints({"HeadYaw": 1}, "Shy")
+    {'HeadYaw': 1.0}
+    """
+    if not isinstance(joints, Mapping):
+        raise InputError(f"navigator {name} returned joints = {joints!r}; they must be a mapping of names to positions")
+    found: dict[str, float] = {}
+    for joint, position in joints.items():
+        number = isinstance(position, int | float | np.floating | np.integer) and not isinstance(position, bool)
+        if not isinstance(joint, str) or not number or not math.isfinite(position):
+            raise InputError(
+                f"navigator {name} returned the target {position!r} for joint {joint!r}; it must be a finite number"
+            )
+        found[joint] = float(position)
+    return found
 
 
 class Decisions(NamedTuple):
@@ -29,7 +54,11 @@ class Decisions(NamedTuple):
     """``[N]`` compute time of each decision [s]; environments decided together share the time equally; 0 without a
     timer."""
 
+    joints: list[Mapping[str, float]]
+    """Target positions of joints in each environment; empty where the navigator gives none."""
+
     @classmethod
     def still(cls, memories: Sequence[Any]) -> Decisions:
         """Return decisions to stand still that keep the memories."""
-        return cls(np.zeros((len(memories), 3)), list(memories), {}, np.zeros(len(memories)))
+        count = len(memories)
+        return cls(np.zeros((count, 3)), list(memories), {}, np.zeros(count), [{}] * count)

@@ -14,7 +14,7 @@ from crowdbot.core import InputError, Twist
 
 from .action import Action
 from .decision_thread import call_within
-from .decisions import Decisions
+from .decisions import Decisions, checked_joints
 from .navigator_memory import copy_memory
 from .observation import Observation
 from .observation_batch import ObservationBatch
@@ -63,7 +63,7 @@ class Navigator(ABC):
             robot: name of the robot, for error messages.
 
         Raises:
-            InputError: :meth:`act` returned something else or a twist that is not finite, or asks for joints.
+            InputError: :meth:`act` returned something else or a value that is not finite.
         """
         name = self._name(robot)
         plain = not _takes_memory(type(self))
@@ -73,11 +73,7 @@ class Navigator(ABC):
         if not (isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[0], Action)):
             wanted = "a Twist" if plain else "(Action, memory)"
             raise InputError(f"navigator {name} returned a {type(answer).__name__}, it must return {wanted}")
-        action = Action(Twist(*map(float, answer[0].twist)), answer[0].joints)
-        if action.joints:
-            raise InputError(
-                f"navigator {name}: joints = {dict(action.joints)} cannot be commanded yet; leave them empty"
-            )
+        action = Action(Twist(*map(float, answer[0].twist)), checked_joints(answer[0].joints, name))
         if not all(math.isfinite(value) for value in action.twist):
             raise InputError(
                 f"navigator {name} returned {action.twist} at {observation.time:g} s; its values must be finite"
@@ -154,6 +150,7 @@ class Navigator(ABC):
                 next_one = functools.partial(self.decide, batch.environment(k), decisions.memories[k], robot=robot)
                 action, memory = call_within(limit, next_one, self.title(robot))
                 decisions.twist[k], decisions.memories[k] = action.twist, memory
+                decisions.joints[k] = action.joints
             except Exception as error:  # the other environments go on
                 decisions.failures[k] = error
             decisions.seconds[k] = timer() - begin if timer else 0.0

@@ -39,6 +39,8 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
       (command_linear_x, ...; NaN if the file has none for this step);
     * ``scans``: beam: sensor, its x, y, heading in the world, angle [rad], range [m], and hit: id of the person or
       robot, -1 nothing, -2 a wall;
+    * ``joints``: joint: robot, joint, position [rad or m] and velocity;
+    * ``transforms``: transform of ``/tf`` and ``/tf_static``: parent, child, x, y, z [m], qw, qx, qy, qz;
     * ``contacts``: contact: robot, other, clearance [m];
     * ``forces`` and ``collisions``, of the physics world: the two bodies, the body part, force [N], ...;
     * readings of other sensors, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
@@ -200,6 +202,30 @@ def _scans(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Column
     }
 
 
+def _joints(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
+    rows = [(robot, name, *values) for robot, joints in moment.joints.items() for name, values in joints.items()]
+    return {
+        "time": np.full(len(rows), moment.time),
+        "robot": np.array([row[0] for row in rows], dtype=object),
+        "joint": np.array([row[1] for row in rows], dtype=object),
+        "position": np.array([row[2] for row in rows], float),
+        "velocity": np.array([row[3] for row in rows], float),
+    }
+
+
+def _transforms(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
+    rows = moment.transforms
+    return {
+        "time": np.full(len(rows), moment.time),
+        "parent": np.array([row[0] for row in rows], dtype=object),
+        "child": np.array([row[1] for row in rows], dtype=object),
+        **{
+            name: np.array([row[2][k] for row in rows], float)
+            for k, name in enumerate(("x", "y", "z", "qw", "qx", "qy", "qz"))
+        },
+    }
+
+
 def _contacts(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     rows = moment.contacts
     return {
@@ -237,6 +263,8 @@ TABLES: dict[str, Callable[[RecordedStep, dict[str, tuple[int, float]]], Columns
     "people": _people,
     "robots": _robots,
     "scans": _scans,
+    "joints": _joints,
+    "transforms": _transforms,
     "contacts": _contacts,
     "forces": _forces,
     "collisions": _collisions,

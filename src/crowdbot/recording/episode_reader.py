@@ -19,6 +19,7 @@ from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
 from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
+from crowdbot.world import REACTIONS
 
 from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -54,6 +55,7 @@ class RecordedEpisode:
         contacts: contacts of robots in all time steps.
         forces, collisions: contact forces and contact events of the physics world.
         orders: time [s] and content of the orders from outside.
+        reactions: ``[T, A]`` codes of reactions to robots, see :class:`Episode`; None if nobody can react.
         digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
     """
 
@@ -78,6 +80,7 @@ class RecordedEpisode:
     forces: tuple[ContactForceRecord, ...] = ()
     collisions: tuple[ContactEventRecord, ...] = ()
     orders: tuple[tuple[float, Order], ...] = ()
+    reactions: NDArray[np.int8] | None = None
 
     @property
     def xml(self) -> str:
@@ -326,7 +329,19 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         tuple(force for moment in found for force in moment.forces),
         tuple(collision for moment in found for collision in moment.collisions),
         tuple((moment.time, read_order(text)) for moment in found for text in moment.orders),
+        _reactions([moment for moment, _ in due], count),
     )
+
+
+def _reactions(found: Sequence[RecordedStep], count: int) -> NDArray[np.int8] | None:
+    """Return the codes of the reactions to robots ``[T, A]``; None if nobody can react."""
+    if not found or any(moment.reactions is None for moment in found):
+        return None
+    codes = np.zeros((len(found), count), dtype=np.int8)
+    for k, moment in enumerate(found):
+        for kind, people in (moment.reactions or {}).items():
+            codes[k, people] = REACTIONS.index(kind)
+    return codes
 
 
 @dataclass

@@ -12,27 +12,35 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-
 from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
 from crowdbot.messages import (
-    MAP,
     MeasuredReading,
     Messages,
-    codec_of,
     contact_messages,
     encode_reading,
     markers,
-    mount_pose,
 )
 from crowdbot.messages.marker_array import KIND as MARKERS
 from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, Simulation, StepRecord, write_order
 from crowdbot.trials import RobotSpec, Trial, trial_xml
+from crowdbot.world import people_by_reaction
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
-from .metadata import ADDED_ROBOTS, CONTACTS, DIGEST, ENDING, FORMAT, METADATA, ORDERS, as_json, versions
+from .metadata import (
+    ADDED_ROBOTS,
+    CONTACTS,
+    DIGEST,
+    ENDING,
+    FORMAT,
+    METADATA,
+    ORDERS,
+    REACTION_TOPIC,
+    as_json,
+    versions,
+)
+from .robot_messages import RobotMessages
 
 __all__ = ["Recorder"]
 
@@ -42,7 +50,9 @@ LATCHED = (
     f"  deadline: {FOREVER}\n  lifespan: {FOREVER}\n"
     f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
 )
-"""Quality of service of static frames, for late subscribers in ROS (read by rosbag2)."""
+"""Quality of service of what is written once, for late subscribers in ROS (read by rosbag2)."""
+LATCHED_TOPICS = ("/tf_static", "/robot_description")
+"""Topics that are written once, for late subscribers too."""
 APART = 500_000_000
 """Simulated time between two writes [ns]; the content of the file does not depend on wall time."""
 
@@ -50,11 +60,13 @@ APART = 500_000_000
 class Recorder:
     """Writes the step records of a run to a file that is readable at any time, also after the process is killed.
 
-    Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
-    ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
-    ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for contacts of a
-    robot with people or walls, and ``/crowdbot/orders`` for orders from outside; in the physics world
-    ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
+    Topics: ``/clock``, ``/tf`` (``map``, odometry frame, robot and moving links), ``/tf_static`` (fixed links and
+    sensors, latched), ``/people``, ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``,
+    ``/<robot>/ground_truth/odom``, ``/<robot>/cmd_vel``, ``/<robot>/joint_states``, ``/<robot>/robot_description``
+    (latched) and ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for
+    contacts of a robot with people or walls, ``/crowdbot/orders`` for orders from outside, and ``/crowdbot/reactions``
+    if people can react to robots; in the physics world ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time
+    stamps are simulated time.
 
     The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
     as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no
@@ -96,6 +108,7 @@ class Recorder:
         if sentence := skip_message(file for file, _ in self.files):
             warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
         self.messages = Messages()
+        self.robots = RobotMessages(self.messages, simulation)
         self.keyframes = KeyframeTrack(simulation, tally.digest)
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
@@ -144,9 +157,10 @@ class Recorder:
         now, make = frame.nanoseconds, self.messages
         self._note_added(frame)
         self._write("/clock", make.clock(now), now)
-        if frame.robots:
-            self._write("/tf", make.transforms(now, self._poses(frame)), now)
-        self._fixed(frame)
+        for topic, message in self.robots.latched(frame):
+            self._write(topic, message, now)
+        for message in self.robots.transforms(frame):
+            self._write("/tf", message, now)
         for robot, mount, reading in frame.readings:
             told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
             for ending, message in encode_reading(make, told):
@@ -204,35 +218,14 @@ class Recorder:
     def _scene(self, frame: StepRecord) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
         self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
-        for k, (_, _, x, y, heading) in enumerate(self._poses(frame)):
-            name = frame.robots[k].name
-            self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
-            self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
+        if (reactions := people_by_reaction(scene, frame.ids)) is not None:
+            self._write(REACTION_TOPIC, make.text(as_json(reactions)), now)
+        for topic, message in self.robots.scene(frame):
+            self._write(topic, message, now)
         if (latest := self._markers.index(frame.tick)) >= self._next_markers:
             self._next_markers = latest + 1
             goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in frame.robots]
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, goals), now)
-
-    def _fixed(self, frame: StepRecord) -> None:
-        """Write the frames of sensors at each step, which makes each step self-contained."""
-        rows = [
-            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount_pose(robot, mount))
-            for robot in frame.robots
-            for mount in robot.sensors
-        ]
-        for robot, mount, reading in frame.readings:
-            topic = f"{robot.name}/{mount.name}"
-            rows += codec_of(type(reading), topic).frames(robot.name, topic)
-        if rows:
-            self._write("/tf_static", self.messages.fixed(frame.nanoseconds, rows), frame.nanoseconds)
-
-    def _poses(self, frame: StepRecord) -> list[tuple[str, str, float, float, float]]:
-        scene = frame.scene
-        agents = [int(np.flatnonzero(frame.ids == one)[0]) for one in frame.robot_ids]
-        return [
-            (MAP, f"{robot.name}/base_link", *scene.position[0, agent].tolist(), float(scene.heading[0, agent]))
-            for agent, robot in zip(agents, frame.robots, strict=True)
-        ]
 
     def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
         names = self._names | {WALL: "wall"}
@@ -245,7 +238,7 @@ class Recorder:
         assert self.tape is not None
         if topic not in self.channels:
             schema = self.tape.schema(kind, self.messages.definition(kind))
-            self.channels[topic] = self.tape.channel(topic, schema, LATCHED if topic == "/tf_static" else "")
+            self.channels[topic] = self.tape.channel(topic, schema, LATCHED if topic.endswith(LATCHED_TOPICS) else "")
         try:
             self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:

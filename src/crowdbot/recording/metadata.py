@@ -18,9 +18,12 @@ __all__ = [
     "ENDING",
     "END_KEYS",
     "FORMAT",
+    "GROUND_TRUTH",
     "KEYS",
     "METADATA",
+    "ODOM",
     "ORDERS",
+    "REACTION_TOPIC",
     "TWIST",
     "as_json",
     "from_json",
@@ -47,6 +50,10 @@ ORDERS = "/crowdbot/orders"
 """Topic of the orders from outside, as JSON."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
+GROUND_TRUTH, ODOM = "/ground_truth/odom", "/odom"
+"""Topics of the true pose of a robot, after its name: of today, and of files before."""
+REACTION_TOPIC = "/crowdbot/reactions"
+"""Topic of the reactions to robots that are in force, as JSON: ids of people by kind of reaction."""
 
 
 def versions() -> dict[str, str]:

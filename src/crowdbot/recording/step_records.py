@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -29,7 +30,7 @@ from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, ORDERS, heading_of
+from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ODOM, ORDERS, REACTION_TOPIC, heading_of
 
 __all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
 
@@ -67,9 +68,12 @@ class RecordedStep:
         commands: commands by robot name: forward [m/s], turn [rad/s], left [m/s].
         readings: readings by ``robot/sensor``; none in files of crowdbot 0.4 and earlier.
         scans: scans of planar laser scanners, by ``robot/sensor``.
+        joints: position [rad or m] and velocity of joints by robot and name; none in files before.
+        transforms: parent frame, child frame, position [m] and rotation w, x, y, z.
         forces, collisions: contact forces of this step, and contact events that ended, in the physics world.
         contacts: contacts of this step.
         orders: orders from outside in this step, as JSON.
+        reactions: ids of the people who react to robots, by kind of reaction; None if nobody can.
         digest: digest of the episode as if it was interrupted here; empty in files of format 1.
     """
 
@@ -79,10 +83,13 @@ class RecordedStep:
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     readings: dict[str, Reading] = field(default_factory=dict)
     scans: dict[str, ScanRow] = field(default_factory=dict)
+    joints: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
+    transforms: list[tuple[str, str, tuple[float, ...]]] = field(default_factory=list)
     forces: list[ContactForceRecord] = field(default_factory=list)
     collisions: list[ContactEventRecord] = field(default_factory=list)
     contacts: list[RecordedContact] = field(default_factory=list)
     orders: list[str] = field(default_factory=list)
+    reactions: dict[str, list[int]] | None = None
     digest: str = ""
 
     @property
@@ -128,16 +135,21 @@ def read_steps(tape: McapReader) -> Iterator[RecordedStep]:
     from crowdbot.messages import Messages
 
     messages = Messages()
+    fixed: Poses = {}
     for stamp, group in itertools.groupby(tape.messages(), key=lambda heard: heard.stamp):
         decoded = [
             (heard.topic.topic, messages.decode_message(heard.data, heard.topic.kind))
             for heard in group
             if heard.topic.topic != "/crowd/markers" and heard.topic.kind in messages.store.types
         ]
-        yield _moment(stamp, decoded)
+        yield _moment(stamp, decoded, fixed)
 
 
-def _moment(stamp: int, messages: list[tuple[str, Any]]) -> RecordedStep:
+Poses = dict[str, tuple[str, float, float, float]]
+"""Parent frame, x, y [m] and heading [rad] by frame."""
+
+
+def _moment(stamp: int, messages: list[tuple[str, Any]], fixed: Poses | None = None) -> RecordedStep:
     moment = RecordedStep(stamp)
     topics = dict(messages)
     sensors = {topic.removesuffix(REST) for topic, message in messages if message.__msgtype__ == KIND}
@@ -147,19 +159,21 @@ def _moment(stamp: int, messages: list[tuple[str, Any]]) -> RecordedStep:
         moment.readings[topic.strip("/")] = reading
         if isinstance(reading, Scan):
             moment.scans[topic.strip("/")] = scan_row(reading)
-    poses: dict[str, tuple[str, float, float, float]] = {}
+    fixed = {} if fixed is None else fixed
+    poses: Poses = {}
     for topic, message in messages:
+        if topic == "/tf_static":
+            _take(moment, fixed, topic, message, sensors)
+            continue
         _take(moment, poses, topic, message, sensors)
     for topic, message in messages:
         if message.__msgtype__ == "sensor_msgs/msg/LaserScan" and topic not in sensors:
             name = topic.strip("/")
-            moment.scans[name] = _scan(poses, name, moment.time, message)
+            moment.scans[name] = _scan({**fixed, **poses}, name, moment.time, message)
     return moment
 
 
-def _take(
-    moment: RecordedStep, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
-) -> None:
+def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors: set[str]) -> None:
     """Process a message that is not a reading."""
     robot = topic.strip("/").rpartition("/")[0]
     kind = message.__msgtype__
@@ -169,6 +183,8 @@ def _take(
         moment.digest = str(message.data)
     elif topic == ORDERS:
         moment.orders.append(str(message.data))
+    elif topic == REACTION_TOPIC:
+        moment.reactions = json.loads(message.data)
     elif topic == CONTACTS:
         moment.contacts = [RecordedContact(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
     elif topic == FORCES:
@@ -177,10 +193,18 @@ def _take(
         moment.collisions = read_contact_events(message)
     elif kind == "tf2_msgs/msg/TFMessage":
         for row in message.transforms:
-            shift = row.transform.translation
-            poses[row.child_frame_id] = row.header.frame_id, shift.x, shift.y, heading_of(row.transform.rotation)
+            shift, turn = row.transform.translation, row.transform.rotation
+            poses[row.child_frame_id] = row.header.frame_id, shift.x, shift.y, heading_of(turn)
+            values = (shift.x, shift.y, shift.z, turn.w, turn.x, turn.y, turn.z)
+            moment.transforms.append((row.header.frame_id, row.child_frame_id, values))
     elif kind == "nav_msgs/msg/Odometry" and topic not in sensors:
-        moment.robots[robot] = _robot(message)
+        if message.header.frame_id == MAP:  # otherwise it is not the true pose
+            ending = GROUND_TRUTH if topic.endswith(GROUND_TRUTH) else ODOM
+            moment.robots[topic.removesuffix(ending).strip("/")] = _robot(message)
+    elif kind == "sensor_msgs/msg/JointState":
+        moment.joints[robot] = dict(
+            zip(message.name, zip(message.position.tolist(), message.velocity.tolist(), strict=True), strict=True)
+        )
     elif kind == "geometry_msgs/msg/Twist":
         moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
 
@@ -211,12 +235,8 @@ def _robot(message: Any) -> RobotState:
     )
 
 
-def _scan(poses: dict[str, tuple[str, float, float, float]], topic: str, time: float, message: Any) -> ScanRow:
-    carrier, *mount = poses[topic]
-    parent, *place = poses[carrier]
-    if parent != MAP:
-        raise ValueError(f"frame {carrier!r} is not in {MAP!r}")
-    pose = Pose.of(place[:2], place[2]).offset(*mount)
+def _scan(poses: Poses, topic: str, time: float, message: Any) -> ScanRow:
+    pose = _pose_in_map(poses, topic)
     return ScanRow(
         time,
         (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0])),
@@ -224,3 +244,22 @@ def _scan(poses: dict[str, tuple[str, float, float, float]], topic: str, time: f
         message.ranges.astype(np.float64),
         message.intensities.astype(np.int64),
     )
+
+
+def _pose_in_map(poses: Poses, frame: str) -> Pose:
+    """Return the pose of a frame from the transforms of its parents.
+
+    Raises:
+        ValueError: the frame is not below the map.
+    """
+    chain: list[tuple[float, float, float]] = []
+    name = frame
+    while name != MAP:
+        if name not in poses or len(chain) > len(poses):
+            raise ValueError(f"frame {frame!r} is not in {MAP!r}")
+        name, x, y, heading = poses[name]
+        chain.append((x, y, heading))
+    pose = Pose.of(chain[-1][:2], chain[-1][2])
+    for place in reversed(chain[:-1]):
+        pose = pose.offset(*place)
+    return pose

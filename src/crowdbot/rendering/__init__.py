@@ -1,7 +1,8 @@
-"""Images and videos from the cameras of a trial."""
+"""Images and videos from the cameras of a trial, and plots of episodes."""
 
 from .camera_images import SMOOTH, RenderedImage, RenderRequest, camera_names, render_images
 from .image_writer import ImageWriter, color_segmentation
+from .reaction_plot import plot_reactions
 
 __all__ = [
     "SMOOTH",
@@ -10,5 +11,6 @@ __all__ = [
     "RenderedImage",
     "camera_names",
     "color_segmentation",
+    "plot_reactions",
     "render_images",
 ]

@@ -10,7 +10,9 @@ from .lens import ImageSource, Lens, distort_image
 from .lidar import Lidar2D, Scan
 from .lidar3d import Lidar3D, PointCloud
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
-from .odometry import Odometry, OdometryState, WheelOdometry
+from .odometry.arcs import arc_between
+from .odometry.wheel_odometry import Odometry, OdometryState, WheelOdometry
+from .odometry.wheel_rotation import WheelGeometry, WheelRotation
 from .presets import PRESETS, SensorPreset, preset
 from .range_reading import RangeReading
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
@@ -61,8 +63,11 @@ __all__ = [
     "StateGroups",
     "TrackedPeople",
     "Ultrasound",
+    "WheelGeometry",
     "WheelOdometry",
+    "WheelRotation",
     "apply_noise",
+    "arc_between",
     "check_sensor",
     "distort_image",
     "join_readings",

@@ -99,6 +99,7 @@ class Sensor(ABC):
     Class attributes:
         spatial: whether the sensor always measures in space, also where people are discs in the plane.
         renders: whether the sensor needs a renderer for its usual images. Rendering is slow and needs graphics.
+        encoders: whether the sensor reads the wheels of its robot, ``view.wheels``.
 
     >>> @dataclass(frozen=True, kw_only=True)
     ... class Counter(Sensor):
@@ -117,6 +118,7 @@ class Sensor(ABC):
     delay: float = 0.0
     spatial: ClassVar[bool] = False
     renders: ClassVar[bool] = False
+    encoders: ClassVar[bool] = False
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
 
 from .lens import ImageSource
+from .odometry.wheel_rotation import WheelRotation
 from .rows import environment_index, take_rows
 
 __all__ = ["SensorView"]
@@ -25,6 +26,7 @@ class SensorView:
         scene: the scene without the robot that carries the sensor.
         pose: pose of the sensor, one for each environment; planar or in space.
         renderer: renders camera images; None if there is none.
+        wheels: wheels of the robot, for sensors with encoders; None if they are not known.
 
     >>> view = SensorView(Scene.of([[2.0, 0.0]], time=0.5), Pose.of((0.0, 0.0), 0.0))
     >>> view.time, view.environments
@@ -34,6 +36,7 @@ class SensorView:
     scene: Scene
     pose: Pose | SpatialPose
     renderer: ImageSource | None = None
+    wheels: WheelRotation | None = None
 
     @property
     def time(self) -> float | NDArray[np.float64]:
@@ -54,7 +57,7 @@ class SensorView:
         chosen = environment_index(index, self.environments, "SensorView")
         pose = take_rows(self.pose, chosen)
         images = None if self.renderer is None else _Selection(self.renderer, chosen, self.environments)
-        return SensorView(self.scene.environments(chosen), pose, images)
+        return SensorView(self.scene.environments(chosen), pose, images, take_rows(self.wheels, chosen))
 
     def check(self, sensor: str) -> None:
         """Raise :class:`InputError` if the pose is not finite or does not have one row for each environment."""

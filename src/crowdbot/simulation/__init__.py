@@ -13,6 +13,7 @@ from .orders.joint_order import JointOrder
 from .orders.order import Order, VelocityOrder, order_kinds, read_order, write_order
 from .orders.parameter_order import ParameterOrder
 from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .orders.robot_pose_order import RobotPoseOrder
 from .orders.trial_order import TrialOrder
 from .overrides import apply_overrides
 from .robot_control import RobotControl
@@ -66,6 +67,7 @@ __all__ = [
     "ResumableHash",
     "RobotContact",
     "RobotControl",
+    "RobotPoseOrder",
     "RunEnd",
     "RunFailure",
     "RunFailureWarning",

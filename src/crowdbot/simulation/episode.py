@@ -74,6 +74,8 @@ class Episode:
         contacts: time [s] and :class:`RobotContact` of every step with a contact of a robot.
         forces: time [s] and contact force of every step with one, in the physics world.
         collisions: contact events of the physics world, ordered by end.
+        reactions: ``[T, A]`` code of the reaction of each person to a robot, an index in
+            :data:`crowdbot.world.REACTIONS`, 0 for none; None if nobody can react.
     """
 
     trial: Trial
@@ -98,6 +100,7 @@ class Episode:
     contacts: tuple[tuple[float, RobotContact], ...] = ()
     forces: tuple[tuple[float, ContactForce], ...] = ()
     collisions: tuple[BodyContactEvent, ...] = ()
+    reactions: NDArray[np.int8] | None = None
 
     @property
     def walls(self) -> tuple[Floats, ...]:

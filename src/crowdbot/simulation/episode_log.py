@@ -13,7 +13,7 @@ from crowdbot.core import FreeClock
 from crowdbot.metrics import AgentLog, NavigationMetrics
 from crowdbot.sensors import Reading
 from crowdbot.trials import Trial
-from crowdbot.world import BodyContactEvent, ContactForce
+from crowdbot.world import BodyContactEvent, ContactForce, reaction_codes
 
 from .episode import Episode
 from .episode_digest import EpisodeDigest, add_batch
@@ -46,6 +46,7 @@ class _Frame(NamedTuple):
     touching: frozenset[int]
     robots: tuple[int, ...]
     goals: Floats
+    reactions: NDArray[np.int8] | None
 
 
 class EpisodeLog(EpisodeStatistics):
@@ -76,7 +77,8 @@ class EpisodeLog(EpisodeStatistics):
             parts = (scene.active, scene.heading, scene.radius, scene.position, scene.velocity)
             arrays = [frame.ids, *(part[0] for part in parts), frame.twists, frame.commands]
             agents = [int(np.flatnonzero(frame.ids == robot)[0]) for robot in frame.robot_ids]
-            self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids, scene.goal[0, agents])
+            codes = None if (found := reaction_codes(scene)) is None else found[0]
+            self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids, scene.goal[0, agents], codes)
 
     def keep_row(self, batch: StepBatch, row: int) -> None:
         """Add a row of a batch without its readings, which the digest already contains."""
@@ -88,7 +90,8 @@ class EpisodeLog(EpisodeStatistics):
             parts = (batch.ids, batch.active, batch.heading, batch.radius, batch.position, batch.velocity)
             arrays = [part[row, :slots] for part in parts]
             whole = [*arrays, batch.twists[row], batch.commands[row]]
-            self._keep_frame(nanoseconds, whole, self.robot_ids, batch.goals[row])
+            codes = None if batch.reactions is None else batch.reactions[row, :slots]
+            self._keep_frame(nanoseconds, whole, self.robot_ids, batch.goals[row], codes)
 
     def metrics(self, outcome: str) -> dict[str, float]:
         """Return the metrics of all robots."""
@@ -152,7 +155,15 @@ class EpisodeLog(EpisodeStatistics):
             tuple(self.contacts),
             tuple(self.forces),
             tuple(self.collisions),
+            self._reactions(),
         )
+
+    def _reactions(self) -> NDArray[np.int8] | None:
+        """Return the codes of reactions to robots ``[T, A]``, None if nobody can react."""
+        rows = [frame.reactions for frame in self._frames if frame.reactions is not None]
+        if not rows or len(rows) < len(self._frames):
+            return None
+        return _by_person(rows, [frame.ids for frame in self._frames], self.agents)
 
     def _keep_rare(
         self,
@@ -173,11 +184,16 @@ class EpisodeLog(EpisodeStatistics):
         self.collisions += collisions
 
     def _keep_frame(
-        self, nanoseconds: int, arrays: Sequence[NDArray[Any]], robots: tuple[int, ...], goals: Floats
+        self,
+        nanoseconds: int,
+        arrays: Sequence[NDArray[Any]],
+        robots: tuple[int, ...],
+        goals: Floats,
+        codes: NDArray[np.int8] | None,
     ) -> None:
         self.end = nanoseconds / 1e9
         self.begin = self.end if math.isnan(self.begin) else self.begin
-        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots, goals]))
+        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots, goals, codes]))
         self._touching = set()
 
     def _arrays(self) -> dict[str, NDArray[Any]]:

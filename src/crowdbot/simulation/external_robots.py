@@ -17,7 +17,11 @@ class UncommandedRobotWarning(UserWarning):
 
 def warn_of_missing_source(trial: Trial, sources: Sequence[object], levels: int = 0) -> None:
     """Issue an :class:`UncommandedRobotWarning` if a robot waits for orders and there is no source of orders."""
-    names = [repr(robot.name) for robot in trial.robots if isinstance(robot.navigator, ExternalNavigator)]
+    names = [
+        repr(robot.name)
+        for robot in trial.robots
+        if isinstance(robot.navigator, ExternalNavigator) and (robot.pose is None or robot.pose.source == "external")
+    ]
     if names and not sources:
         robots, verb = ("robot", "stands") if len(names) == 1 else ("robots", "stand")
         sentence = (

@@ -11,18 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, Scene, SpatialPose
+from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose
 from crowdbot.sensors import (
     Reading,
     SensorSchedule,
     SensorView,
     TrackedPeople,
+    WheelGeometry,
     measure_rows,
     put_state_rows,
     take_state_rows,
 )
 from crowdbot.trials import Mount, RobotSpec
-from crowdbot.world import MountPlacement, World
+from crowdbot.world import MountPlacement, World, wheel_geometry, wheel_rotation
 
 from .world_view import WorldView
 
@@ -98,6 +99,7 @@ class MountedSensor:
         latest, latest_row: ``[E]`` latest readings and the row of the environment in them.
         moved: ``[E, 6]`` place on the robot after its joints moved, as ``placed``; None before.
         seen, seen_ids: ``[E, A]`` agents in the latest reading, and their ids then.
+        wheels: wheels of the robot, for a sensor with encoders.
     """
 
     mount: Mount
@@ -113,6 +115,7 @@ class MountedSensor:
     moved: NDArray[np.float64] | None = None
     seen: Bools | None = None
     seen_ids: Ints | None = None
+    wheels: WheelGeometry | None = None
 
     def __post_init__(self) -> None:
         if not len(self.latest):
@@ -203,7 +206,8 @@ class MountedSensor:
             scene, pose = scene.environments(due), _select_pose(pose, due)
         count, rngs = len(self.rngs), self.rngs.rows(due.tolist())
         state = self.state if every or self.state is None else take_state_rows(self.state, due)
-        view = SensorView(scene.without(agent), pose)
+        wheels = wheel_rotation(around.world, agent, self.wheels)
+        view = SensorView(scene.without(agent), pose, wheels=wheels)
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
         if new is not None or self.state is not None:
             self.state = new if every else put_state_rows(self.state, due, new, count)
@@ -213,14 +217,15 @@ class MountedSensor:
         index = np.array([e])
         scene = (around.space(e) if self.space else around.flat_of(e)).without(agent)
         pose = self.pose(agent, around, e)
-        reading, self.state[e] = self._ask(scene, pose, around.of(e), self.state[e], self.rngs[e])
         world = around.world
+        view = SensorView(scene, pose, around.of(e), wheel_rotation(world, agent, self.wheels, e))
+        reading, self.state[e] = self._ask(view, self.state[e], self.rngs[e])
         return self.schedule.arrives(ticks[index]), SensorReadings(
             self.name, index, reading, world.ids[index], world.slots[index]
         )
 
-    def _ask(self, scene: Scene, pose: Pose | SpatialPose, renderer: Any, state: Any, rng: Any) -> tuple[Reading, Any]:
-        answer: Any = self.mount.sensor.measure(SensorView(scene, pose, renderer), state, rng)
+    def _ask(self, view: SensorView, state: Any, rng: Any) -> tuple[Reading, Any]:
+        answer: Any = self.mount.sensor.measure(view, state, rng)
         if not (isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[0], Reading)):
             raise InputError(
                 f"sensor {type(self.mount.sensor).__name__} {self.mount.name!r}: measure returned a"
@@ -315,6 +320,7 @@ def mounted_sensors(
             space,
             own and not space and not sensor.renders and not world.walls_fixed,
             None,
+            wheels=wheel_geometry(robot.body) if sensor.encoders else None,
         )
         probe.state = sensor.begin() if probe.together else [sensor.begin() for _ in seeds]
         old = (known or {}).get(mount.name)

@@ -13,6 +13,7 @@ from crowdbot.models import Mixture
 from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 from crowdbot.world import environment_seeds
 
+from .door_orders import check_doors, order_doors
 from .mounted_sensor import mounted_sensors
 from .robot_control import RobotControl, decision_schedule
 from .robot_joints import restore_joints
@@ -23,7 +24,7 @@ __all__ = ["apply_overrides", "check_overrides"]
 
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "avatars", "journeys")
 """Values of a trial that cannot change during a run."""
-START = ("name", "type", "x", "y", "heading")
+START = ("name", "type", "x", "y", "heading", "pose")
 """Values of a robot that cannot change during a run."""
 
 
@@ -71,6 +72,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         ghosts=[control.agent for control, robot in pairs if robot.ghost],
         **_router(old, trial),
     )
+    order_doors(world, trial.stage.doors)
     simulation.trial = trial
     if seed is not None:
         simulation.seeds = environment_seeds(seed, simulation.count)
@@ -94,12 +96,13 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
     """
     old, time = simulation.trial, float(simulation.world.times.max())
     if simulation.world.walls_fixed:
-        parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props")}
+        parts = {name: getattr(old.stage, name) for name in ("walls", "obstacles", "props", "doors")}
         if dataclasses.replace(new.stage, **parts) != old.stage:
             raise InputError(
                 "of the stage of the physics world, only walls, obstacles and props can change while it runs"
             )
         _prop_changes(old, new)
+    check_doors(old.stage.doors, new.stage.doors)
     for name in FIXED:
         if getattr(old, name) != getattr(new, name):
             raise InputError(f"{name} cannot change in a branch: it only affects the start; run another trial instead")
@@ -116,6 +119,8 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
     for first, second in zip(old.sources, new.sources, strict=True):
         if (first.goal, first.journey, first.arrival) != (second.goal, second.journey, second.arrival):
             raise InputError(f"the goal of source {first.name!r} cannot change in a branch")
+        if first.reactions != second.reactions:
+            raise InputError(f"the reactions of source {first.name!r} cannot change in a branch")
     if crowd_names(old.crowd) != crowd_names(new.crowd):
         raise InputError("the names of crowds cannot change in a branch")
     if new.duration < time:
@@ -138,6 +143,8 @@ def _check_added_robots(simulation: Any, robots: _Robots) -> None:
     former = {control.robot.name for control in simulation.former_robots}
     scene = simulation.world.scene
     for robot in robots.added:
+        if robot.pose is not None:
+            raise InputError(f"robot {robot.name!r} has <pose>; only robots of the start can be moved from outside")
         if robot.name in former or any(robot.name == control.robot.name for control in robots.removed):
             raise InputError(f"a robot {robot.name!r} was removed from this run; give the new one another name")
         away = np.hypot(*(scene.position - np.array(robot.position)).transpose(2, 0, 1))
@@ -221,9 +228,10 @@ def _model(simulation: Simulation, trial: Trial) -> Any:
 
 
 def _router(old: Trial, new: Trial) -> dict[str, Any]:
-    if (old.stage, old.routing) == (new.stage, new.routing):
+    stage = dataclasses.replace(new.stage, doors=old.stage.doors)
+    if (old.stage, old.routing) == (stage, new.routing):
         return {}
-    return {"router": None if new.routing is None else new.routing.router(new.stage.as_walls())}
+    return {"router": None if new.routing is None else new.routing.router(new.stage.walking_walls())}
 
 
 def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, seed: int | None) -> RobotControl:

@@ -6,7 +6,7 @@ import copy
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +27,7 @@ from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import Twists, World, free_joints
 
 from .decision_timer import DecisionTimer
+from .door_paths import next_waypoints
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
@@ -90,7 +91,8 @@ class RobotControl:
         goal: ``[E, 2]`` current goal [m], which orders can change.
         tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
-        joints: ``[E, J]`` target of each joint [rad or m] that an order has moved, otherwise NaN.
+        joints: ``[E, J]`` target of each joint [rad or m] that has been moved, otherwise NaN.
+        wanted: targets of joints from the latest decisions by environment, until they are applied.
     """
 
     robot: RobotSpec
@@ -110,6 +112,7 @@ class RobotControl:
     goal: Floats
     tolerance: Floats
     joints: Floats
+    wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:
@@ -129,7 +132,7 @@ class RobotControl:
             [None] * count,
             np.zeros(count, dtype=np.bool_),
             np.zeros(count, dtype=np.bool_),
-            robot.path_planner(trial.stage.as_walls()) if robot.planner else None,
+            robot.stage_planner(trial.stage),
             np.full((count, PATH_COLUMNS), np.nan),
             _empty_tracks(robot, count),
             DecisionTimer.of(count),
@@ -146,7 +149,7 @@ class RobotControl:
             InputError: no space between the walls is wide enough for the path planner.
         """
         old, count = self.robot, len(self.memories)
-        planner = robot.path_planner(trial.stage.as_walls()) if robot.planner else None
+        planner = robot.stage_planner(trial.stage)
         same = (robot.tracks, robot.control_period) == (old.tracks, old.control_period)
         return dataclasses.replace(
             self,
@@ -191,7 +194,8 @@ class RobotControl:
             tracks = tracks.update(batch.time, people.ids, people.position, people.seen, fresh)
             changes["tracks"] = tracks
         if self.planner is not None:
-            found = self.planner.next_waypoints(batch.pose[:, :2], batch.goal, path)
+            found, goal = next_waypoints(self.planner, around.world, environments, batch.pose[:, :2], batch.goal, path)
+            changes |= {} if goal is batch.goal else {"goal": goal}
             path, changes["waypoint"] = found.path, found.point
             failures |= {k: InputError(f"robot {self.robot.name!r}: {error}") for k, error in found.failures.items()}
         return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, failures)
@@ -275,6 +279,9 @@ class RobotControl:
         decided = ~late
         decided[list(failures)] = False
         self.command[environments[decided]] = decisions.twist[decided]
+        self.wanted = {
+            int(environments[k]): decisions.joints[k] for k in np.flatnonzero(decided) if decisions.joints[k]
+        }
         return {int(environments[k]): error for k, error in failures.items()}
 
     def _remember(self, environments: Ints, known: _Known) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.trials import Mount, RobotSpec
+from crowdbot.world import reaction_codes
 
 from .mounted_sensor import SensorReadings
 from .step_record import RobotContact
@@ -51,6 +52,7 @@ class StepBatch:
         twists, commands: ``[N, R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
         readings: readings of this step, sensor by sensor.
         touches, forces, collisions, orders: as in :class:`StepRecord`, by row; rows without are missing.
+        reactions: ``[N, A]`` codes of the reactions to robots, see :data:`crowdbot.world.REACTIONS`; None without.
     """
 
     environments: Ints
@@ -72,6 +74,7 @@ class StepBatch:
     forces: Mapping[int, tuple[ContactForce, ...]] = field(default_factory=dict)
     collisions: Mapping[int, tuple[BodyContactEvent, ...]] = field(default_factory=dict)
     orders: Mapping[int, tuple[Order, ...]] = field(default_factory=dict)
+    reactions: NDArray[np.int8] | None = None
 
     @classmethod
     def of(
@@ -138,6 +141,7 @@ class StepBatch:
             forces,
             collisions,
             {n: found for n, e in enumerate(index.tolist()) if (found := (orders or {}).get(e))},
+            None if (codes := reaction_codes(scene)) is None else codes[index],
         )
 
     def plain_ids(self) -> Bools:

@@ -20,11 +20,11 @@ from crowdbot.trials import (
     Trial,
     own,
 )
-from crowdbot.world import Avatars, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
+from crowdbot.world import Avatars, Doors, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
 __all__ = [
-    "avatars_of", "check_clock", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls", "script_of",
-    "set_off", "start_scene", "start_scenes",
+    "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls",
+    "script_of", "set_off", "start_scene", "start_scenes",
 ]  # fmt: skip
 
 
@@ -60,8 +60,16 @@ def check_clock(clock: Clock, own: Clock) -> Clock:
 
 
 def own_walls(trial: Trial) -> Walls | None:
-    """Return the walls without the outlines of props, None if there are no props."""
-    return trial.stage.as_walls(props=False) if trial.stage.props else None
+    """Return the walls without the outlines of props, None if there are neither props nor doors."""
+    return trial.stage.as_walls(props=False) if trial.stage.props or trial.stage.doors else None
+
+
+def doors_of(trial: Trial) -> Doors | None:
+    """Return the doors of a trial at its start."""
+    if not trial.stage.doors:
+        return None
+    wanted = {door.name: door.open for door in trial.stage.doors}
+    return Doors([door.leaf() for door in trial.stage.doors], wanted, pushed=trial.world == "physics")
 
 
 def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
@@ -160,14 +168,23 @@ def script_of(people: InitialPeople) -> ReplayedPeople | None:
     return ReplayedPeople(tracks, release)
 
 
-def avatars_of(trial: Trial, end: int) -> Avatars | None:
-    """Return the avatars of a trial in one environment; their indices end before ``end``."""
-    if not trial.avatars:
+def avatars_of(trial: Trial, end: int, first: int) -> Avatars | None:
+    """Return the avatars of a trial in one environment, and its robots whose pose comes from outside.
+
+    Args:
+        trial: the trial.
+        end: index after that of the last avatar.
+        first: index of the first robot.
+    """
+    led = [(first + k, robot, robot.pose) for k, robot in enumerate(trial.robots) if robot.pose is not None]
+    if not (trial.avatars or led):
         return None
+    count, robots = len(trial.avatars), [agent for agent, _, _ in led]
     sources = [avatar.pose_source() for avatar in trial.avatars]
-    agents = end - len(sources) + np.arange(len(sources))
-    names = [avatar.name for avatar in trial.avatars]
-    return Avatars(agents, names, [sources], [avatar.delay for avatar in trial.avatars])
+    sources += [pose.source_from(robot.x, robot.y, robot.heading) for _, robot, pose in led]
+    names = [avatar.name for avatar in trial.avatars] + [f"robot/{robot.name}" for _, robot, _ in led]
+    delays = [avatar.delay for avatar in trial.avatars] + [pose.delay for _, _, pose in led]
+    return Avatars([*range(end - count, end), *robots], names, [sources], delays, robots)
 
 
 def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:

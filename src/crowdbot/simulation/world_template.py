@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, TrialError
 from crowdbot.models import CrowdModel
 from crowdbot.trials import (
+    UNEVEN,
     Agent,
     Crowds,
     InitialPeople,
@@ -26,12 +27,13 @@ from crowdbot.trials import (
     expand_sweeps,
     people_appearance,
     place,
+    robot_reactions,
 )
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
 from .mounted_sensor import spatial
 from .robot_control import RobotControl
-from .world_builder import avatars_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
+from .world_builder import avatars_of, doors_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
 
 __all__ = ["WorldTemplate"]
 
@@ -135,7 +137,8 @@ class WorldTemplate:
     def _is_alone(self) -> bool:
         """Whether worlds are made one by one: with bodies or avatars, or if people enter a mixture of crowds."""
         mixed = isinstance(self.trial.crowd, Crowds) and bool(self.trial.sources)
-        return self.posed or self._embodied or mixed or bool(self.trial.avatars)
+        led = bool(self.trial.avatars) or any(robot.pose is not None for robot in self.trial.robots)
+        return self.posed or self._embodied or mixed or led or bool(self.trial.stage.doors)
 
     @functools.cached_property
     def _embodied(self) -> bool:
@@ -152,7 +155,7 @@ class WorldTemplate:
 
     @functools.cached_property
     def _router(self) -> Router | None:
-        return None if self.trial.routing is None else self.trial.routing.router(self._walls)
+        return None if self.trial.routing is None else self.trial.routing.router(self.trial.stage.walking_walls())
 
     @functools.cached_property
     def _sources(self) -> list[PeopleSource]:
@@ -195,6 +198,8 @@ class WorldTemplate:
         if self.trial.sweeps:
             count = len(expand_sweeps(self.trial))
             raise TrialError(f"trial {self.trial.name!r} has {count} variants in its sweeps; run one of them")
+        if self.trial.world != "physics" and self.trial.stage.ground:
+            raise TrialError(f"trial {self.trial.name!r}: the stage {UNEVEN}")
 
     def _place(self, seeds: Sequence[int]) -> PeopleBatch:
         """Return the people of some seeds; a single seed is placed faster than the kernel is loaded."""
@@ -231,7 +236,9 @@ class WorldTemplate:
             **self._shared,
             "journeys": journeys_of(self.trial, people, agents),
             "script": script_of(people),
-            "avatars": avatars_of(self.trial, len(people) - len(people.walks)),
+            "reactions": robot_reactions(people.owners, people.owner.tolist(), self.trial.sources, agents),
+            "avatars": avatars_of(self.trial, len(people) - len(people.walks), len(people)),
+            "doors": doors_of(self.trial),
             "ids": np.concatenate([np.arange(there), -1 - np.arange(agents - there)]),
         }
 

@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from .files.code_references import code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
+    from .ground.door import Door
+    from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
+    from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
+    from .importers.hunavsim import import_hunavsim
     from .importers.original import ImportedTrial, import_original, plan_of, trials_of
     from .importers.original_order import Plan
     from .importers.pedsim import import_pedsim
@@ -41,7 +45,10 @@ if TYPE_CHECKING:
     from .randomized_model import RandomizedModel, own
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
+    from .robots.joint_target import JointTarget, joint_positions
     from .robots.predictor import RobotPredictor
+    from .robots.reaction import ReactionSpec, robot_reactions
+    from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
     from .stage import Obstacle, Stage, Wall, area
@@ -72,7 +79,11 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
+        "ground.door": ["Door"],
+        "ground.elements": ["UNEVEN", "Platform", "Ramp", "Stairs", "Threshold"],
+        "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
+        "importers.hunavsim": ["import_hunavsim"],
         "importers.original": ["ImportedTrial", "import_original", "plan_of", "trials_of"],
         "importers.original_order": ["Plan"],
         "importers.pedsim": ["import_pedsim"],
@@ -89,7 +100,10 @@ __getattr__, __dir__ = lazy_exports(
         "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
+        "robots.reaction": ["ReactionSpec", "robot_reactions"],
+        "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
         "recorded_people": ["RecordedPeople"],
@@ -121,6 +135,7 @@ __all__ = [
     "OVERVIEW",
     "PRESETS",
     "SIZES",
+    "UNEVEN",
     "UNWRITABLE",
     "Agent",
     "AgentParameter",
@@ -132,12 +147,14 @@ __all__ = [
     "Cube",
     "Direction",
     "Distribution",
+    "Door",
     "End",
     "EndCondition",
     "Exit",
     "Group",
     "ImportedTrial",
     "InitialPeople",
+    "JointTarget",
     "Journey",
     "Light",
     "Limits",
@@ -150,21 +167,27 @@ __all__ = [
     "PlacementPlan",
     "Plan",
     "Planner",
+    "Platform",
     "Point",
     "Points",
     "Portal",
+    "Ramp",
     "RandomizedModel",
+    "ReactionSpec",
     "RecordedPeople",
     "RecordingSpec",
     "RobotGoal",
+    "RobotPose",
     "RobotPredictor",
     "RobotSpec",
     "Routing",
     "SourceSpec",
     "Spawner",
     "Stage",
+    "Stairs",
     "Sweep",
     "Table",
+    "Threshold",
     "Tree",
     "Trial",
     "Wall",
@@ -186,6 +209,8 @@ __all__ = [
     "expand_spawners",
     "expand_sweeps",
     "has_kind",
+    "import_dxf",
+    "import_hunavsim",
     "import_original",
     "import_pedsim",
     "import_trial",
@@ -193,6 +218,7 @@ __all__ = [
     "import_vadere",
     "is_area_file",
     "is_code",
+    "joint_positions",
     "kind_of",
     "load_trial",
     "map_files",
@@ -215,6 +241,7 @@ __all__ = [
     "resolve_file",
     "restore_old_names",
     "robot_place_problem",
+    "robot_reactions",
     "schema",
     "skip_unreadable",
     "trial_remarks",

@@ -16,11 +16,12 @@ from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.trial_files import read_beside, resolve_file
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .notation import NAME, Points
+from .robots.reaction import ReactionSpec, check_shares, share_problems
 
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource, PoseTrack
 
-__all__ = ["Agent", "AgentParameter", "Avatar"]
+__all__ = ["Agent", "AgentParameter", "Avatar", "find_pose_source", "load_poses"]
 
 MOST_BYTES = 64 << 20
 """Largest size of a file of poses [bytes]."""
@@ -70,16 +71,18 @@ class Agent:
     outfit: int | None = attribute(None, about="number of the appearance (clothes and colours)", min=0, max=1e6)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
     parameters: tuple[AgentParameter, ...] = children("parameter", about="model parameters of this person", max=100)
+    reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+        check_shares(self)
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return the problems of bodies and activities, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found]
+        return [((), sentence) for sentence in found] + share_problems(values)
 
     @property
     def count(self) -> int:
@@ -135,6 +138,13 @@ class Avatar:
     max_speed: float = attribute(
         8.0, about="speed between two samples above which the avatar teleports", unit="m/s", exclusive_min=0.0, max=12.0
     )
+    part_timeout: float = attribute(
+        0.0,
+        about="longest time for which head, hands and skeleton keep their latest sample while others lack them",
+        unit="s",
+        min=0.0,
+        max=10.0,
+    )
     radius: float = attribute(0.25, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     height: float | None = attribute(None, about="stature (default: that of the body)", unit="m", min=0.5, max=2.5)
     body: str = attribute("", about=ABOUT_BODY)
@@ -168,7 +178,7 @@ class Avatar:
             found.append((("file",), f"file={quote_value(values['file'])} {error}"))
         try:
             if values.get("function"):
-                _find(values["function"], values["folder"], values["trust"])
+                find_pose_source(values["function"], values["folder"], values["trust"])
         except InputError as error:
             found.append((("function",), f"function={quote_value(values['function'])} {error}"))
         return found
@@ -186,17 +196,20 @@ class Avatar:
             if self.x is None or self.y is None:  # a problem that is reported already
                 raise UnreadableValue("x, y")
             start = BodyPose(self.x, self.y, self.heading)
-            return PoseTrack.of([], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed)
+            parts = self.part_timeout
+            return PoseTrack.of(
+                [], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed, part_timeout=parts
+            )
         if self.source == "function":
-            cls: Any = _find(self.function, self.folder, self.trust)
+            cls: Any = find_pose_source(self.function, self.folder, self.trust)
             try:
                 made: PoseSource = cls()
             except TypeError as error:
                 raise InputError(f"{self.function} must be made without arguments: {error}") from None
             return made
         path = resolve_file(self.file, self.folder, self.trust)
-        stamp = path.stat()
-        return _load(path, stamp.st_mtime_ns, stamp.st_size, self.file, self.begin, self.max_speed)
+        track = load_poses(path, self.file, self.begin, self.max_speed)
+        return dataclasses.replace(track, part_timeout=self.part_timeout) if self.part_timeout else track
 
     def start_pose(self) -> BodyPose:
         """Return the pose at the beginning of the trial; errors as for :meth:`pose_source`."""
@@ -220,18 +233,24 @@ class Avatar:
         """Return the file of poses, or the files of the code."""
         if self.source == "file":
             return (resolve_file(self.file, self.folder, self.trust),)
-        return sources_of(_find(self.function, self.folder, self.trust)) if self.source == "function" else ()
+        return sources_of(find_pose_source(self.function, self.folder, self.trust)) if self.source == "function" else ()
 
 
-def _find(address: str, folder: Path | None, trust: bool) -> type:
+def find_pose_source(address: str, folder: Path | None, trust: bool) -> type:
+    """Return the :class:`crowdbot.humans.PoseSource` at an address; errors as for :func:`crowdbot.core.find_class`."""
     from crowdbot import humans
 
     return find_class(address, humans, humans.PoseSource, folder=folder, trust=trust)
 
 
+def load_poses(path: Path, name: str, begin: float, max_speed: float) -> PoseTrack:
+    """Return the poses of a file, which is read again only if it has changed; see ``read_pose_file``."""
+    stamp = path.stat()
+    return _load(path, stamp.st_mtime_ns, stamp.st_size, name, begin, max_speed)
+
+
 @functools.lru_cache(maxsize=8)
 def _load(path: Path, changed: int, size: int, name: str, begin: float, max_speed: float) -> PoseTrack:
-    """Return the poses of a file, which is read again only if it has changed."""
     from crowdbot.humans import read_pose_file
 
     return read_pose_file(read_beside(path, MOST_BYTES), name, begin=begin, max_speed=max_speed)

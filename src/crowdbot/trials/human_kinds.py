@@ -22,7 +22,7 @@ ABOUT_BODY = (
     "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); from a list, one is chosen at"
     " random"
 )
-ABOUT_RIDER = "person in the seat, as the body of a person (default: none); only the type wheelchair has a seat"
+ABOUT_RIDER = "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is chosen at random"
 
 
@@ -59,12 +59,12 @@ def word_problems(body: str, activity: str) -> list[str]:
     ]
 
 
-def rider_problems(rider: str, kind: str) -> list[str]:
-    """Return the problems of the rider of a robot of a type.
+def rider_problems(rider: str, seat: bool) -> list[str]:
+    """Return the problems of the rider of a robot with or without a seat.
 
-    >>> rider_problems("woman-36", "wheelchair"), rider_problems("woman", "pepper")
+    >>> rider_problems("woman-36", True), rider_problems("woman", False)
     ([], ['rider="woman" needs type="wheelchair": other robots have no seat; leave it out'])
     """
-    if rider and kind != "wheelchair":
+    if rider and not seat:
         return [f'rider={quote_value(rider)} needs type="wheelchair": other robots have no seat; leave it out']
     return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

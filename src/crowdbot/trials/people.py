@@ -14,6 +14,7 @@ from .fields import FieldProblem, attribute, check, children
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .journey import Journey
 from .notation import Points
+from .robots.reaction import ReactionSpec, check_shares, share_problems
 
 __all__ = ["Group", "SourceSpec", "Spawner"]
 
@@ -68,16 +69,18 @@ class Spawner:
         None, about="initial heading (default: towards the goal; random for standing people)", unit="rad"
     )
     groups: tuple[Group, ...] = children("group", about="group sizes (default: no groups)", max=50)
+    reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+        check_shares(self)
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies and activities, independent of other problems of the element."""
+        """Return the problems of bodies, activities and reactions, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found]
+        return [((), sentence) for sentence in found] + share_problems(values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,16 +111,18 @@ class SourceSpec:
     crowd: str = attribute("", about="name of the crowd (default: the first)")
     body: str = attribute("", about=ABOUT_BODY)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
+    reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+        check_shares(self)
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies and activities, independent of other problems of the element."""
+        """Return the problems of bodies, activities and reactions, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found]
+        return [((), sentence) for sentence in found] + share_problems(values)
 
     def arrival_count(self, duration: float) -> float:
         """Return the number of arrivals within a duration [s]: the maximum if regular, the mean if random."""

@@ -33,7 +33,9 @@ from .fields import FieldProblem, attribute, check, child, children, mounted_fie
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
+from .robots.joint_target import JointTarget, joint_problems
 from .robots.predictor import RobotPredictor, forecast_problems
+from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
@@ -185,10 +187,12 @@ class RobotSpec:
     )
     goal: RobotGoal = child(about="goal")
     planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
+    pose: RobotPose | None = child(None, about="pose from outside (default: the drive moves the robot)")
     predictor: RobotPredictor | None = child(None, about="predictor of the observation's forecast (default: none)")
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
+    joints: tuple[JointTarget, ...] = children("joint", about="targets of joints over time", max=1000)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Folder of the robot folder, and whether that may lie outside; not part of the XML."""
@@ -224,9 +228,13 @@ class RobotSpec:
             raise InputError(
                 'has a deadline in addition to <navigator type="external"/>, which decides nothing; set its timeout'
             )
+        if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
+            raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
-        for problem in rider_problems(self.rider, self.type):
+        for problem in rider_problems(self.rider_kind, self.body.seat):
+            raise InputError(problem)
+        for problem in joint_problems(self.joints, self.body) if self.joints else ():
             raise InputError(problem)
         for mount in self.sensors:
             links = self.body.model.links
@@ -237,15 +245,15 @@ class RobotSpec:
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return the problems of the type and of the rider, independent of other problems of the element."""
-        said: list[FieldProblem] = [
-            ((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))
-        ]
+        said: list[FieldProblem] = []
+        seat = False
         try:
             if values.get("type"):
-                robot_of_type(values["type"], values["folder"], values["trust"])
+                seat = robot_of_type(values["type"], values["folder"], values["trust"]).seat
         except InputError as error:
-            return [(("type",), str(error)), *said]
-        return said
+            said = [(("type",), str(error))]
+            seat = True  # unknown: only the words of the rider are checked
+        return [*said, *(((), one) for one in rider_problems(values.get("rider", ""), seat))]
 
     @property
     def usual(self) -> Mapping[str, Any]:
@@ -283,6 +291,11 @@ class RobotSpec:
             made = dataclasses.replace(self._kind, drive=self.drive)
         return dataclasses.replace(made, latency=self.latency)
 
+    @property
+    def rider_kind(self) -> str:
+        """Body or kind of the person in the seat: the rider given here, or that of the type; empty for none."""
+        return self.rider or (self._kind.rider if self.type else "")
+
     def frame_of(self, mount: Mount, joints: Mapping[str, float] | None = None) -> Floats:
         """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor).
 
@@ -317,6 +330,12 @@ class RobotSpec:
             InputError: no space between the walls is wide enough for the robot.
         """
         return None if self.planner is None else PathPlanner.for_stage(walls, self.radius, self.planner.margin)
+
+    def stage_planner(self, stage: Any) -> PathPlanner | None:
+        """Return the path planner of :meth:`path_planner` on a stage, around ground that the robot cannot pass."""
+        if self.planner is None:
+            return None
+        return self.path_planner(stage.driving_walls(self.body.max_step, self.body.max_slope))
 
     def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
         """Return the schedule of a sensor; see the attribute ``sensor_rates``.

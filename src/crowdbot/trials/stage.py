@@ -13,9 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
+from crowdbot.world import add_rings
 
 from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.stage_maps import area_of, map_of
+from .ground.door import Door
+from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
 from .notation import Points
 from .partial_element import readable
 from .props import Cube, Light, Prop, Table, Tree
@@ -57,6 +60,7 @@ class Stage:
     """Walls, obstacles, props and an optional walkable area. Its border is a wall; its outside is not accessible.
 
     In the planar world the outlines of props are solid (of a tree, its trunk). Props move in the physics world only.
+    Uneven ground is part of the physics world only.
 
     >>> stage = Stage(walkable=[(0, 0), (8, 0), (8, 4), (0, 4)], obstacles=[Obstacle([(3, 1), (4, 1), (4, 2)])])
     >>> len(stage.rings), stage.clearance([(1.0, 2.0), (3.9, 1.5), (9.0, 9.0)]).tolist()
@@ -77,6 +81,10 @@ class Stage:
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
     props: tuple[Prop, ...] = children({"cube": Cube, "table": Table, "tree": Tree}, about="furniture and plants")
     lights: tuple[Light, ...] = children("light", about="lamps (default: daylight)", max=50)
+    ground: tuple[GroundElement, ...] = children(
+        {"ramp": Ramp, "stairs": Stairs, "platform": Platform, "threshold": Threshold}, about="uneven ground", max=1000
+    )
+    doors: tuple[Door, ...] = children("door", about="doors", max=100)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Folder of the files, and whether files may lie outside; not part of the XML."""
@@ -128,12 +136,23 @@ class Stage:
         """Return the walls of a scene on this stage, with the outlines of props or without."""
         return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(readable(self.props, "ring"))])
 
+    def walking_walls(self) -> Walls:
+        """Return the walls for the paths of people: with edges that are too high for them, without doors."""
+        ground = ground_of(self.ground)
+        return self.as_walls() if ground is None else add_rings(self.as_walls(), ground.people_barriers())
+
+    def driving_walls(self, max_step: float, max_slope: float) -> Walls:
+        """Return the walls for the paths of a robot: with steps [m] and slopes that it cannot pass, without doors."""
+        ground = ground_of(self.ground)
+        return self.as_walls() if ground is None else add_rings(self.as_walls(), ground.barriers(max_step, max_slope))
+
     def physical(self) -> PhysicsStage:
         """Return props, lights and heights for the physics world."""
         from crowdbot.world import PhysicsStage
 
         props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
-        return PhysicsStage(self.wall_height, self.friction, props, lights)
+        doors = tuple(one.leaf() for one in self.doors)
+        return PhysicsStage(self.wall_height, self.friction, props, lights, ground=ground_of(self.ground), doors=doors)
 
     @property
     def shapes(self) -> tuple[tuple[Any, ...], Any]:

@@ -48,7 +48,7 @@ OTHER_VALUES: dict[str, CrowdModel] = {
     "social-force, strength 8, distance 0.5, look-ahead 0.5": SocialForce(strength=8.0, distance=0.5, look_ahead=0.5),
     "vbm, gain 20": VBM(gain=20.0),
 }
-"""Parameters that meet a limit which the defaults exceed, as further rows."""
+"""Parameters that come nearer to the limits than the defaults, as further rows."""
 
 Rows = dict[str, dict[str, Any]]
 

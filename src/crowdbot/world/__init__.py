@@ -10,6 +10,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from crowdbot.world.physics.robots.robot_body import RobotBody
+    from crowdbot.world.robots.drives.ackermann import AckermannDrive, SteeredTwists
+    from crowdbot.world.robots.drives.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from crowdbot.world.robots.drives.legged import LeggedDrive
+    from crowdbot.world.robots.drives.mecanum import MecanumDrive
+    from crowdbot.world.robots.drives.omni_wheels import OmniWheelDrive
+    from crowdbot.world.robots.drives.servo import CommandDelay, Pending, VelocityServo
+    from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
+    from crowdbot.world.robots.drives.tricycle import TricycleDrive
+    from crowdbot.world.robots.drives.wheeled import WheeledDrive
+
     from .crowd.arrivals import arrival_counts
     from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
@@ -22,7 +33,11 @@ if TYPE_CHECKING:
     from .crowd.routing import Router
     from .crowd.source import PeopleSource
     from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
+    from .doors.doors import Doors
+    from .doors.leaf import DoorLeaf
     from .environments import join_worlds, put_environments, select_environments, step_environments
+    from .ground.ground import Ground
+    from .ground.part import GroundPart
     from .live_changes import (
         add_person,
         check_goal,
@@ -44,50 +59,60 @@ if TYPE_CHECKING:
     from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.contacts import ContactBody
     from .physics.people_motion import LimbCapsules, PeopleMotion
-    from .physics.robot_body import RobotBody
+    from .physics.scenery import add_rings
     from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
     from .planar_environments import planar_world
     from .planar_live_changes import widen
+    from .reactions.reaction import REACTIONS, RobotReaction
+    from .reactions.robot_reactions import RobotReactions, people_by_reaction, reaction_codes
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
-    from .robots.ackermann import AckermannDrive, SteeredTwists
-    from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from .robots.guess_table import Guess
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
+    from .robots.robot_description import robot_description
     from .robots.robot_import import RobotFolder, import_robot
-    from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
+    from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
 
 _LAZY = {
-    "AckermannDrive": "robots.ackermann",
+    "AckermannDrive": "robots.drives.ackermann",
     "Avatars": "crowd.avatars",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
     "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
     "CameraImages": "rendering.camera",
-    "CommandDelay": "robots.servo",
+    "CommandDelay": "robots.drives.servo",
     "Contact": "world",
     "ContactBody": "physics.contacts",
     "ContactForce": "physics.contact_events",
     "ContactModel": "crowd.contact",
     "CrowdLimits": "crowd.limits",
     "CubeBody": "physics.stage",
-    "DifferentialDrive": "robots.drive",
-    "Drive": "robots.drive",
+    "DifferentialDrive": "robots.drives.drive",
+    "DoorLeaf": "doors.leaf",
+    "Doors": "doors.doors",
+    "Drive": "robots.drives.drive",
+    "Ground": "ground.ground",
+    "GroundPart": "ground.part",
+    "Guess": "robots.guess_table",
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
+    "LeggedDrive": "robots.drives.legged",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
+    "MecanumDrive": "robots.drives.mecanum",
     "MountPlacement": "robots.mount",
-    "Omnidirectional": "robots.drive",
-    "Pending": "robots.servo",
+    "OmniWheelDrive": "robots.drives.omni_wheels",
+    "Omnidirectional": "robots.drives.drive",
+    "Pending": "robots.drives.servo",
     "PeopleMotion": "physics.people_motion",
     "PeopleSource": "crowd.source",
     "PhysicsStage": "physics.stage",
@@ -97,26 +122,33 @@ _LAZY = {
     "PolygonZone": "crowd.waypoint",
     "PortalTransfer": "crowd.portal",
     "PropBody": "physics.stage",
+    "REACTIONS": "reactions.reaction",
     "Renderer": "rendering.renderer",
     "ReplayedPeople": "crowd.replay",
     "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
-    "RobotBody": "physics.robot_body",
+    "RobotBody": "physics.robots.robot_body",
     "RobotFolder": "robots.robot_import",
     "RobotModel": "urdf",
+    "RobotReaction": "reactions.reaction",
+    "RobotReactions": "reactions.robot_reactions",
     "Router": "crowd.routing",
     "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
-    "SteeredTwists": "robots.ackermann",
+    "SkidSteerDrive": "robots.drives.skid_steer",
+    "SteeredTwists": "robots.drives.ackermann",
     "TableBody": "physics.stage",
     "TreeBody": "physics.stage",
-    "Twists": "robots.drive",
-    "VelocityServo": "robots.servo",
+    "TricycleDrive": "robots.drives.tricycle",
+    "Twists": "robots.drives.drive",
+    "VelocityServo": "robots.drives.servo",
     "Waypoint": "crowd.waypoint",
     "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
+    "WheeledDrive": "robots.drives.wheeled",
     "World": "world",
     "add_person": "live_changes",
+    "add_rings": "physics.scenery",
     "arrival_counts": "crowd.arrivals",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
@@ -130,30 +162,38 @@ _LAZY = {
     "free_joints": "robots.joint_motion",
     "give_pose": "crowd.avatars",
     "import_robot": "robots.robot_import",
-    "integrate_twist": "robots.drive",
+    "integrate_twist": "robots.drives.drive",
     "join_worlds": "environments",
+    "joint_states": "robots.wheel_encoders",
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
+    "people_by_reaction": "reactions.robot_reactions",
     "permitted_speed": "physics.body_region_limits",
     "planar_world": "planar_environments",
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
+    "reaction_codes": "reactions.robot_reactions",
     "read_urdf": "urdf",
     "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
     "remove_person": "live_changes",
+    "robot_description": "robots.robot_description",
     "roll_pitch_yaw": "urdf.transforms",
     "scene_bodies": "physics.colliders",
     "select_environments": "environments",
+    "simulated_body": "robots.wheel_encoders",
     "slot_of": "live_changes",
     "step_environments": "environments",
     "take_arrays": "crowd.environment_rows",
     "two_body_force": "physics.body_region_limits",
+    "wheel_geometry": "robots.wheel_encoders",
+    "wheel_rotation": "robots.wheel_encoders",
     "widen": "planar_live_changes",
 }
 
 __all__ = [
     "BODY_REGION_LIMITS",
+    "REACTIONS",
     "AckermannDrive",
     "Avatars",
     "BodyContactEvent",
@@ -167,12 +207,20 @@ __all__ = [
     "CrowdLimits",
     "CubeBody",
     "DifferentialDrive",
+    "DoorLeaf",
+    "Doors",
     "Drive",
+    "Ground",
+    "GroundPart",
+    "Guess",
     "HeadingWaypoint",
     "JourneyAssignment",
+    "LeggedDrive",
     "LightSource",
     "LimbCapsules",
+    "MecanumDrive",
     "MountPlacement",
+    "OmniWheelDrive",
     "Omnidirectional",
     "Pending",
     "PeopleMotion",
@@ -191,19 +239,25 @@ __all__ = [
     "RobotBody",
     "RobotFolder",
     "RobotModel",
+    "RobotReaction",
+    "RobotReactions",
     "Router",
     "SceneCamera",
     "SensorMount",
+    "SkidSteerDrive",
     "SteeredTwists",
     "TableBody",
     "TreeBody",
+    "TricycleDrive",
     "Twists",
     "VelocityServo",
     "Waypoint",
     "WaypointSequence",
     "Wheel",
+    "WheeledDrive",
     "World",
     "add_person",
+    "add_rings",
     "arrival_counts",
     "builtin_robots",
     "check_goal",
@@ -219,23 +273,30 @@ __all__ = [
     "import_robot",
     "integrate_twist",
     "join_worlds",
+    "joint_states",
     "move_agent",
     "move_joint",
+    "people_by_reaction",
     "permitted_speed",
     "planar_world",
     "put_environments",
     "quaternion",
+    "reaction_codes",
     "read_urdf",
     "redirect_person",
     "region_of",
     "remove_person",
+    "robot_description",
     "roll_pitch_yaw",
     "scene_bodies",
     "select_environments",
+    "simulated_body",
     "slot_of",
     "step_environments",
     "take_arrays",
     "two_body_force",
+    "wheel_geometry",
+    "wheel_rotation",
     "widen",
 ]
 

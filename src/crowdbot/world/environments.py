@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import MissingExtra, Twist
+from crowdbot.world.robots.drives.drive import Twists
 
 from . import planar_environments as planar
 from .environment_time import EnvironmentTime
 from .planar_live_changes import match_robots
-from .robots.drive import Twists
 from .world import World
 
 __all__ = ["join_worlds", "put_environments", "select_environments", "step_environments"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,6 +14,8 @@ from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, Spa
 from crowdbot.metrics import step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
+from crowdbot.world.robots.drives.drive import Drive, Twists
+from crowdbot.world.robots.drives.servo import CommandDelay, Pending
 
 from .crowd.contact import ContactModel, ContactSurfaces
 from .crowd.environment_rows import trim_scene, works_in_batches
@@ -26,6 +28,7 @@ from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
+from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
 from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, step_models, widen_robots
 from .phases.people_exchange import exchange_people
@@ -33,17 +36,17 @@ from .phases.robot_contacts import find_contacts
 from .phases.robot_motion import check_commands, initial_twist, move_robots
 from .planar_checks import check_arguments
 from .planar_live_changes import PlanarLiveChanges, keep_added_robots
-from .robots.drive import Drive, Twists
 from .robots.mount import MountPlacement
-from .robots.servo import CommandDelay, Pending
 from .world import Contact
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
 
     from .crowd.avatars import Avatars
+    from .doors.doors import Doors
     from .physics.kinematic_bodies import KinematicBodies
     from .physics.stage import PhysicsStage
+    from .reactions.robot_reactions import RobotReactions
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
@@ -90,7 +93,9 @@ class PlanarWorld(PlanarLiveChanges):
         ids: identities ``[A]`` or ``[E, A]``, which determine random numbers of each person (default: 0 to A - 1).
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
-        avatars: people whose pose comes from outside; to the crowd model they are external.
+        avatars: people and robots whose pose comes from outside; to the crowd model they are external.
+        reactions: reactions of people to robots, on top of the crowd model.
+        doors: doors, whose leaves are walls; E = 1.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -136,6 +141,8 @@ class PlanarWorld(PlanarLiveChanges):
     latency: Mapping[int, float] = field(default_factory=dict)
     ghosts: Sequence[int] = ()
     avatars: Avatars | None = None
+    reactions: RobotReactions | None = None
+    doors: Doors | None = None
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -153,17 +160,24 @@ class PlanarWorld(PlanarLiveChanges):
         external = self.scene.external
         self.scene = self.scene if self.script is None else self.script.start(self.scene)
         self.scene = self.scene if self.avatars is None else self.avatars.place(self.scene, 0.0)
-        self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
+        self.scene = self._traffic.start(self._with_replayed_external(self.scene))
+        self.scene = self.scene if self.reactions is None else self.reactions.start(self.scene, self._traffic)
+        self.scene = self.scene.replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
         self.slots = np.full(len(seeds), self.scene.shape[1], dtype=np.int64)
         self._previous = self.scene
         self._segments: tuple[Walls, Floats] | None = None
         self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
+        self._plain_router = self.router
+        if self.doors is not None:
+            show_doors(self)
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
+        if self.doors is not None:
+            move_doors(self, self.environment_time.age)
         self._previous, external = self.scene, self.scene.external
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
@@ -208,6 +222,7 @@ class PlanarWorld(PlanarLiveChanges):
             forgotten |= {*self.model.memory_at_start} - {MODEL, JOURNEY, WAY}
         for name, value in how.items():
             setattr(self, name, value)
+        self._plain_router = how.get("router", self._plain_router)
         if "model" in how:
             self._models = None
         self._check()
@@ -217,6 +232,8 @@ class PlanarWorld(PlanarLiveChanges):
         self.sources = sources
         memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
         self.scene = scene.replace(time=self.scene.time, memory=memory)
+        if self.doors is not None:
+            show_doors(self, bool(forgotten))
         if seed is not None:
             self.seed = seed
             self._rngs = RandomStreams(self._traffic.seeds.tolist(), "crowd")
@@ -279,7 +296,7 @@ class PlanarWorld(PlanarLiveChanges):
         if (count := len(self.slots)) > 1:
             raise InputError(f"bodies are added to one environment at a time; this world has {count}")
         self._bodies = [KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)]
-        self.people = self._bodies[0].people
+        self.people, self._bodies[0].doors = self._bodies[0].people, self.doors
         self._begin_activity(activity)
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
@@ -319,8 +336,12 @@ class PlanarWorld(PlanarLiveChanges):
         wide = widen_robots(before.radius, self.twists, self.robot_margin)
         start = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
         resolve, radius = self._resolve_overlaps, before.radius
-        earlier, crowd = move_people(start, self._step_model, resolve, self.limits, self.dt, self.substeps, radius)
+        step: Callable[[Scene, float], Scene] = self._step_model
+        if self.reactions is not None:
+            start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
+        earlier, crowd = move_people(start, step, resolve, self.limits, self.dt, self.substeps, radius)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
+        own["preferred_speed"] = before.preferred_speed
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:
@@ -338,6 +359,8 @@ class PlanarWorld(PlanarLiveChanges):
         check_arguments(
             self.scene, self.drives, self.robot_margin, self.leave_radius, self.heading_jitter, self.substeps
         )
+        if self.doors is not None and self.scene.shape[0] > 1:
+            raise InputError(ONE_ENVIRONMENT)
 
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
         asked = check_commands(commands, self.twists, self.scene.active)
@@ -353,6 +376,14 @@ class PlanarWorld(PlanarLiveChanges):
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         scene, self.twists = move_robots(before, after, self.drives, self.twists, asked, self.dt)
+        return scene if self.avatars is None else self._lead_robots(before, after, scene)
+
+    def _lead_robots(self, before: Scene, led: Scene, after: Scene) -> Scene:
+        """Return the scene with the robots whose pose comes from outside where they are led."""
+        if self.avatars is None:
+            return after
+        scene, twists = self.avatars.lead_robots(before, led, after, self.dt)
+        self.twists = {**self.twists, **twists}
         return scene
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:

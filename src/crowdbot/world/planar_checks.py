@@ -8,8 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from crowdbot.core import InputError, Scene
-
-from .robots.drive import Drive
+from crowdbot.world.robots.drives.drive import Drive
 
 __all__ = ["check_arguments"]
 

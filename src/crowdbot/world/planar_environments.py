@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import MissingExtra, Scene, Twist
+from crowdbot.core import InputError, MissingExtra, Scene, Twist
 from crowdbot.models import CrowdModel
+from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.robots.drives.servo import Pending
 
 from .crowd.environment_rows import (
     concatenate_arrays,
@@ -25,9 +27,8 @@ from .crowd.environment_rows import (
     works_in_batches,
 )
 from .crowd.people_flow import PeopleFlow
+from .doors.motion import ONE_ENVIRONMENT
 from .planar import PlanarWorld
-from .robots.drive import Twists
-from .robots.servo import Pending
 
 __all__ = [
     "join_worlds",
@@ -56,6 +57,8 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     first = worlds[0]
     if len(worlds) == 1:
         return first
+    if first.doors is not None:
+        raise InputError(ONE_ENVIRONMENT)
     whole = copy.copy(first)
     whole.scene = stack_scenes([world.scene for world in worlds])
     whole._previous = stack_scenes([world._previous for world in worlds]).replace(walls=whole.scene.walls)
@@ -115,6 +118,7 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     some._delayed = {robot: _take_delay(delay, index, world) for robot, delay in world._delayed.items()}
     some.slots = world.slots[index]
     some.avatars = None if world.avatars is None else world.avatars.select(index)
+    some.doors = None if world.doors is None else world.doors.copy()
     rows: dict[int, list[int]] = {}
     for k, e in enumerate(index.tolist()):
         rows.setdefault(e, []).append(k)
@@ -122,6 +126,8 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     some.contacts = tuple(sorted(contacts))
     if world._bodies is not None:
         some._bodies = [world._bodies[e].copy() for e in index]
+        for bodies in some._bodies:
+            bodies.doors = some.doors
     return some
 
 
@@ -129,7 +135,8 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
     """Replace some environments of a running world by those of another world of the same trial."""
     index = np.asarray(environments, dtype=np.int64)
     agents = max(world.scene.shape[1], other.scene.shape[1])
-    walls = world.scene.walls
+    walls = world.scene.walls if world.doors is None else other.scene.walls
+    world.doors, world.router = other.doors, world.router if other.doors is None else other.router
     world.scene = put_scene(pad_scene(world.scene, agents), index, pad_scene(other.scene, agents)).replace(walls=walls)
     before = put_scene(pad_scene(world._previous, agents), index, pad_scene(other._previous, agents))
     world._previous = before.replace(walls=walls)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Twist, Walls, did_you_mean
+from crowdbot.world.robots.drives.drive import Drive, Twists
 
 from .crowd.environment_rows import pad_ids, pad_scene, set_models
-from .robots.drive import Drive, Twists
 from .robots.robot import Robot
 from .world import World
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls
+from crowdbot.world.robots.drives.drive import Twists
 
 from .environment_time import EnvironmentTime
-from .robots.drive import Twists
 from .robots.mount import MountPlacement
 
 if TYPE_CHECKING:

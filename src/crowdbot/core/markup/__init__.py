@@ -1,1 +1,1 @@
-"""Text formats: XML trees and SVG drawings."""
+"""Text formats: XML trees, YAML and SVG drawings."""

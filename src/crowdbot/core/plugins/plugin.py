@@ -101,6 +101,10 @@ def find_class(
     short = name.strip().replace("-", "").replace("_", "").lower()
     if short in plain:
         return plain[short]
+    derive = getattr(room, "find_layered", None)  # names that a room composes, such as orca+headway
+    layered = derive and derive(name, lambda part: find_class(part, room, contract, folder=folder, trust=trust))
+    if layered and issubclass(layered, contract):
+        return layered  # type: ignore[no-any-return]
     if ":" not in name:
         raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")

@@ -1,8 +1,9 @@
 """Episodes, the recordings of trials: MCAP with ROS 2 messages; people and robots become tracks.
 
-The reader uses ``/people`` (people_msgs/msg/People, the name is the id), every ``.../odom`` (nav_msgs/msg/Odometry of
-a robot, in the world frame), and ``walls`` (JSON list of rings) and ``robots`` (ids) of the metadata record
-``crowdbot``. The file of a killed run is read up to its last complete record. Frames number the messages on /people.
+The reader uses ``/people`` (people_msgs/msg/People, the name is the id), ``/<robot>/ground_truth/odom``
+(nav_msgs/msg/Odometry of a robot, in the world frame; in files without it every ``.../odom``), and ``walls`` (JSON list
+of rings) and ``robots`` (ids) of the metadata record ``crowdbot``. The file of a killed run is read up to its last
+complete record. Frames number the messages on /people.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ __all__ = ["READER"]
 
 PEOPLE, PEOPLE_TYPE = "/people", "people_msgs/msg/People"
 ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
+TRUTH_ENDING = "/ground_truth/odom"
 METADATA, ENDING = "crowdbot", "crowdbot.end"
 SECOND = 1_000_000_000
 
@@ -101,6 +103,10 @@ def _is_wanted(topic: str, kind: str) -> bool:
     return (topic == PEOPLE and kind == PEOPLE_TYPE) or (topic.endswith(ODOMETRY_ENDING) and kind == ODOMETRY_TYPE)
 
 
+def _is_truth(topic: str) -> bool:
+    return topic.endswith(TRUTH_ENDING)
+
+
 def _add_message(messages: _EpisodeData, topic: str, message: Any) -> None:
     stamp = message.header.stamp.sec * SECOND + message.header.stamp.nanosec
     if topic == PEOPLE:
@@ -155,7 +161,8 @@ def _robots(
 ) -> list[list[NDArray[Any]]]:
     """Return id, frame, x, y of every robot at the stamps of /people, interpolated between its own."""
     found = []
-    tracks = {topic: sorted(poses) for topic, poses in messages.poses.items() if poses}
+    measured = {topic.removesuffix(TRUTH_ENDING) + ODOMETRY_ENDING for topic in messages.poses if _is_truth(topic)}
+    tracks = {topic: sorted(poses) for topic, poses in messages.poses.items() if poses and topic not in measured}
     for id, poses in zip(_robot_ids(messages, [*tracks], people), tracks.values(), strict=True):
         own = np.asarray([pose[0] - int(stamps[0]) for pose in poses], dtype=np.float64)
         at = (stamps - stamps[0]).astype(np.float64)
@@ -169,7 +176,8 @@ def _robots(
 def _robot_ids(messages: _EpisodeData, topics: list[str], people: NDArray[np.int64]) -> list[int]:
     """Return the ids of robots in the metadata if all are valid, else new ids above those of people."""
     try:
-        known = {f"/{robot['name']}{ODOMETRY_ENDING}": robot["id"] for robot in json.loads(messages.robots)}
+        rows = json.loads(messages.robots)
+        known = {f"/{robot['name']}{end}": robot["id"] for robot in rows for end in (ODOMETRY_ENDING, TRUTH_ENDING)}
     except (ValueError, TypeError, KeyError, RecursionError):
         known = {}
     ids = [known.get(topic) for topic in topics]

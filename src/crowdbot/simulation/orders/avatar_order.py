@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.humans import BodyPose
@@ -16,6 +18,22 @@ AHEAD = 10.0
 """Longest time [s] by which a sample can be ahead of the current time."""
 LATEST = 1e7
 """Largest time stamp [s]."""
+
+
+def check_time(order: Any, now: float = math.inf) -> float | None:
+    """Return the time stamp of a sample [s], None for the current time.
+
+    Raises:
+        InputError: it is not a finite number, or more than 10 s after the current time ``now`` [s].
+    """
+    time, name = order.time, type(order).__name__
+    if time is None:
+        return None
+    if isinstance(time, bool) or not isinstance(time, int | float) or not abs(time) <= LATEST:
+        raise InputError(f"{name}: time = {time!r} must be a finite number of seconds")
+    if time > now + AHEAD:
+        raise InputError(f"{name}: time = {time} s is more than {AHEAD:g} s after the current {now:g} s")
+    return float(time)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,10 +75,7 @@ class AvatarOrder(Order):
             raise InputError(f"AvatarOrder: {str(error).removeprefix('BodyPose: ')}") from None
         for name in ("x", "y", "heading", "head", "left_hand", "right_hand", "skeleton"):
             object.__setattr__(self, name, getattr(pose, name))
-        if self.time is not None:
-            if isinstance(self.time, bool) or not isinstance(self.time, int | float) or not abs(self.time) <= LATEST:
-                raise InputError(f"AvatarOrder: time = {self.time!r} must be a finite number of seconds")
-            object.__setattr__(self, "time", float(self.time))
+        object.__setattr__(self, "time", check_time(self))
 
     @property
     def pose(self) -> BodyPose:
@@ -80,9 +95,7 @@ class AvatarOrder(Order):
             raise InputError(
                 f'avatar {self.avatar!r} has source="{known[self.avatar]}"; only one with source="external" takes them'
             )
-        now = float(simulation.world.times[self.environment])
-        if (self.time or 0.0) > now + AHEAD:
-            raise InputError(f"AvatarOrder: time = {self.time} s is more than {AHEAD:g} s after the current {now:g} s")
+        check_time(self, float(simulation.world.times[self.environment]))
 
     def apply(self, simulation: OrderTarget) -> None:
         """Add the sample."""

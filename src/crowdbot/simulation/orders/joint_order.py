@@ -20,8 +20,8 @@ class JointOrder(Order):
     """Move a joint of a robot, such as its head, to a position, which is kept until another order replaces it.
 
     Sensors and cameras on the moved links move, and so does the body that sensors of other robots see. In the physics
-    world, the position motor of the joint moves it with its force and speed; a joint without one is held at the
-    position. In the plane, the joint is there at once. The disc of the robot stays the same.
+    world, the position motor of the joint moves it with its force and speed; a joint without one moves there at its
+    maximum speed and is held. In the plane, the joint is there at once. The disc of the robot stays the same.
 
     Fields:
         robot: name of the robot.

@@ -31,29 +31,31 @@ LAST = "readings"
 
 HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
-    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control planner",
+    "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control wanted planner",
     "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
-    "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together",
+    "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together wheels",
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"
-        " heading_jitter substeps latency ghosts joined _models _segments _surfaces"
+        " heading_jitter substeps latency ghosts reactions joined _models _segments _surfaces _plain_router"
     ),
     "crowdbot.world.physics.world.PhysicsWorld": (
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
     ),
     "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
-    "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader model",
+    "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader links model",
     "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
-    AVATARS: "agents names sources delay _latest",
+    AVATARS: "agents names sources delay robots _latest",
     "crowdbot.world.crowd.people_flow.PeopleFlow": "router journeys mixture",
     "crowdbot.world.crowd.arrivals.Arrivals": "_first_journey _fresh",
     "crowdbot.world.crowd.arrivals._Queues": "sources",
-    "crowdbot.world.physics.robot_body.RobotBody": (
-        "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay"
+    "crowdbot.world.physics.robots.robot_body.RobotBody": (
+        "robot prefix step _model _data _mj body _sites _servo _wheels _steers _step_robots _rolling _delay _slip"
+        " friction _forces _lag _base"
     ),
     "crowdbot.world.physics.people_bodies.PeopleBodies": "_model _data step geoms bodies _place _speed _hold",
-    "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius",
-    "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer",
+    "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius ground",
+    "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer doors",
+    "crowdbot.world.doors.doors.Doors": "leaves pushed _walls _routers",
     "crowdbot.world.physics.contact_events.BodyContactTracker": "_step _window _mass_of _limb_mass_of _heading_of",
 }
 """Classes of objects that exist in a new simulation of the trial, with their constant fields."""
@@ -71,9 +73,9 @@ VALUES = {
     "Gaits": "crowdbot.humans.feet",
     "ImuReading": "crowdbot.sensors.imu",
     "ImuState": "crowdbot.sensors.imu",
-    "Odometry": "crowdbot.sensors.odometry",
-    "OdometryState": "crowdbot.sensors.odometry",
-    "Pending": "crowdbot.world.robots.servo",
+    "Odometry": "crowdbot.sensors.odometry.wheel_odometry",
+    "OdometryState": "crowdbot.sensors.odometry.wheel_odometry",
+    "Pending": "crowdbot.world.robots.drives.servo",
     "PointCloud": "crowdbot.sensors.lidar3d",
     "Pose": "crowdbot.core.pose",
     "PoseTrack": "crowdbot.humans.pose_source",
@@ -87,12 +89,12 @@ VALUES = {
     "SensorReadings": "crowdbot.simulation.mounted_sensor",
     "SpatialPose": "crowdbot.core.pose",
     "StateGroups": "crowdbot.sensors.state_rows",
-    "SteeredTwists": "crowdbot.world.robots.ackermann",
+    "SteeredTwists": "crowdbot.world.robots.drives.ackermann",
     "TrackBatch": "crowdbot.navigation.track_batch",
     "TrackHistory": "crowdbot.navigation.track_history",
     "TrackedPeople": "crowdbot.sensors.ground_truth_people",
     "Twist": "crowdbot.core.pose",
-    "Twists": "crowdbot.world.robots.drive",
+    "Twists": "crowdbot.world.robots.drives.drive",
     "_Pressed": "crowdbot.world.physics.contact_events",
     "_Running": "crowdbot.world.physics.contact_events",
 }

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["restore_state"]
 
-FREE = ("_begin", "_limbs")
+FREE = ("_begin", "_limbs", "led")
 """Fields of arrays whose lengths change during a run."""
 
 

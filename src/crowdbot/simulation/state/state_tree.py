@@ -72,8 +72,10 @@ def state_of(simulation: Simulation) -> dict[str, Any]:
 
 
 def stream_avatars(simulation: Simulation) -> frozenset[str]:
-    """Return the names of the avatars whose samples come from outside; other sources do not change."""
-    return frozenset(one.name for one in simulation.trial.avatars if one.source == "external")
+    """Return the names of avatars and robots whose samples come from outside; other sources do not change."""
+    robots = [(f"robot/{one.name}", one.pose) for one in simulation.trial.robots]
+    named = [(one.name, one) for one in simulation.trial.avatars] + [(name, pose) for name, pose in robots if pose]
+    return frozenset(name for name, one in named if one.source == "external")
 
 
 class _Writer:

@@ -69,6 +69,6 @@ def _files(element: Element, folder: Path) -> list[str]:
     if element.tag == "sweep":
         places = [name for text in element.attributes.values() for name in ADDRESS.findall(text)]
     else:
-        named = ("type", "function") if element.tag == "avatar" else ("type",)
+        named = ("type", "function") if element.tag in ("avatar", "pose") else ("type",)
         places = [element.attributes.get(name, "").rpartition(":")[0] for name in named]
     return [name for place in places if place for name in plugin_sources(place, folder)]

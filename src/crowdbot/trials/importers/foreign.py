@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 
 from crowdbot.core import TrialError
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
+from .dxf import import_dxf, is_dxf
+from .hunavsim import import_hunavsim
 from .original import ImportedTrial, import_original
 from .pedsim import import_pedsim
 from .umans import import_umans
@@ -15,18 +18,28 @@ from .vadere import import_vadere
 __all__ = ["import_trial"]
 
 
-def import_trial(path: str | Path, root: str | Path | None = None) -> ImportedTrial:
-    """Read a file of Vadere, UMANS, pedsim_ros or the CrowdBot simulator of 2021.
+def import_trial(
+    path: str | Path, root: str | Path | None = None, layers: Collection[str] = (), unit: str = ""
+) -> ImportedTrial:
+    """Read a file of Vadere, UMANS, pedsim_ros, HuNavSim or the CrowdBot simulator of 2021, or a drawing in DXF.
 
     Args:
-        path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, or as in :func:`import_original`.
+        path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, an agent file of HuNavSim
+            (YAML), a drawing (ASCII DXF), or as in :func:`import_original`.
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
+        layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
     Raises:
         TrialError: the file is missing, malformed or of another kind.
     """
     path = Path(path)
     data = read_trial_bytes(path).lstrip(b"\xef\xbb\xbf \t\r\n")
+    if is_dxf(data) or path.suffix.lower() == ".dxf":
+        return import_dxf(path, layers, unit)
+    if layers or unit:
+        raise TrialError(f"{path}: layers and units belong to drawings in DXF, and this is none")
+    if path.suffix.lower() in (".yaml", ".yml") or b"hunav_loader" in data[:10_000]:
+        return import_hunavsim(path)
     if data[:1] == b"{":
         return import_vadere(path)
     if data[:1] == b"<":

@@ -92,9 +92,9 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     outfits = [
         figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
-    carriers = [k for k, robot in enumerate(trial.robots) if robot.rider]
+    carriers = [k for k, robot in enumerate(trial.robots) if robot.rider_kind]
     for k in carriers:
-        (figure,) = _draw(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
+        (figure,) = _draw(trial.robots[k].rider_kind, "", 1, (seed, "rider", k), None)
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)

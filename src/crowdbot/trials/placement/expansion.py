@@ -77,6 +77,7 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
         arrival=spawner.arrival,
         crowd=spawner.crowd,
         group=int(people.group[a]),
+        reactions=spawner.reactions,
     )
 
 

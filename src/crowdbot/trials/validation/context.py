@@ -108,7 +108,7 @@ class ValidationContext:
     def _routing(self) -> Router | str:
         assert self.trial.routing is not None
         try:
-            return self.trial.routing.router(self.stage.as_walls())
+            return self.trial.routing.router(self.stage.walking_walls())
         except InputError as error:
             return str(error).removeprefix("Router: ")
 

@@ -42,6 +42,7 @@ PAGE = "crowdbot validate, corridor"
 TWO_WAY = "crowdbot validate, lanes and narrow two-way"
 JUPEDSIM = "JuPedSim 1.4.2, default time step"
 UMANS = "UMANS, time step of its examples"
+HEADWAY = "Walking speed and density in the documentation"
 SUBSTEPS = "the model divides longer steps into substeps of 0.01 s"
 MODEL_RANGES = (
     ModelRange("anticipation-velocity", 0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM),
@@ -52,6 +53,7 @@ MODEL_RANGES = (
     ModelRange("group-force", 0.7, FREE, 0.1, PAGE, "PySocialForce tests"),
     ModelRange("heuristics", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
     ModelRange("orca", 0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples"),
+    ModelRange("people", 2.0, "narrow two-way corridors are slower than in experiments", 0.05, HEADWAY, HEADWAY),
     ModelRange("pledestrians", 0.7, FREE, 0.1, PAGE, UMANS),
     ModelRange("power-law", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
     ModelRange("social-force", 0.5, "lanes do not form and people are pushed through walls", 0.1, TWO_WAY, UMANS),

@@ -9,6 +9,7 @@ from crowdbot.core import FreeClock, whole_ticks
 from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
+from .ground_checks import ground_remarks
 from .model_ranges import range_remarks
 
 __all__ = ["fitting", "misfits", "trial_remarks"]
@@ -43,6 +44,8 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
+    Robots that cannot pass uneven ground are told, too.
+
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
     >>> from crowdbot.models import ORCA
@@ -70,7 +73,7 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return found
+    return [*found, *ground_remarks(trial)]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:

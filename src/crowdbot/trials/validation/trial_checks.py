@@ -16,16 +16,25 @@ from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import fill_defaults, has_kind, original_element, readable, skip_unreadable
+from crowdbot.trials.partial_element import (
+    fill_defaults,
+    has_kind,
+    is_partial,
+    original_element,
+    readable,
+    skip_unreadable,
+)
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
+from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .context import DeclaredNames, Problems, ValidationContext
 from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
+from .ground_checks import ground_problems
 from .rates import fitting, misfits
 from .zones import areas, shape_problem
 
@@ -56,6 +65,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
             *(_exact_rates(trial, robot) for robot in trial.robots),
             *_names(checked),
             *names(checked),
+            *ground_problems(checked),
         ),
         *too_large,
     ]
@@ -73,6 +83,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     found += [*skip_unreadable(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
     found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
     found += [*skip_unreadable(*(_avatar(one) for one in trial.avatars))]
+    found += [*skip_unreadable(*(start_problem(robot) for _, robot in _mirrored(trial.robots)))]
     if not too_large:
         found += _places(checked)
     return [(original_element(thing), sentence) for thing, sentence in found]
@@ -123,6 +134,11 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
         return
     if not walks:
         yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
+
+
+def _mirrored(robots: Sequence[RobotSpec]) -> Iterator[tuple[int, RobotSpec]]:
+    """Yield the robots with a readable pose from outside."""
+    yield from ((k, robots[k]) for k, pose in readable(robots, "pose") if pose is not None and not is_partial(pose))
 
 
 def _avatar(one: Avatar) -> Problems:
@@ -318,7 +334,8 @@ def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
     if robot.planner is None:
         return
     try:
-        planner = PathPlanner.for_stage(stage.as_walls(), robot.radius, robot.planner.margin)
+        walls = stage.driving_walls(robot.body.max_step, robot.body.max_slope)
+        planner = PathPlanner.for_stage(walls, robot.radius, robot.planner.margin)
         planner.waypoints(robot.position, robot.goal.position)
     except InputError as error:
         reason = str(error).removeprefix("PathPlanner: ").removeprefix("no path: ").removeprefix("Router: ")

@@ -16,6 +16,7 @@ from crowdbot.core import (
     plugin_address,
     required_fields,
 )
+from crowdbot.models import HeadwayLayer
 from crowdbot.trials.fields import FieldSpec, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -92,10 +93,14 @@ def _plug(part: FieldSpec, value: Any, folder: Path | None) -> dict[str, str]:
 def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     """Return the built-in name of a part, or the address of its class relative to the folder of the trial."""
     assert part.plug is not None
-    cls = type(value)
-    room, contract = part.plug.places()
+    return _class_name(type(value), *part.plug.places(), folder)
+
+
+def _class_name(cls: type, room: Any, contract: type, folder: Path | None) -> str:
     if builtin_classes(room, contract).get(builtin_name(cls, contract)) is cls:
         return builtin_name(cls, contract)
+    if issubclass(cls, HeadwayLayer):
+        return _class_name(cls.base, room, contract, folder) + cls.suffix  # type: ignore[arg-type]
     if address := plugin_address(cls, folder):
         return address
     if "<locals>" in cls.__qualname__ or cls.__module__ == "__main__":

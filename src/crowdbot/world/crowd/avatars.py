@@ -1,4 +1,4 @@
-"""Avatars: people whose pose comes from outside, from a function, a recording or a stream."""
+"""Avatars: people and robots whose pose comes from outside, from a function, a recording or a stream."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
+from crowdbot.world.robots.drives.drive import Twists
 
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion
@@ -23,6 +24,8 @@ Ints = NDArray[np.int64]
 
 JUMP = 8.0
 """A change of position in a step that needs a higher speed [m/s] is a teleport: nothing on the way is touched."""
+TURN_JUMP = 12.0
+"""A turn of a robot in a step that needs a higher rate [rad/s] is a teleport as well."""
 AHEAD = 10.0
 """Longest time [s] between a sample and the current time that is used for interpolation."""
 
@@ -30,11 +33,14 @@ AHEAD = 10.0
 class Avatars:
     """The avatars of a world in E environments. To crowd models they are external agents, like robots.
 
+    Robots can be avatars, too: they are where their source says, and their drives and commands have no effect.
+
     Args:
         agents: index of each avatar ``[K]``.
         names: name of each avatar.
         sources: source of each avatar in each environment ``[E][K]``.
         delay: time [s] by which each avatar follows its source later ``[K]``.
+        robots: those of ``agents`` that are robots.
 
     Attributes:
         rows: latest pose of each avatar ``[E, K, 139]``, see :meth:`crowdbot.humans.BodyPose.row`.
@@ -52,7 +58,9 @@ class Avatars:
         names: Sequence[str],
         sources: Sequence[Sequence[PoseSource]],
         delay: Sequence[float],
+        robots: Sequence[int] = (),
     ) -> None:
+        self.robots = tuple(int(agent) for agent in robots)
         self.agents = np.asarray(agents, dtype=np.int64)
         self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
         self.sources = [tuple(row) for row in sources]
@@ -112,18 +120,55 @@ class Avatars:
             motion.set_poses(poses)
         return earlier, before, after
 
+    def lead_robots(self, before: Scene, led: Scene, after: Scene, dt: float) -> tuple[Scene, dict[int, Twists]]:
+        """Return the scene after a step with its robots where they are led, and their twists.
+
+        Args:
+            before: scene before the step, in which teleports are done.
+            led: scene with the robots where their sources say.
+            after: scene in which drives have moved all robots.
+            dt: time step [s].
+
+        >>> track = PoseTrack.of([0.0, 1.0], [BodyPose(0, 0), BodyPose(1, 0)])
+        >>> robots = Avatars([0], ["robot/cart"], [[track]], [0.0], [0])
+        >>> before = robots.place(Scene.of([[0.0, 0.0]]), 0.0)
+        >>> robots.lead_robots(before, robots.place(before, 0.1), before, 0.1)[1][0].at(0).forward
+        1.0
+        """
+        twists: dict[int, Twists] = {}
+        if not self.robots:
+            return after, twists
+        arrays = {name: getattr(after, name).copy() for name in ("position", "velocity", "heading")}
+        for agent in self.robots:
+            for name, array in arrays.items():
+                array[:, agent] = getattr(led, name)[:, agent]
+            present = after.active[:, agent]
+            arrays["velocity"][~present, agent] = 0.0
+            turn = np.where(present, _turned(before.heading[:, agent], led.heading[:, agent]) / dt, 0.0)
+            cos, sin = np.cos(led.heading[:, agent]), np.sin(led.heading[:, agent])
+            vx, vy = arrays["velocity"][:, agent].T
+            twists[agent] = Twists.of(Twists(cos * vx + sin * vy, turn, cos * vy - sin * vx), len(turn))
+        return after.replace(**arrays), twists
+
     def _skip_jumps(self, before: Scene, after: Scene, dt: float, motions: Sequence[PeopleMotion]) -> Scene:
         step = after.position[:, self.agents] - before.position[:, self.agents]
         jumps = np.sqrt(np.sum(step * step, axis=-1)) > JUMP * dt
-        if not jumps.any():
+        spins = np.zeros_like(jumps)
+        robots = np.isin(self.agents, self.robots)
+        if robots.any():
+            turn = _turned(before.heading[:, self.agents[robots]], after.heading[:, self.agents[robots]])
+            spins[:, robots] = jumps[:, robots] | (np.abs(turn) > TURN_JUMP * dt)
+        if not (jumps.any() or spins.any()):
             return before
-        position = before.position.copy()
+        position, heading = before.position.copy(), before.heading.copy()
         for e, k in np.argwhere(jumps).tolist():
             agent = int(self.agents[k])
             position[e, agent] = after.position[e, agent]
             if motions:
                 motions[e].move(agent, *step[e, k].tolist())
-        return before.replace(position=position)
+        for e, k in np.argwhere(spins).tolist():
+            heading[e, self.agents[k]] = after.heading[e, self.agents[k]]
+        return before.replace(position=position, heading=heading)
 
     def pose(self, world: Any) -> None:
         """Show the current poses of heads, hands and skeletons on the bodies of people."""
@@ -172,6 +217,11 @@ class Avatars:
         """Replace some environments by those of others."""
         for k, e in enumerate(environments):
             self.sources[int(e)], self.rows[int(e)] = other.sources[k], other.rows[k]
+
+
+def _turned(before: Floats, after: Floats) -> Floats:
+    """Return the smaller turn [rad] from one heading to another, from -pi to pi."""
+    return np.asarray(math.pi - (math.pi - (after - before)) % (2.0 * math.pi))
 
 
 def people_motions(world: Any) -> list[PeopleMotion]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
-from crowdbot.world.robots.drive import Drive, Twists, put_robot
+from crowdbot.world.robots.drives.drive import Drive, Twists, put_robot
 
 __all__ = ["check_commands", "initial_twist", "move_robots"]
 

@@ -20,7 +20,7 @@ from crowdbot.world.planar_live_changes import (
     new_prop_name,
     robot_environments,
 )
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
 

@@ -141,12 +141,12 @@ def permitted_speed(mass: float, region: str) -> float:
     return tissue.transient * tissue.limit / two_body_force(1.0, mass, region)
 
 
-def softness(region: str, person: float, mass: float, dt: float) -> tuple[float, float]:
+def softness(region: str, person: float, mass: float, dt: float, moved: float | None = None) -> tuple[float, float]:
     """Return stiffness and damping of a contact per reduced mass [1/s2, 1/s], for the solver.
 
     In the solver, each limb has the mass of the whole person (``person`` [kg]). The contact is therefore softened to
     give the peak force of :func:`two_body_force` at any ratio of the masses. It lasts long enough to be resolved by
-    steps of ``dt`` [s].
+    steps of ``dt`` [s]. If only one of the bodies can be moved by contacts, ``moved`` [kg] is its mass in the solver.
 
     >>> stiffness, _ = softness("chest", 40.0, 60.0, 0.005)
     >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer, since damping lowers the peak
@@ -154,9 +154,11 @@ def softness(region: str, person: float, mass: float, dt: float) -> tuple[float,
     """
     tissue = BODY_REGION_LIMITS[region]
     whole = reduced_mass(person, mass)
-    wanted = tissue.stiffness * reduced_mass(mass, min(tissue.mass, person)) / whole**2
+    moved = whole if moved is None else moved
+    wanted = tissue.stiffness * reduced_mass(mass, min(tissue.mass, person)) / moved**2
     frequency = min(math.sqrt(wanted) / _peak(DAMPING), math.pi / (SHORTEST * dt))
-    return frequency**2, 2.0 * DAMPING * frequency
+    share = moved / whole  # the solver takes the reduced mass of both bodies
+    return frequency**2 * share, 2.0 * DAMPING * frequency * share
 
 
 def _peak(damping: float) -> float:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
+from crowdbot.world.ground.ground import Ground
+from crowdbot.world.ground.surfaces import ground_boxes
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .people_motion import PeopleMotion
+from .rider import RIDER
 from .stage import PhysicsStage, PropBody
 
 __all__ = ["scene_bodies"]
@@ -45,6 +48,7 @@ def scene_bodies(
     joints: Mapping[int, Mapping[str, ArrayLike]] | None = None,
     frames: Mapping[int, Frames] | None = None,
     props: Mapping[int, Floats] | None = None,
+    doors: Sequence[float] | Floats | None = None,
     skins: int | None = None,
 ) -> Bodies:
     """Return the bodies of all people, robots and props in a scene, E = 1, for range sensors.
@@ -63,6 +67,7 @@ def scene_bodies(
         joints: joint positions of robots [rad, m] by agent and name (default: the posture).
         frames: frames ``[4, 4]`` of robot links in the world, by agent and link; they replace ``joints``.
         props: frames ``[4, 4]`` in the world of moved props, by number.
+        doors: how far each door of the stage is open, 0 to 1 (default: closed).
         skins: level of detail of people's skins, 0 (finest) to 2, for rays that hit the mesh; None: no skins.
 
     Raises:
@@ -89,6 +94,11 @@ def scene_bodies(
     for number, prop in enumerate(stage.props if stage is not None else ()):
         for kind, place, size in _of_prop(prop, (props or {}).get(number)):
             found.add(kind, place[None], size[None], STAGE)
+    if stage is not None and stage.ground is not None:
+        found.add("box", *_ground_boxes(stage.ground), STAGE)
+    for k, leaf in enumerate(stage.doors if stage is not None else ()):
+        middle, half, yaw = leaf.box(0.0 if doors is None else doors[k])
+        found.add("box", frame(middle, axis_rotation((0.0, 0.0, 1.0), yaw))[None], half[None], STAGE)
     skin = None if skins is None or motion is None else _skins(scene, motion, skins)
     return found.bodies(parts, skin)
 
@@ -163,6 +173,11 @@ def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, Array
     return {link: base @ pose for link, pose in poses.items()}
 
 
+@functools.lru_cache(maxsize=16)
+def _ground_boxes(ground: Ground) -> tuple[Floats, Floats]:
+    return ground_boxes(ground)
+
+
 @functools.lru_cache(maxsize=64)
 def _posture(robot: Robot) -> Frames:
     return robot.model.poses(robot.posture)
@@ -173,7 +188,7 @@ def _rows_of(robot: Robot) -> dict[str, _Rows]:
     """Return the colliders of a robot by kind, in the frames of their links."""
     found: dict[str, list[tuple[str, Floats, tuple[float, float, float]]]] = {"box": [], "capsule": [], "cylinder": []}
     for name, link in robot.model.links.items():
-        for part in link.collisions:
+        for part in link.collisions if not name.startswith(RIDER) else ():  # riders are among the people
             shape = part.shape
             if isinstance(shape, Box):
                 found["box"].append((name, part.origin, tuple(0.5 * side for side in shape.size)))  # type: ignore[arg-type]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
+from .rider import RIDER
 
 __all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact", "GeomTable"]
 
@@ -24,7 +25,8 @@ class ContactBody(NamedTuple):
 
     Fields:
         kind: ``robot``, ``person``, ``prop`` or ``wall``.
-        number: index of the agent, of the prop on the stage, or of the wall ring.
+        number: index of the agent, of the prop on the stage, or of the wall ring; -1, -2, ... for the first, second
+            ... door.
     """
 
     kind: str
@@ -156,8 +158,7 @@ class ContactReader:
         together: dict[tuple[ContactBody, ContactBody, str, str], list[_ContactPoint]] = {}
         for found in self._found:
             one, other = found.one, found.other
-            key = (self._party(one), self._party(other), self._part[one], self._part[other])
-            together.setdefault(key, []).append(found)
+            together.setdefault(self._key(one, other), []).append(found)
         return tuple(self._joined(key, rows) for key, rows in sorted(together.items(), key=lambda item: item[0]))
 
     def _joined(self, key: tuple[ContactBody, ContactBody, str, str], rows: list[_ContactPoint]) -> EngineContact:
@@ -177,8 +178,16 @@ class ContactReader:
         point = np.mean([self._data.contact[row.row].pos for row in rows], axis=0)
         return EngineContact(*key, force, depth, normal, point, first, second, swing)
 
-    def _rank(self, geom: int) -> tuple[int, int]:
-        return int(self._kind[geom]), geom
+    def _key(self, one: int, other: int) -> tuple[ContactBody, ContactBody, str, str]:
+        """Return bodies and parts of two geoms. The rider of a robot is a person for other robots, else its part."""
+        first, second = self._party(one), self._party(other)
+        rider = self._part[other].removeprefix(RIDER)
+        if first.kind == second.kind == "robot" and rider != self._part[other]:
+            return first, ContactBody("person", second.number), self._part[one], rider
+        return first, second, self._part[one], self._part[other]
+
+    def _rank(self, geom: int) -> tuple[int, bool, int]:
+        return int(self._kind[geom]), self._part[geom].startswith(RIDER), geom
 
     def _party(self, geom: int) -> ContactBody:
         kind, number = int(self._kind[geom]), self._number[geom]
@@ -210,6 +219,8 @@ def _sorted_out(name: str, prefixes: dict[int, str]) -> tuple[int, int, str]:
         return PROP, int(name.removeprefix("prop").split("/")[0]), ""
     if name.startswith("wall/"):
         return WALL, int(name.removeprefix("wall/").split(".")[0]), ""
+    if name.startswith("door"):  # the walls of doors have negative numbers
+        return WALL, -1 - int(name.removeprefix("door").split("/")[0]), ""
     for agent, prefix in prefixes.items():
         if name.startswith(prefix):
             return ROBOT, agent, name.removeprefix(prefix).rsplit("/", 1)[0].removesuffix("/seen")

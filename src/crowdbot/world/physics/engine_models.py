@@ -11,13 +11,17 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from crowdbot.core import Scene, Walls
+from crowdbot.world.physics.robots.base_servo import release_base_motors
+from crowdbot.world.physics.robots.castor_springs import soften_castors
+from crowdbot.world.physics.robots.robot_body import RobotBody
+from crowdbot.world.physics.robots.robot_height import is_level
+from crowdbot.world.physics.robots.wheel_servo import WheelServos
 from crowdbot.world.robots.robot import Robot
 
 from .contacts import GeomTable
 from .engine import engine
 from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
-from .robot_body import RobotBody
 from .stage import PhysicsStage
 
 __all__ = ["BodyDesign", "CompiledBodies", "RobotStart", "compile_bodies", "motors_of"]
@@ -91,6 +95,7 @@ class CompiledBodies:
         first: state before the first step.
         shapes: limbs and masses of the bodies of people before they are assigned.
         geoms: bodies and parts of the geoms.
+        servos: servos of the wheels, part of every step.
     """
 
     def __init__(self, design: BodyDesign) -> None:
@@ -99,6 +104,12 @@ class CompiledBodies:
         motors = {start.agent: dict(start.motors) for start in design.robots}
         self.built: MjcfModel = build_mjcf_model(design.scene, design.stage, robots, design.slots, motors)
         self.base = self.built.load(design.step)
+        self.servos = WheelServos(self.base, self.built.torques)
+        for start in design.robots:
+            if start.robot.base == "planar":
+                release_base_motors(self.base, self.built.prefixes[start.agent])
+        if design.stage.ground is not None:
+            soften_castors(self.base, {self.built.prefixes[agent]: robot for agent, robot in robots.items()})
         self.first = engine().MjData(self.base)
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()
@@ -138,7 +149,8 @@ class CompiledBodies:
                 body.put(start.x, start.y, start.heading)
             mj.mj_step(model, data, round(SETTLING / design.step))
             for body, start in robots:
-                body.put(start.x, start.y, start.heading)
+                if is_level(design.stage.ground, start):
+                    body.put(start.x, start.y, start.heading)
             data.time = 0.0
             mj.mj_forward(model, data)
         return data

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from crowdbot.world.robots.robot import Robot
 from .colliders import scene_bodies
 from .people_motion import PeopleMotion
 from .stage import PhysicsStage
+
+if TYPE_CHECKING:
+    from crowdbot.world.doors.doors import Doors
 
 __all__ = ["KinematicBodies"]
 
@@ -33,6 +37,7 @@ class KinematicBodies:
 
     Attributes:
         people: bodies of people.
+        doors: doors of the world, whose leaves the bodies show.
         joints: joint positions of robots that differ from their posture [rad or m], by agent and name.
     """
 
@@ -51,6 +56,7 @@ class KinematicBodies:
         agents = np.array([a for a in range(scene.shape[1]) if a not in self.robots], dtype=np.int64)
         self.people = PeopleMotion(scene, agents, people, seed, riders)
         self._renderer: Renderer | None = None
+        self.doors: Doors | None = None
         self.joints: Mapping[int, Mapping[str, float]] = {}
 
     def copy(self) -> KinematicBodies:
@@ -66,7 +72,9 @@ class KinematicBodies:
 
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
-        found = scene_bodies(scene, self.people, self.robots, self.stage, joints=self.joints, skins=skins)
+        found = scene_bodies(
+            scene, self.people, self.robots, self.stage, joints=self.joints, doors=self._shares(), skins=skins
+        )
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 
     def renderer(self, scene: Scene) -> Renderer:
@@ -74,8 +82,11 @@ class KinematicBodies:
         now = scene.replace(walls=self._walls(scene))
         if self._renderer is None:
             self._renderer = Renderer(now, self.robots, self.stage, self.people)
-        self._renderer.show(now, self.joints)
+        self._renderer.show(now, self.joints, self._shares())
         return self._renderer
+
+    def _shares(self) -> list[float] | None:
+        return None if self.doors is None else self.doors.signed_share.tolist()
 
     def _walls(self, scene: Scene) -> Walls:
         return scene.walls if self.walls is None else self.walls

@@ -172,7 +172,7 @@ class PeopleBodies:
         for array, before in zip(self.shapes, kept["shapes"], strict=True):
             array[:old] = before
 
-    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools) -> int:
+    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools, firm: Bools) -> int:
         """Assign bodies to people and return the number of people without a free body.
 
         Args:
@@ -180,6 +180,7 @@ class PeopleBodies:
             mass, radius: masses ``[W]`` [kg] and limb radii ``[W, L]`` [m].
             other: mass of the nearest mover ``[W]`` [kg].
             ahead: whether it is ahead of the person ``[W]``.
+            firm: whether contacts cannot move it ``[W]``.
         """
         rank = {int(agent): k for k, agent in enumerate(wanted[: len(self.agent)])}
         gone = np.array([s for s, agent in enumerate(self.agent) if agent >= 0 and int(agent) not in rank], dtype=int)
@@ -191,7 +192,7 @@ class PeopleBodies:
                 self.agent[free.pop(0)] = agent
         for slot in np.flatnonzero(self.agent >= 0):
             k = rank[int(self.agent[slot])]
-            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]))
+            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]), bool(firm[k]))
         return max(0, len(wanted) - len(self.agent))
 
     def agent_of(self, slot: int) -> int:
@@ -249,7 +250,7 @@ class PeopleBodies:
                 (contact.first, contact.first_part, -1.0),
                 (contact.second, contact.second_part, 1.0),
             ):
-                if party.kind == "person":
+                if party.kind == "person" and party.number in self.agent:  # riders are parts of robots
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
                     row = LIMB_NAMES.index(limb)
@@ -334,14 +335,15 @@ class PeopleBodies:
             self._data.qvel[self._speed[slots] + axis] = 0.0
             self._data.qfrc_applied[self._speed[slots] + axis] = 0.0
 
-    def _embody(self, slot: int, mass: float, radius: Floats, other: float, ahead: bool) -> None:
-        shapes = self.shapes
+    def _embody(self, slot: int, mass: float, radius: Floats, other: float, ahead: bool, firm: bool) -> None:
+        shapes, led = self.shapes, bool(np.isin(self.agent[slot], self.led))
+        moved = None if led == firm else (other if led else mass)
         self._mass[slot] = mass
         shapes.mass[slot] = mass
         shapes.inverse_weight[slot] = (1.0 / mass, 0.0)
         shapes.size[slot, :, 0] = radius
         for limb, region in enumerate(REGIONS[ahead]):
-            stiffness, damping = softness(region, mass, other, self.step)
+            stiffness, damping = softness(region, mass, other, self.step, moved)
             shapes.softness[slot, limb] = (-stiffness, -damping)
 
     def _move(self, here: Ints, walk: Floats) -> None:

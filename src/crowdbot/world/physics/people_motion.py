@@ -9,7 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.humans import CHAIR, LIMBS, WHEELCHAIR, Gait, Gaits, People, Posture, reach_poses
+from crowdbot.humans import (
+    CHAIR,
+    LIMBS,
+    WHEELCHAIR,
+    Gait,
+    Gaits,
+    People,
+    Posture,
+    ankle_positions,
+    reach_poses,
+    stand_on_ground,
+)
+from crowdbot.world.ground.ground import Ground
 
 __all__ = ["LimbCapsules", "PeopleMotion"]
 
@@ -23,6 +35,8 @@ BELOW = {
     "upperarm": ("upperarm", "forearm", "hand"),
     "forearm": ("forearm", "hand"),
 }
+SOLE, STEEP = 0.06, 2.0
+"""A foot stands on the highest ground within ``SOLE`` [m] of the ankle, and rises ahead of an edge with this slope."""
 FASTEST = 11.9
 """Upper limit of the walking speed [m/s] for gaits."""
 
@@ -55,6 +69,7 @@ class PeopleMotion:
         people: bodies of ``agents``, followed by ``riders``; None samples adults.
         seed: seed of bodies and gaits.
         riders: agents of type ``wheelchair`` with a rider; sensors see the rider as part of the robot.
+        ground: uneven ground on which they walk; None: level.
 
     Attributes:
         agents: agents of people, then of wheelchairs with riders; afoot: without wheelchairs.
@@ -65,9 +80,10 @@ class PeopleMotion:
     """
 
     def __init__(
-        self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0, riders: Sequence[int] = ()
-    ) -> None:
-        self.afoot = agents
+        self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0, riders: Sequence[int] = (),
+        ground: Ground | None = None,
+    ) -> None:  # fmt: skip
+        self.afoot, self.ground = agents, ground
         self.agents = agents = np.concatenate([agents, np.array(riders, dtype=np.int64)])
         self.people = People.sample(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
@@ -165,7 +181,11 @@ class PeopleMotion:
 
     def posture(self, state: Gaits | None = None) -> Posture:
         """Return the posture of all people, by default the current one."""
-        walking = self.gait.posture(self.state if state is None else state)
+        state = self.state if state is None else state
+        walking = self.gait.posture(state)
+        if self.ground is not None:
+            under = self.ground.support(ankle_positions(walking)[..., :2], SOLE, STEEP)
+            walking = stand_on_ground(walking, self.people, state.yaw, under)
         return reach_poses(walking, self.people, self.poses) if self.poses else walking
 
     def skin(self, level: int) -> Floats:

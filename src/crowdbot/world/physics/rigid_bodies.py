@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.world.physics.robots.link_forces import LinkForces
+from crowdbot.world.physics.robots.robot_body import RobotBody
+
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
-from .robot_body import RobotBody
 
 __all__ = ["RigidBodies", "copy_state"]
 
@@ -55,12 +57,32 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
+        links = LinkForces(self.robots.values(), self.design.step)
         with self.compiled.borrow() as model:
             for _ in range(steps):
+                links.note(self.data)
                 for body in self.robots.values():
                     body.drive()
-                mj.mj_step(model, self.data)
+                links.begin(model, self.data)
+                mj.mj_step1(model, self.data)
+                self.apply_friction(model)
+                self.compiled.servos.apply(self.data)
+                mj.mj_step2(model, self.data)
+                links.end(self.data)
+                self.read_loads()
             update_frames(model, self.data)
+
+    def apply_friction(self, model: Any) -> None:
+        """Set the friction of wheels between the two halves of an engine step, see :class:`WheelFriction`."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.friction.apply(model, self.data, body.loads)
+
+    def read_loads(self) -> None:
+        """Read the loads of wheels after an engine step."""
+        for body in self.robots.values():
+            if len(body.friction):
+                body.loads = body.friction.loads(self.data)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:
         """Copy the state of all joints and motors that one of the others has as well; frames follow."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.world.crowd.ghosts import hide_ghosts
+from crowdbot.world.physics.robots.robot_body import RobotBody
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.planar_live_changes import (
     check_robot_place,
@@ -33,7 +34,7 @@ from .engine_models import RobotStart
 from .mjcf_model import MjcfModel
 from .people_bodies import PeopleBodies
 from .people_motion import PeopleMotion
-from .robot_body import RobotBody
+from .rider import seat_rider
 from .scenery import add_rings
 from .stage import AbsentProp, PhysicsStage, PropBody, without_prop
 from .world_bodies import WorldBodies
@@ -151,7 +152,14 @@ class RigidWorld(PlanarWorld):
         """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
         for agent, robot in robots.items():
             if agent not in self.drives or agent in self.robot_bodies:
-                self.robot_body(agent).robot = robot
+                self.robot_body(agent).robot = self._with_rider(agent, robot)
+
+    def _with_rider(self, agent: int, robot: Robot) -> Robot:
+        """Return the robot of an agent with its rider, if it has one."""
+        people = self.people
+        if agent not in people.agents[len(people.afoot) :]:
+            return robot
+        return seat_rider(robot, people.people, int(people.row[agent]))
 
     def copy(self) -> Self:
         """Return an independent world in the same state, on a free clock."""

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError, Walls
+from crowdbot.world.ground.surfaces import ground_geoms
 from crowdbot.world.urdf.geoms import row
 
-from .layers import GROUND, STANDING
+from .layers import GROUND, RAISED, STANDING
 from .stage import AbsentProp, PhysicsStage, PropBody
 
 __all__ = ["add_rings", "outline_props", "prop_outline", "remove_ring", "scenery"]
@@ -44,6 +45,10 @@ def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Elem
             name = f"wall/{number}.{k}"
             world.append(Element("geom", {"name": name, "rgba": rgba, "group": "0", **board, **STANDING}))
     world += [prop.body(f"prop{k}") for k, prop in enumerate(stage.props) if not isinstance(prop, AbsentProp)]
+    world += [leaf.body(f"door{k}") for k, leaf in enumerate(stage.doors)]
+    if stage.ground is not None:
+        raised = ground_geoms(stage.ground, {**RAISED, "friction": row((stage.friction, 0.005, 0.0001))})
+        assets, world = assets + raised[0], world + raised[1]
     return assets, world
 
 
@@ -111,7 +116,8 @@ def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats
             matrix = frames[number]
             ring = _square(prop, matrix[:2, 3], np.arctan2(matrix[1, 0], matrix[0, 0]))
         rings.append(ring)
-    return add_rings(walls, tuple(rings))
+    edges = () if stage.ground is None else stage.ground.people_barriers()
+    return add_rings(walls, (*rings, *edges))
 
 
 def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError
+from crowdbot.world.doors.leaf import DoorLeaf
+from crowdbot.world.ground.ground import Ground
 from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
@@ -235,6 +237,8 @@ class PhysicsStage:
         props: objects on the floor.
         lights: lights (default: daylight).
         floor_color, wall_color: red, green, blue from 0 to 1.
+        ground: ramps, stairs, platforms and thresholds; None: level.
+        doors: doors; their state is that of a world.
 
     Raises:
         InputError: the height or the friction is not finite and above 0.
@@ -249,6 +253,8 @@ class PhysicsStage:
     lights: tuple[LightSource, ...] = ()
     floor_color: Color = (0.80, 0.80, 0.78)
     wall_color: Color = (0.86, 0.84, 0.80)
+    ground: Ground | None = None
+    doors: tuple[DoorLeaf, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("wall_height", "friction"):
@@ -256,8 +262,9 @@ class PhysicsStage:
                 raise InputError(f"PhysicsStage: {name} = {getattr(self, name)} must be finite and above 0")
 
     def outlines(self) -> tuple[Floats, ...]:
-        """Return the outlines of props that people avoid."""
-        return tuple(ring for prop in self.props if (ring := prop.outline()) is not None)
+        """Return what people avoid: the outlines of props, and edges of the ground that are too high for them."""
+        rings = tuple(ring for prop in self.props if (ring := prop.outline()) is not None)
+        return rings + (() if self.ground is None else self.ground.people_barriers())
 
 
 def without_prop(stage: PhysicsStage, number: int) -> PhysicsStage:

@@ -13,8 +13,13 @@ from crowdbot.core import Bodies, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.ghosts import hide_ghosts
+from crowdbot.world.doors.doors import Doors
+from crowdbot.world.doors.motion import read_leaves, turn_leaves
+from crowdbot.world.ground.walking_speed import slow_people
+from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
+from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.rendering.renderer import Renderer
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.robot import spatial as spatial_pose
@@ -60,8 +65,8 @@ class PhysicsWorld(RigidWorld):
         seed: seed of the crowd, of body shapes and of gaits.
         stage: wall height, floor, props and lights. The crowd avoids fixed props.
         people: bodies of all agents except robots, followed by riders; None samples adults.
-        riders: agents of type ``wheelchair`` with a rider. Riders are visible to sensors, but have neither mass nor
-            contacts.
+        riders: agents with the seat of a ``wheelchair`` that carry a rider. A rider is a rigid part of the robot, with
+            mass and contacts; what another robot does to a rider, it does to a person.
         physics_dt: time step of the engine [s].
         slots: number of people that can have a body at the same time (default: 24, or the number of people if smaller).
         motors: command type of robot joints by agent and joint: ``position``, ``velocity`` or ``effort``.
@@ -113,11 +118,13 @@ class PhysicsWorld(RigidWorld):
         self._slots_fixed = slots is not None
         self._steps = round(dt / physics_dt)
         self._outlined = add_rings(scene.walls, stage.outlines())
+        if stage.doors and planar.get("doors") is None:
+            planar["doors"] = Doors(stage.doors, pushed=True)
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
         self._prop_names = [f"prop{number}" for number in range(len(stage.props))]
-        self.people = PeopleMotion(self.scene, persons, people, seed, riders)
+        self.people = PeopleMotion(self.scene, persons, people, seed, riders, stage.ground)
         self._plane: tuple[Scene, Scene] | None = None
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
@@ -181,7 +188,10 @@ class PhysicsWorld(RigidWorld):
         robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
         moved = {number: self.prop(number) for number in self._movable}
         scene = hide_ghosts(self.scene, self.ghosts)
-        return scene_bodies(scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
+        doors = None if self.doors is None else self.doors.signed_share
+        return scene_bodies(
+            scene, self.people, robots, self.stage, frames=frames, props=moved, doors=doors, skins=skins
+        )
 
     def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
         """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
@@ -194,7 +204,9 @@ class PhysicsWorld(RigidWorld):
         return outline_props(self.scene.walls, self.stage, {number: self.prop(number) for number in self._movable})
 
     def _fixed(self, party: ContactBody) -> bool:
-        return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
+        if party.kind == "wall":
+            return party.number >= 0 or self.stage.doors[-1 - party.number].opening != "push"
+        return bool(party.kind == "prop" and not self.stage.props[party.number].movable)
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
         return command  # RobotBody applies the delay, in engine steps
@@ -202,12 +214,12 @@ class PhysicsWorld(RigidWorld):
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         place, heading = self.scene.position[0].tolist(), self.scene.heading[0].tolist()
         starts = {
-            a: RobotStart(a, robot, place[a][0], place[a][1], heading[a], motors_of(a, motors))
+            a: RobotStart(a, self._with_rider(a, robot), place[a][0], place[a][1], heading[a], motors_of(a, motors))
             for a, robot in sorted(robots.items())
         }
         walls = self.scene.walls
         self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
-        self.rigid.people.led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
+        self.rigid.people.led = self._led_people(self.scene)
         self._contact_tracker = BodyContactTracker(
             self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
         )
@@ -216,11 +228,18 @@ class PhysicsWorld(RigidWorld):
     def _put(self, agent: int, scene: Scene) -> None:
         x, y = scene.position[0, agent]
         self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
+        if self.stage.ground is not None:
+            stand_robot(self.robot_bodies[agent], self.stage.ground, float(x), float(y))
         self._at[agent] = (float(x), float(y), float(scene.heading[0, agent]))
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
-        earlier, crowd = super()._step_crowd(before.replace(walls=self._outlined))
-        return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
+        start = before.replace(walls=self._outlined)
+        if self.stage.ground is None:
+            earlier, crowd = super()._step_crowd(start)
+            return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
+        earlier, crowd = super()._step_crowd(slow_people(start, self.stage.ground))
+        kept = {name: getattr(before, name) for name in ("walls", "preferred_speed", "max_speed")}
+        return earlier.replace(**kept), crowd.replace(**kept)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Resolve overlaps of people as in the plane; robots are left to the engine."""
@@ -234,30 +253,58 @@ class PhysicsWorld(RigidWorld):
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         """Run the engine for a step of the world, and return the scene with the moved bodies."""
+        led = self._mirrored_robots(before, after)
         for agent, robot_bodies in self.robot_bodies.items():
-            if self._at[agent] != (*before.position[0, agent].tolist(), float(before.heading[0, agent])):
+            at_rest = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
+            if self._at[agent] != at_rest and agent not in led.twists:
                 self._put(agent, before)
-            robot_bodies.ask(asked[agent])
+            robot_bodies.ask(led.twists.get(agent, asked[agent]))
         gait, ends = self._prepared(before, after)
         end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
         with self.rigid.engine_steps():
             for k in range(self._steps):
+                led.go(k / self._steps)
                 self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+            led.go(1.0)
         for ghost in self.rigid.ghosts.values():
+            if self.doors is not None:
+                turn_leaves(self.doors, ghost.compiled.base, ghost.data, 1.0, self.dt)
             ghost.step_alone(self._steps)
+            if led.twists:
+                led.go(1.0)
+                ghost.step_alone(0)  # the frames follow
+        if self.doors is not None:
+            read_leaves(self.doors, self.rigid.main.compiled.base, self.data)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
+        scene = self._lead_robots(before, after, scene)
+        for agent in led.twists:
+            self._at[agent] = (*scene.position[0, agent].tolist(), float(scene.heading[0, agent]))
         if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
             gait, ends = self.people.next_state(scene, self.dt), None
         self.people.take(gait, ends)
         return scene
+
+    def _led_people(self, scene: Scene) -> Ints:
+        """Return the agents whose motion comes from outside: avatars, and people on recorded tracks."""
+        led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
+        if self.script is None:
+            return led
+        return np.union1d(led, np.flatnonzero(self.script.follower_mask(scene)[0]))
+
+    def _mirrored_robots(self, before: Scene, after: Scene) -> MirroredRobots:
+        """Return the motion of the robots whose pose comes from outside."""
+        led = () if self.avatars is None else self.avatars.robots
+        bodies = {agent: body for agent, body in self.robot_bodies.items() if agent in led}
+        return MirroredRobots(bodies, before, after, self.dt)
 
     def _prepared(self, before: Scene, after: Scene) -> tuple[Any, Floats | None]:
         """Assign bodies to people near movers, and return the states of people after the step."""
         gait = self.people.next_state(after, self.dt)
         ends = self.people.ends_of(gait)
         if len(self._people_bodies.agent):
+            self._people_bodies.led = self._led_people(before)
             self._embody(before)
             way = (after.position[0] - before.position[0]) / self.dt
             start, end = self.people.relative_ends(before), self.people.relative_ends(after, ends)
@@ -268,28 +315,40 @@ class PhysicsWorld(RigidWorld):
         """Assign bodies to people who may come into contact in this step, nearest first."""
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
-        near, mass, ahead = people_near(
-            scene, persons, movers(self.rigid.main.robots, self.stage, self._movable, self.data), NEAR + FAST * self.dt
-        )
+        led = () if self.avatars is None else self.avatars.robots
+        found = movers(self.rigid.main.robots, self.stage, self._movable, self.data, led)
+        near, mass, ahead, firm = people_near(scene, persons, found, NEAR + FAST * self.dt)
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
-            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near]
+            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near], firm[near]
         )
 
     def _substep(self, share: float, time: float) -> None:
         mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
+        if self.rigid.links:
+            self.rigid.links.note(data)
         for robot_bodies in self.rigid.main.robots.values():
             robot_bodies.drive()
         self._people_bodies.go(share)
+        if self.rigid.links:
+            self.rigid.links.begin(model, data)
+        if self.doors is not None:
+            turn_leaves(self.doors, model, data, share, self.dt)
         mj.mj_step1(model, data)
+        self.rigid.main.apply_friction(model)
+        self.rigid.main.compiled.servos.apply(data)
         reader.look()
         mj.mj_step2(model, data)
+        if self.rigid.links:
+            self.rigid.links.end(data)
+        self.rigid.main.read_loads()
         contacts = reader.read()
         self._people_bodies.register_contacts(contacts)
         self._contact_tracker.add(time, contacts)
         for contact in contacts:
             if contact.first.kind == "robot" and contact.second.kind in ("robot", "person"):
                 pair = (contact.first.number, contact.second.number)
+                pair = (min(pair), max(pair)) if pair[1] in self.robot_bodies else pair  # a rider belongs to a robot
                 self._touched[pair] = max(self._touched.get(pair, 0.0), contact.depth)
 
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
@@ -316,4 +375,10 @@ class PhysicsWorld(RigidWorld):
             return self.robot_bodies[party.number].mass
         if party.kind == "person":
             return float(self.people.people.mass[self.people.row[party.number]])
+        if (
+            party.kind == "wall"
+            and party.number < 0
+            and (leaf := self.stage.doors[-1 - party.number]).opening == "push"
+        ):
+            return leaf.mass
         return self.stage.props[party.number].weight if party.kind == "prop" else math.inf

@@ -8,12 +8,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from crowdbot.core import Walls
+from crowdbot.world.physics.robots.link_forces import LinkForces
+from crowdbot.world.physics.robots.robot_body import RobotBody
 
 from .contacts import ContactReader
 from .engine_models import BodyDesign, RobotStart, compile_bodies
 from .people_bodies import PeopleBodies
 from .rigid_bodies import RigidBodies, update_frames
-from .robot_body import RobotBody
 from .stage import AbsentProp, PhysicsStage, PropBody
 
 __all__ = ["WorldBodies"]
@@ -39,6 +40,7 @@ class WorldBodies:
         robots: bodies of all robots by agent.
         people: bodies of people near robots and movable props.
         reader: reads the contacts of ``main``.
+        links: drag and kinematic links of its robots.
         model: model of ``main`` during a step, see :meth:`engine_steps`.
     """
 
@@ -143,6 +145,7 @@ class WorldBodies:
         }
         self.robots = dict(sorted(self.robots.items()))
         compiled = self.main.compiled
+        self.links = LinkForces(self.main.robots.values(), self.step)
         self.reader = ContactReader(
             compiled.base, self.main.data, compiled.geoms, self.people.agent_of, self.people.swing_of
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -104,15 +104,22 @@ class Renderer:
         self._whole, self.robots, self.stage, self.people, self.detail = whole, dict(robots), stage, motion, detail
         self._joints: Mapping[int, Mapping[str, float]] = {}
         self._coordinates: Floats | None = None
+        self._doors: Sequence[float] = ()
         self._scene: Scene
         self._visuals: Visuals | None = None
 
-    def show(self, scene: Scene, joints: Mapping[int, Mapping[str, float]] | None = None) -> None:
+    def show(
+        self,
+        scene: Scene,
+        joints: Mapping[int, Mapping[str, float]] | None = None,
+        doors: Sequence[float] | None = None,
+    ) -> None:
         """Set the scene for the following images.
 
         Args:
             scene: E = 1, with the agents and walls of the initial scene.
             joints: joint positions of robots by agent and name [rad, m] (default: the posture).
+            doors: how far each door is open, 0 to 1 (default: closed).
 
         Raises:
             InputError: the scene has several environments or other agents.
@@ -120,7 +127,7 @@ class Renderer:
         _checked(scene)
         if scene.shape[1] != len(self.people.row):
             raise InputError(f"renderer: the scene has {scene.shape[1]} agents, expected {len(self.people.row)}")
-        self._scene, self._joints, self._coordinates = scene, joints or {}, None
+        self._scene, self._joints, self._coordinates, self._doors = scene, joints or {}, None, doors or ()
 
     def show_engine(self, scene: Scene, coordinates: Floats) -> None:
         """Set the scene and the coordinates of the engine."""
@@ -167,6 +174,8 @@ class Renderer:
         else:
             for agent, robot in self.robots.items():
                 self._put(self._visuals, agent, robot)
+            for k, share in enumerate(self._doors):
+                data.qpos[self._visuals.joints[f"door{k}"]] = share * self.stage.doors[k].range
         mj = engine()
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)

@@ -76,6 +76,12 @@ class BaseKind(NamedTuple):
         return sum(fixed) / len(fixed) if fixed else 0.0
 
     @property
+    def wheelbase_of_axles(self) -> float:
+        """Distance [m] between the first and the last axle of all wheels."""
+        places = [float(wheel.center[0]) for wheel in self.wheels]
+        return max(places) - min(places) if places else 0.0
+
+    @property
     def wheelbase(self) -> float:
         """Distance [m] between steered and other wheels; 0 without steering."""
         steered = [float(wheel.center[0]) for wheel in self.wheels if wheel.steering]
@@ -119,7 +125,7 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
         if below and name not in moving and name not in castors and not legs:
             castors.append(name)
     named, why = (kind, "given") if kind else _kind(found, legs, plugins, model)
-    driven = tuple(wheel.joint for wheel in _driven(found, named))
+    driven = tuple(wheel.joint for wheel in _driven(found, named, model))
     return BaseKind(named, why, tuple(found), driven, tuple(castors), legs, ground)
 
 
@@ -238,10 +244,14 @@ def _kind(
     return ("differential", f"{len(fixed)} wheels on one axle") if len(fixed) > 1 else ("planar", "only one wheel")
 
 
-def _driven(wheels: list[FoundWheel], kind: str) -> list[FoundWheel]:
-    """Return the wheels that have motors: in a tricycle the steered one, in a car the others."""
+def _driven(wheels: list[FoundWheel], kind: str, model: RobotModel) -> list[FoundWheel]:
+    """Return the wheels that have motors: in a tricycle the steered one, in a car the others.
+
+    A tricycle whose file gives motors to the unsteered wheels alone is driven by these.
+    """
+    steered = [wheel for wheel in wheels if wheel.steering]
+    fixed = [wheel for wheel in wheels if not wheel.steering]
     if kind == "tricycle":
-        return [wheel for wheel in wheels if wheel.steering]
-    if kind == "ackermann":
-        return [wheel for wheel in wheels if not wheel.steering]
-    return wheels
+        motors = [bool(model.joints[wheel.joint].motor.kind) for wheel in (*steered, *fixed)]
+        return fixed if any(motors[len(steered) :]) and not any(motors[: len(steered)]) else steered
+    return fixed if kind == "ackermann" else wheels

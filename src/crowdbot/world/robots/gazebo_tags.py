@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 from crowdbot.core import Element, InputError, parse_number
 
-__all__ = ["DriveParameters", "FoundSensor", "find_sensors", "read_drive_parameters"]
+__all__ = ["DriveParameters", "FoundSensor", "find_sensors", "guess_sensors", "read_drive_parameters"]
 
 
 class FoundSensor(NamedTuple):
@@ -22,10 +24,16 @@ class FoundSensor(NamedTuple):
 
 
 class DriveParameters(NamedTuple):
-    """Numbers of drive plugins, by name; and the names of plugins."""
+    """Numbers of drive plugins and controllers by name, the names of plugins, and where each number is from."""
 
     plugins: tuple[str, ...]
     values: dict[str, float]
+    sources: Mapping[str, str] = MappingProxyType({})
+
+    def extend(self, plugins: tuple[str, ...], values: Mapping[str, float], source: str) -> DriveParameters:
+        """Return the parameters with those of a controller, which come first."""
+        sources = {**self.sources, **dict.fromkeys(values, source)}
+        return DriveParameters((*plugins, *self.plugins), {**self.values, **values}, sources)
 
 
 NAMES = {
@@ -100,6 +108,34 @@ def find_sensors(root: Element) -> list[FoundSensor]:
             name = f"{name}_{len(unique)}"
         unique.append(one._replace(name=name))
     return unique
+
+
+LINK_NAMES = {
+    "lidar-2d": r"(?:^|_)(?:scan|laser|lidar|lds|rplidar|hokuyo)\d*(?:_(?:link|frame))?$",
+    "imu": r"(?:^|_)imu\d*(?:_(?:link|frame))?$",
+}
+"""Names of links on which a sensor is guessed, by type of sensor."""
+COMMON = {
+    "lidar-2d": {"rays": "360", "range-min": "0.1", "range-max": "10", "rate": "10"}, "imu": {"rate": "100"},
+}  # fmt: skip
+
+
+def guess_sensors(links: Sequence[str], found: Sequence[FoundSensor]) -> list[FoundSensor]:
+    """Return sensors after which links are named, one of each type that the file does not describe.
+
+    >>> [one.link for one in guess_sensors(["base_link", "base_scan", "imu_link"], [])]
+    ['base_scan', 'imu_link']
+    """
+    types = {one.attributes.get("type", "").replace("-3d", "-2d") for one in found}
+    guesses = []
+    for kind, pattern in LINK_NAMES.items():
+        link = next((name for name in links if re.search(pattern, name.lower())), None)
+        if link is not None and kind not in types:
+            name = "scan" if kind == "lidar-2d" else "imu"
+            used = [one.name for one in found]
+            name = name if name not in used else f"{name}_guess"
+            guesses.append(FoundSensor(name, link, {"type": kind, **COMMON[kind]}, f"name of the link {link[:60]!r}"))
+    return guesses
 
 
 def _sensor(sensor: Element, link: str) -> list[FoundSensor]:

@@ -54,9 +54,9 @@ def check_joint(robot: Robot, joint: str, position: float) -> None:
 def move_joint(world: World, robot: int, joint: str, position: float, environment: int = 0) -> None:
     """Give a joint of a robot a target position [rad or m], which is kept until it is replaced.
 
-    In the physics world, the position motor of the joint moves it; a joint without one is held at the position. In the
-    plane, the bodies of the robot for sensors and cameras are in the new posture at once; without bodies, nothing
-    changes.
+    In the physics world, the position motor of the joint moves it; a joint without one moves there at its maximum speed
+    and is held. In the plane, the bodies of the robot for sensors and cameras are in the new posture at once; without
+    bodies, nothing changes.
 
     Args:
         world: the world.

@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
+from crowdbot.world.robots.drives.drive import Drive
+from crowdbot.world.robots.drives.servo import CommandDelay
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
-from .drive import Drive
+from .link_dynamics import LinkDynamics, link_problem
 from .mount import SensorMount
 from .robot_file import FILE, read_robot_file
-from .servo import CommandDelay
 from .wheel import Wheel
 
 __all__ = ["Robot", "builtin_robots", "spatial"]
@@ -29,6 +30,10 @@ SUNK = 2e-3
 """Depth [m] of colliders below the root above which the root is not on the ground."""
 CLEAR = 0.01
 """Ground clearance [m] of a robot made by :meth:`Robot.disc`, which avoids friction."""
+
+
+STEP, SLOPE = 0.2, 0.1
+"""Default step that a robot with wheels passes, relative to the radius of a driven wheel, and default slope."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +52,12 @@ class Robot:
         wheels: driven and steered wheels.
         posture: joint positions while driving [rad, m]; 0 for joints left out.
         about: description, one line.
+        seat: whether it has the seat of a wheelchair.
+        rider: kind or body of the person in the seat, in trials that name no other; empty for none.
+        links: drag of links, and links that contacts do not move.
+        max_step: height [m] of the largest step that it passes in the physics world (default: a fifth of the radius
+            of its smallest driven wheel; 0 with a planar base).
+        max_slope: largest slope that it passes, as rise over length (default: 0.1; 0 with a planar base).
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
@@ -63,6 +74,11 @@ class Robot:
     wheels: tuple[Wheel, ...] = ()
     posture: Mapping[str, float] = field(default_factory=dict)
     about: str = ""
+    seat: bool = False
+    rider: str = ""
+    links: tuple[LinkDynamics, ...] = ()
+    max_step: float = math.nan
+    max_slope: float = math.nan
 
     def __post_init__(self) -> None:
         CommandDelay(self.latency)
@@ -80,6 +96,12 @@ class Robot:
             )
         object.__setattr__(self, "footprint", shape)
         self.model.positions(self.posture)
+        for link in self.links:
+            if problem := link_problem(link, self.model):
+                raise InputError(f"Robot: <link> {problem}")
+        if self.rider and not self.seat:
+            raise InputError(f'Robot: rider={self.rider[:60]!r} needs a seat: extends="wheelchair"')
+        self._set_ground_limits()
         names = [mount.name for mount in self.mounts]
         for mount in self.mounts:
             if names.count(mount.name) > 1:
@@ -95,6 +117,17 @@ class Robot:
                 if name not in turning_joints:
                     meant = did_you_mean(name, self.model.joints)
                     raise InputError(f"Robot: the {what} joint {name!r} is not a rotating joint{meant}")
+
+    def _set_ground_limits(self) -> None:
+        """Set the largest step and slope that are not given, and check them."""
+        wheels = [wheel.radius for wheel in self.wheels if wheel.driven] if self.base == "wheels" else []
+        usual = {"max_step": STEP * min(wheels, default=0.0), "max_slope": SLOPE if wheels else 0.0}
+        for name, value in usual.items():
+            given = getattr(self, name)
+            if math.isnan(given):
+                object.__setattr__(self, name, value)
+            elif not 0.0 <= given < math.inf:
+                raise InputError(f"Robot: {name} = {given} of {self.name} must be finite and at least 0")
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
@@ -204,7 +237,7 @@ class Robot:
     def wheel_speeds(self, twist: Twist) -> dict[str, float]:
         """Return the wheel speeds [rad/s] by joint without slip along the rolling directions.
 
-        Valid for plain wheels and for wheels with rollers that slide along the axle.
+        Rollers slide across their axes: a wheel with rollers at an angle ``a`` also turns for motion along its axle.
 
         >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
@@ -218,6 +251,8 @@ class Robot:
                 matrix = poses[joint.parent] @ joint.origin
                 axle = matrix[:3, :3] @ joint.axis
                 rolling = np.array([axle[1], -axle[0]])  # axle x up
+                if wheel.rollers:
+                    rolling += math.tan(wheel.rollers) * np.array([axle[0], axle[1]])
                 speeds[wheel.joint] = round(float(_carried(twist, matrix) @ rolling) / wheel.radius, 12)
         return speeds
 
@@ -253,7 +288,7 @@ def builtin_robots() -> tuple[str, ...]:
     """Return the names of the built-in robots.
 
     >>> builtin_robots()
-    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair')
+    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair', 'wheelchair-3d', 'wheelchair-rider')
     """
     return tuple(sorted(entry.name for entry in _assets().iterdir() if (entry / FILE).is_file()))
 

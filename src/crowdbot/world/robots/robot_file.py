@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib.resources
 import math
 import types
 from collections.abc import Mapping
@@ -27,20 +28,24 @@ from crowdbot.core import (
     read_bytes,
 )
 from crowdbot.sensors import Sensor, preset
+from crowdbot.world.robots.drives.drive import Drive
 from crowdbot.world.urdf import RobotModel, read_urdf
 
-from .drive import Drive
+from .link_dynamics import LinkDynamics, read_link
 from .mount import SensorMount
+from .robot_base_file import extend_robot
 from .wheel import Wheel
 
 __all__ = ["FILE", "read_robot_file"]
 
 FILE = "robot.xml"
+SHIPPED = Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots")))
+"""Folder of the built-in robots."""
 
 KNOWN: dict[str, tuple[str, ...]] = {
-    "robot": ("name", "urdf", "about", "base"),
+    "robot": ("name", "urdf", "about", "base", "extends", "default-sensors", "seat", "rider", "max-step", "max-slope"),
     "footprint": ("points", "radius"),
-    "wheel": ("joint", "radius", "steering", "driven"),
+    "wheel": ("joint", "radius", "steering", "driven", "rollers"),
     "posture": ("joint", "position"),
 }
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -58,6 +63,8 @@ def read_robot_file(folder: Path, *, trust: bool = False) -> dict[str, Any]:
     reader = _Reader(str(path), folder, trust)
     if root.tag != "robot":
         raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, expected <robot>")
+    if reader.words(root).get("extends"):
+        root, reader.model_folder = extend_robot(root, folder, reader.shipped)
     values = reader.robot(root)
     reader.finish()
     return values
@@ -68,6 +75,7 @@ class _Reader:
 
     def __init__(self, place: str, folder: Path, trust: bool) -> None:
         self.place, self.folder, self.trust = place, folder, trust
+        self.model_folder = folder
         self.found: list[tuple[float, str]] = []
 
     def say(self, element: Element, sentence: str) -> None:
@@ -82,7 +90,9 @@ class _Reader:
         row = self.words(root)
         values: dict[str, Any] = {"name": row.get("name") or self.folder.resolve().name, "about": row.get("about", "")}
         values["base"] = row.get("base", "wheels")
-        parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": []}
+        values |= {"seat": row.get("seat") == "true", "rider": row.get("rider", "")}
+        values |= self.ground_limits(root)
+        parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": [], "link": []}
         once: set[str] = set()
         for inner in root.children:
             self.tag(inner, ("drive", "footprint", *parts))
@@ -108,7 +118,19 @@ class _Reader:
             "mounts": tuple(mounts),
             "wheels": tuple(parts["wheel"]),
             "posture": posture,
+            "links": tuple(parts["link"]),
         }
+
+    def ground_limits(self, root: Element) -> dict[str, float]:
+        """Return the largest step and slope that the robot passes, where the file gives them."""
+        found = {}
+        for key in ("max-step", "max-slope"):
+            if key in root.attributes:
+                value = self.number(root, key)
+                found[key.replace("-", "_")] = max(0.0, value)
+                if value < 0.0:
+                    self.say(root, f'{key}="{root.attributes[key][:40]}" must be at least 0')
+        return found
 
     def tag(self, element: Element, known: tuple[str, ...]) -> None:
         """Record an unknown element and return the tag that was probably meant."""
@@ -144,16 +166,16 @@ class _Reader:
         if not name:
             self.say(root, "needs the attribute 'urdf': the URDF file in the same folder")
             return None
-        path = self.folder / name
+        path = self.model_folder / name
         try:
-            inside = path.resolve().is_relative_to(self.folder.resolve())
+            inside = path.resolve().is_relative_to(self.model_folder.resolve())
         except (OSError, RuntimeError, ValueError):
             inside = False
         if not inside:
             self.say(root, f"urdf={name[:80]!r} is outside the robot folder {self.folder}")
             return None
         try:
-            return read_urdf(path, folder=self.folder)
+            return read_urdf(path, folder=self.model_folder)
         except RobotError as error:
             self.found += [(math.inf, sentence) for sentence in error.problems]
             return None
@@ -181,6 +203,22 @@ class _Reader:
             self.say(element, f'{key}="{text[:40]}" {error}')
             return 1.0
 
+    def shipped(self, name: str) -> Path:
+        """Return the file of a built-in robot."""
+        known = sorted(entry.name for entry in SHIPPED.iterdir() if (entry / FILE).is_file())
+        if name not in known:
+            meant = f"{did_you_mean(name, known)}; built-in robots are {', '.join(known)}"
+            raise RobotError(f"{self.place}: extends={name[:60]!r} is not a built-in robot{meant}")
+        return SHIPPED / name / FILE
+
+    def link(self, element: Element) -> LinkDynamics | None:
+        """Return the dynamics of a link."""
+        try:
+            return read_link(element.attributes)
+        except InputError as error:
+            self.say(element, str(error))
+            return None
+
     def wheel(self, element: Element) -> Wheel | None:
         """Return a wheel."""
         row = self.words(element)
@@ -192,8 +230,9 @@ class _Reader:
         if radius <= 0.0:
             self.say(element, f'radius="{element.attributes["radius"][:40]}" must be above 0')
             return None
+        rollers = self.number(element, "rollers") if "rollers" in row else None
         try:
-            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true")
+            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true", rollers)
         except InputError as error:
             self.say(element, str(error))
             return None

@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from crowdbot.core import Element, RobotError, format_xml
-from crowdbot.world.urdf import RobotModel, parse_robot_file, read_urdf
+from crowdbot.world.robots.drives.base_drive import drive_type, middle_angle, rollers_of, turns_wheels, wheel_attributes
+from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
 from .base_kind import BaseKind, recognize_base
-from .gazebo_tags import DriveParameters, find_sensors, read_drive_parameters
+from .controllers import JointLimits, find_controller_files, read_controllers, read_joint_limits
+from .gazebo_tags import DriveParameters, find_sensors, guess_sensors, read_drive_parameters
+from .guess_table import DERIVED, FILE, GIVEN, GUESS, Guess, GuessTable
+from .robot_urdf import add_masses, add_motors, add_shapes, copy_elements, copy_meshes, format_number
 
 __all__ = ["Guess", "RobotFolder", "import_robot"]
 
 GROUND_LINK = "drive_center"
-GRAVITY = 9.81
-WHEELED = ("differential", "ackermann", "tricycle")
-"""Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
-
-
-class Guess(NamedTuple):
-    """A value of a robot folder: what, its value, where it is from, and how to change it."""
-
-    what: str
-    value: str
-    source: str
-    change: str
 
 
 @dataclass
@@ -39,9 +31,10 @@ class RobotFolder:
         name: name of the robot.
         texts: text files by path in the folder.
         copies: mesh files to copy, by path in the folder.
-        guesses: table of everything that is recognized or guessed.
+        guesses: table of everything that is read, derived or guessed.
         remarks: sentences about repairs and parts that are left out.
         kind: kind of base.
+        mass: total mass [kg].
     """
 
     name: str
@@ -50,10 +43,25 @@ class RobotFolder:
     guesses: list[Guess] = field(default_factory=list)
     remarks: tuple[str, ...] = ()
     kind: str = ""
+    mass: float = 0.0
 
-    def guess(self, what: str, value: str, source: str, change: str) -> None:
-        """Add a row to the table."""
-        self.guesses.append(Guess(what, value, source, change))
+
+@dataclass
+class _Conversion:
+    """State shared by the functions below."""
+
+    name: str
+    table: GuessTable
+    model: RobotModel
+    base: BaseKind
+    parameters: DriveParameters
+    joints: Mapping[str, JointLimits]
+    wheeled: bool
+    mass: float = 0.0
+
+    @property
+    def urdf(self) -> str:
+        return f"{self.name}.urdf"
 
 
 def import_robot(
@@ -64,72 +72,107 @@ def import_robot(
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
     kind: str = "",
+    controllers: Sequence[Path] = (),
+    values: Mapping[str, str] | None = None,
 ) -> RobotFolder:
-    """Return the robot folder of a URDF or xacro file.
+    """Return the robot folder of a URDF, xacro or SDF file.
 
     Args:
         source: the file.
         name: name of the robot.
         packages, arguments, environment: as in :func:`read_urdf`.
         kind: kind of base, see :data:`BASE_KINDS` (default: recognized).
+        controllers: YAML files with parameters of ROS controllers (default: those that the robot file names, or that
+            are in its package).
+        values: values instead of those of the table, by their name there, such as ``{"max-speed": "0.5"}``.
 
     Raises:
-        RobotError: the file has errors, or has neither shapes nor mass.
-        InputError: ``kind`` is unknown.
+        RobotError: the file has errors, or has no mass.
+        InputError: ``kind`` is unknown, a controller file cannot be read, or a value is invalid.
     """
     document = parse_robot_file(source, packages=packages, arguments=arguments, environment=environment)
     model = read_urdf(source, packages=packages, arguments=arguments, environment=environment, colliders="hull")
-    if model.mass <= 0.0 or not any(link.collisions or link.visuals for link in model.links.values()):
-        raise RobotError(f"{source}: the robot has no shapes or no mass; crowdbot needs both")
-    parameters = read_drive_parameters(document.root)
+    if model.mass <= 0.0:
+        raise RobotError(f"{source}: the robot has no mass and no shapes to compute it from")
+    table = GuessTable(values)
+    if not any(link.collisions or link.visuals for link in model.links.values()):
+        add_shapes(table, document.root, model, f"{name}.urdf")
+        model = read_urdf(format_xml(copy_elements(document.root, model.name)), colliders="hull")
+    parameters, remarks = _parameters(source, document, model, controllers)
     base = recognize_base(model, parameters.plugins, kind)
-    made = RobotFolder(name, remarks=model.warnings, kind=base.kind)
-    made.guess("kind of base", base.kind, base.why, "--base KIND")
-    made.guess("mass", f"{model.mass:.4g} kg", "<inertial> of the file", f"<mass> in {name}.urdf")
-    wheeled = _uses_wheels(model, base)
-    root = _robot_element(made, model, base, parameters, wheeled)
-    _sensor_elements(made, root, document.root, model)
-    urdf = _expanded(made, document.root, model, base, wheeled)
-    _add_motors(made, urdf, model, base, parameters, wheeled)
-    made.texts = {f"{name}.urdf": format_xml(urdf), "robot.xml": format_xml(root)}
+    status = GIVEN if kind else (FILE if base.why.startswith("the plugin") else DERIVED)
+    table.rows.insert(0, Guess("kind of base", base.kind, base.why, "--base KIND", status))
+    done = _Conversion(
+        name, table, model, base, parameters, read_joint_limits(document.root), turns_wheels(model, base)
+    )
+    root = _robot_element(done)
+    _sensor_elements(done, root, document.root)
+    urdf, copies = _urdf_element(done, document.root)
+    add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), done.urdf)
+    table.check_names()
+    made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
+    made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, done.mass
+    made.texts["import.json"] = _record(made, source)
     return made
 
 
-def _uses_wheels(model: RobotModel, base: BaseKind) -> bool:
-    """Return whether motors turn the wheels in the physics world."""
-    needed = 2 if base.kind == "differential" else 1
-    links = [model.links[wheel.link] for wheel in base.wheels]
-    return base.kind in WHEELED and len(base.driven) >= needed and all(link.collisions for link in links)
+def _record(made: RobotFolder, source: Path) -> str:
+    """Return the table as JSON."""
+    rows = [guess._asdict() for guess in made.guesses]
+    return json.dumps({"source": source.name, "table": rows, "remarks": list(made.remarks)}, indent=1) + "\n"
 
 
-def _number(value: float) -> str:
-    return f"{value:.9g}"
+def _parameters(
+    source: Path, document: RobotDocument, model: RobotModel, controllers: Sequence[Path]
+) -> tuple[DriveParameters, list[str]]:
+    """Return the parameters of plugins and controller files; a controller file comes first."""
+    parameters, remarks = read_drive_parameters(document.root), []
+    if controllers:
+        found = [one for path in controllers for one in read_controllers(path)]
+        if not found:
+            remarks.append(f"no controller in {', '.join(str(path) for path in controllers)} moves the base")
+    else:
+        found, remarks = find_controller_files(source, document.root, tuple(model.joints), document.folders.find)
+    for one in found[1:]:
+        remarks.append(f"the controller {one.name!r} in {one.place} is not used; {found[0].name!r} is")
+    for one in found[:1]:
+        missing = [joint for joint in one.joints if joint not in model.joints]
+        if missing:
+            remarks.append(f"the controller {one.name!r} in {one.place} names {missing[0]!r}, which is not a joint")
+        label = f"{one.name} in {Path(one.place).name}"
+        parameters = parameters.extend((one.kind,), one.values, label)
+    return parameters, remarks
 
 
-def _robot_element(
-    made: RobotFolder, model: RobotModel, base: BaseKind, parameters: DriveParameters, wheeled: bool
-) -> Element:
+def _robot_element(done: _Conversion) -> Element:
     """Return <robot> with its drive and wheels."""
-    name = made.name
-    root = Element("robot", {"name": name, "urdf": f"{name}.urdf", "base": "wheels" if wheeled else "planar"})
+    model, base, table = done.model, done.base, done.table
+    root = Element("robot", {"name": done.name, "urdf": done.urdf, "base": "wheels" if done.wheeled else "planar"})
     root.attributes["about"] = f"{base.kind} base, from {model.name}"
-    how = "its wheels are turned by motors" if wheeled else "the base is moved directly"
-    made.guess("physics world", root.attributes["base"], f"{base.kind} base: {how}", "base= in robot.xml")
-    root.children.append(Element("drive", _drive(made, model, base, parameters)))
+    how = "its wheels are turned by motors" if done.wheeled else "the base is moved directly"
+    table.add("physics world", root.attributes["base"], f"{base.kind} base: {how}", "base= in robot.xml", DERIVED)
+    root.children.append(Element("drive", _drive(done)))
     if not len(model.points()):
-        made.guess("footprint", "outline of the visuals", "the file has no colliders", "<footprint> in robot.xml")
-        root.children.append(Element("footprint", {"radius": _number(_reach(model))}))
-    if wheeled:
-        for wheel in base.wheels:
-            row = {"joint": wheel.joint, "radius": _number(wheel.radius)}
-            row |= {"steering": wheel.steering} if wheel.steering else {}
-            row |= {} if wheel.joint in base.driven else {"driven": "false"}
-            if wheel.joint in base.driven or wheel.steering:
-                root.children.append(Element("wheel", row))
+        table.add("footprint", "outline of the visuals", "the file has no colliders", "<footprint> in robot.xml", GUESS)
+        root.children.append(Element("footprint", {"radius": format_number(_reach(model))}))
     for wheel in base.wheels:
-        made.guess(f"wheel {wheel.joint}", f"radius {wheel.radius:.4g} m", "its shape", "<wheel> in robot.xml")
+        radius = table.number(
+            f"wheel {wheel.joint}", wheel.radius, "radius of its shape", "<wheel> in robot.xml", DERIVED, unit="m"
+        )
+        row = {"joint": wheel.joint, "radius": format_number(radius)}
+        row |= {"steering": wheel.steering} if wheel.steering else {}
+        row |= {} if wheel.joint in base.driven else {"driven": "false"}
+        rollers = rollers_of(base, wheel) if done.wheeled else None
+        if rollers is not None:
+            source = "usual arrangement" if rollers else "across the axle"
+            change = "rollers= of <wheel> in robot.xml"
+            table.add(f"rollers {wheel.joint}", f"{rollers:.4g} rad", source, change, GUESS)
+            row["rollers"] = format_number(rollers)
+        if done.wheeled and (wheel.joint in base.driven or wheel.steering):
+            root.children.append(Element("wheel", row))
     for link in base.castors:
-        made.guess(f"castor {link}", "glides", "it touches the ground without a motor", f"<mu1> in {name}.urdf")
+        why = "it touches the ground without a motor"
+        table.add(f"castor {link}", "glides", why, f"<mu1> in {done.urdf}", DERIVED)
     return root
 
 
@@ -141,157 +184,127 @@ def _reach(model: RobotModel) -> float:
     return max(math.hypot(*(matrix[:2, :3] @ row + matrix[:2, 3])) for matrix, points in rows for row in points)
 
 
-def _drive(made: RobotFolder, model: RobotModel, base: BaseKind, parameters: DriveParameters) -> dict[str, str]:
-    """Return the attributes of <drive>, and list each as known or guessed."""
-    given, plugin = parameters.values, "the drive plugin"
-    limits = [model.joints[name].motor.velocity for name in base.driven]
-    speeds = [v for v in limits if math.isfinite(v) and v > 0.0]
-    radius = base.wheels[0].radius if base.wheels else 0.0
-    rows: list[tuple[str, float, str]] = []
+def _drive(done: _Conversion) -> dict[str, str]:
+    """Return the attributes of <drive>, and list each with its source."""
+    base, given, sources = done.base, done.parameters.values, done.parameters.sources
+    kind = drive_type(base, done.wheeled)
+    done.table.add("drive", kind, f"{base.kind} base", "type= of <drive> in robot.xml", DERIVED)
+    row = {"type": kind}
 
-    def choose(key: str, guess: float, why: str) -> float:
-        value, source = (given[key], plugin) if key in given else (guess, why)
-        rows.append((key.replace("_", "-"), value, source))
+    def choose(key: str, guess: float, why: str, status: str, unit: str) -> float:
+        if key in given:
+            guess, why, status = given[key], sources.get(key, "the drive plugin"), FILE
+        name = key.replace("_", "-")
+        value = done.table.number(name, guess, why, f"{name}= of <drive> in robot.xml", status, unit=unit)
+        row[name] = format_number(value)
         return value
 
-    from_joint = min(speeds) * radius if speeds else 0.0
-    usable = 0.05 <= from_joint <= 5.0
-    guess = min(1.0, 10.0 * radius) if radius else 1.0
-    why = "joint limits" if usable else ("guess: 10 rad/s of the wheels" if radius else "guess")
-    speed = choose("max_speed", from_joint if usable else guess, why)
-    choose("max_acceleration", 1.0, "guess")
-    if base.kind in ("ackermann", "tricycle"):
-        drive = "ackermann-drive"
-        angles = [model.joints[wheel.steering].upper for wheel in base.wheels if wheel.steering]
-        angle = min([value for value in angles if 0.05 < value < 1.4], default=0.6)
-        choose("max_steering", angle, "joint limits" if angle in angles else "guess")
-        choose("max_steering_rate", 1.0, "guess")
-        rows.append(("wheelbase", base.wheelbase or given.get("wheelbase", 0.6), "places of the wheels"))
+    speed = choose("max_speed", *_top_speed(done), "m/s")
+    choose("max_acceleration", 1.0, "common value", GUESS, "m/s2")
+    if kind in ("ackermann-drive", "tricycle-drive"):
+        choose("max_steering", *_steering(done), "rad")
+        choose("max_steering_rate", 1.0, "common value", GUESS, "rad/s")
+        if base.wheelbase:
+            given = {key: value for key, value in given.items() if key != "wheelbase"}
+        choose("wheelbase", base.wheelbase or 0.6, "places of the wheels" if base.wheelbase else "common value",
+               DERIVED if base.wheelbase else GUESS, "m")  # fmt: skip
     else:
-        drive = "omnidirectional" if base.kind in ("mecanum", "omnidirectional", "legged") else "differential-drive"
         track = base.track or given.get("track", 0.5)
-        turning = min(2.0 * speed / track, 3.0) if track > 0.05 else 1.5
-        choose("max_turn_rate", turning, "speed and track" if base.track else "guess")
-        choose("max_turn_acceleration", 3.0, "guess")
-    made.guess("drive", drive, f"{base.kind} base", "type= of <drive> in robot.xml")
-    for key, value, source in rows:
-        made.guess(key, f"{value:.4g}", source, f"{key}= of <drive> in robot.xml")
-    return {"type": drive} | {key: _number(value) for key, value, _ in rows}
+        wheels, reach, most = wheel_attributes(base, track, done.wheeled)
+        turning = min(speed / reach, most) if reach > 0.025 else 1.5
+        why = f"speed and places of the wheels, at most {most:g} rad/s" if base.track else "common value"
+        turn = choose("max_turn_rate", turning, why, DERIVED if base.track else GUESS, "rad/s")
+        choose("max_turn_acceleration", 3.0, "common value", GUESS, "rad/s2")
+        if kind == "legged-drive":
+            choose("max_side_speed", 0.5 * speed, "half of the maximum speed", GUESS, "m/s")
+        given = {}
+        for key, value, unit in wheels:
+            if key == "first_angle":
+                done.table.add("first-angle", f"{value:.4g} rad", "places of the wheels", "first-angle=", DERIVED)
+                row["first-angle"] = format_number(value)
+            else:
+                choose(key, value, "places of the wheels", DERIVED, unit)
+        if wheels:
+            fastest = _wheel_limit(done)
+            need = (speed + turn * reach) * (math.sqrt(2.0) if kind == "mecanum-drive" else 1.0) / base.wheels[0].radius
+            why = "<limit> of the wheels" if fastest else "speed and turn rate"
+            choose("max_wheel_speed", fastest or need, why, FILE if fastest else DERIVED, "rad/s")
+    return row
 
 
-def _sensor_elements(made: RobotFolder, root: Element, source: Element, model: RobotModel) -> None:
-    """Add the sensors of Gazebo tags."""
-    for one in find_sensors(source):
+def _top_speed(done: _Conversion) -> tuple[float, str, str]:
+    """Return the maximum speed [m/s] of a base that no plugin or controller gives, with source and status."""
+    base = done.base
+    radius = base.wheels[0].radius if base.wheels else 0.0
+    commands = [done.joints[name].velocity for name in base.driven if name in done.joints]
+    limits = [done.model.joints[name].motor.velocity for name in base.driven]
+    for rows, why in ((commands, "<ros2_control> of the wheels"), (limits, "<limit> of the wheels")):
+        usable = [value * radius for value in rows if math.isfinite(value) and 0.05 <= value * radius <= 5.0]
+        if usable:
+            return min(usable), why, FILE
+    guess = min(1.0, 10.0 * radius) if radius else 1.0
+    return guess, "10 rad/s of the wheels" if radius else "common value", GUESS
+
+
+def _wheel_limit(done: _Conversion) -> float:
+    """Return the maximum speed [rad/s] of the driven wheels in the file, 0 without one."""
+    radius = done.base.wheels[0].radius
+    limits = [done.joints[name].velocity for name in done.base.driven if name in done.joints]
+    limits += [done.model.joints[name].motor.velocity for name in done.base.driven]
+    return min([value for value in limits if math.isfinite(value) and 0.05 <= value * radius <= 5.0], default=0.0)
+
+
+def _steering(done: _Conversion) -> tuple[float, str, str]:
+    """Return the largest steering angle [rad], with source and status."""
+    names = [wheel.steering for wheel in done.base.wheels if wheel.steering]
+    angles = [done.joints[name].position for name in names if name in done.joints]
+    angles += [done.model.joints[name].upper for name in names]
+    usable = [value for value in angles if value > 0.05]
+    middle = middle_angle(done.base, min(usable)) if usable else 0.0
+    return (middle, "<limit> of the steering joints", FILE) if middle else (0.6, "common value", GUESS)
+
+
+def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
+    """Add the sensors of Gazebo tags, and those that links are named after."""
+    change, model = "<sensor> in robot.xml", done.model
+    found = find_sensors(source)
+    for one in found:
         link = one.link or model.root
         if not one.attributes or link not in model.links:
             why = "there is no such link" if one.attributes else "its type is not supported"
-            made.guess(f"sensor {one.name}", "left out", f"{one.source}; {why}", "<sensor> in robot.xml")
+            done.table.add(f"sensor {one.name}", "left out", f"{one.source}; {why}", change, DERIVED)
             continue
         root.children.append(Element("sensor", {"name": one.name, "link": link} | one.attributes))
-        made.guess(f"sensor {one.name}", one.attributes["type"], one.source, "<sensor> in robot.xml")
+        done.table.add(f"sensor {one.name}", one.attributes["type"], one.source, change)
+    for one in guess_sensors(tuple(model.links), found):
+        root.children.append(Element("sensor", {"name": one.name, "link": one.link} | one.attributes))
+        done.table.add(f"sensor {one.name}", one.attributes["type"], one.source, change, GUESS)
     if not root.each("sensor"):
-        made.guess("sensors", "none", "no <sensor> in <gazebo> tags", "<sensor> in robot.xml")
+        done.table.add("sensors", "none", "no <sensor> in <gazebo> tags", change, DERIVED)
 
 
-def _expanded(made: RobotFolder, source: Element, model: RobotModel, base: BaseKind, wheeled: bool) -> Element:
-    """Return <robot> with links, joints and materials, and meshes in the folder."""
-    kept = [child for child in source.children if child.tag in ("link", "joint", "material")]
-    root = Element("robot", {"name": made.name}, [_copy(child) for child in kept])
-    names: dict[str, str] = {}
-    for element in _all(root):
-        if element.tag == "mesh" and "filename" in element.attributes:
-            reference = element.attributes["filename"].strip()
-            path = model.meshes.get(reference)
-            element.attributes["filename"] = names.setdefault(reference, _mesh_name(path, reference, names))
-            if path is not None:
-                made.copies[element.attributes["filename"]] = path
+def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str, Path]]:
+    """Return <robot> with links, joints, materials and friction, and the mesh files to copy."""
+    model, base = done.model, done.base
+    root = copy_elements(source, done.name)
+    copies = copy_meshes(root, model)
+    done.mass = add_masses(done.table, root, model, done.urdf)
     if abs(base.rear) > 0.005 and base.wheels and base.kind != "planar":
         root.children.append(Element("link", {"name": GROUND_LINK}))
         joint = Element("joint", {"name": f"{GROUND_LINK}_joint", "type": "fixed"})
         joint.children = [Element("parent", {"link": GROUND_LINK}), Element("child", {"link": model.root})]
-        joint.children.append(Element("origin", {"xyz": f"{_number(-base.rear)} 0 0"}))
+        joint.children.append(Element("origin", {"xyz": f"{format_number(-base.rear)} 0 0"}))
         root.children.append(joint)
-        made.guess(
-            "centre of turning", f"x = {base.rear:.4g} m", "axle of the wheels", f"{GROUND_LINK} in {made.name}.urdf"
-        )
-    gliding = [*base.castors, *([] if wheeled else [wheel.link for wheel in base.wheels])]
+        change = f"{GROUND_LINK} in {done.urdf}"
+        done.table.add("centre of turning", f"x = {base.rear:.4g} m", "axle of the wheels", change, DERIVED)
+    gliding = [*base.castors, *([] if done.wheeled else [wheel.link for wheel in base.wheels])]
     for name, link in model.links.items():
-        friction = 0.0 if name in gliding or (not wheeled and name in _feet(model, base)) else link.friction
+        friction = 0.0 if name in gliding or (not done.wheeled and name in _feet(model, base)) else link.friction
         if friction is not None:
-            root.children.append(Element("gazebo", {"reference": name}, [Element("mu1", {"value": _number(friction)})]))
-    return root
+            mu = Element("mu1", {"value": format_number(friction)})
+            root.children.append(Element("gazebo", {"reference": name}, [mu]))
+    return root, copies
 
 
 def _feet(model: RobotModel, base: BaseKind) -> set[str]:
     return {model.joints[name].child for name in base.legs}
-
-
-def _mesh_name(path: Path | None, reference: str, names: Mapping[str, str]) -> str:
-    """Return a new file name in ``meshes``."""
-    file = Path(reference.rpartition("/")[2] if path is None else path.name)
-    plain = "".join(letter if letter.isalnum() or letter in "_-" else "_" for letter in file.stem)[:60] or "mesh"
-    ending = file.suffix.lower()[:6]
-    name, number = f"meshes/{plain}{ending}", 2
-    while name in names.values():
-        name, number = f"meshes/{plain}-{number}{ending}", number + 1
-    return name
-
-
-def _add_motors(
-    made: RobotFolder, root: Element, model: RobotModel, base: BaseKind, parameters: DriveParameters, wheeled: bool
-) -> None:
-    """Add motors of wheels and other joints, and limits that the file does not give."""
-    elements = {joint.attributes.get("name", ""): joint for joint in root.each("joint")}
-    wheels = {wheel.joint: wheel for wheel in base.wheels}
-    swivels = {_parent_of(model, link) for link in base.castors} - {model.root}
-    motors: dict[str, str] = {}
-    for joint in model.movable:
-        if joint.size != 1 or joint.child in base.castors or (joint.child in swivels and not joint.motor.kind):
-            continue
-        wheel = wheels.get(joint.name)
-        if wheel is not None and not (wheeled and joint.name in base.driven):
-            continue
-        motors[joint.name] = "velocity" if wheel else "position"
-        if joint.motor.kind != motors[joint.name]:
-            source = "no transmission gives it" if not joint.motor.kind else f"instead of {joint.motor.kind}"
-            change = f"<ros2_control> in {made.name}.urdf"
-            made.guess(f"motor of {joint.name}", motors[joint.name], source, change)
-        if not 0.0 < joint.motor.effort < math.inf:
-            effort = model.mass * GRAVITY * wheel.radius / max(1, len(base.driven)) if wheel else max(10.0, model.mass)
-            effort = parameters.values.get("effort", effort) if wheel else effort
-            limit = next(iter(elements[joint.name].each("limit")), None)
-            if limit is None:
-                limit = Element("limit")
-                elements[joint.name].children.append(limit)
-            limit.attributes["effort"] = _number(effort)
-            if not 0.0 < joint.motor.velocity < math.inf:
-                limit.attributes["velocity"] = _number(3.0 / wheel.radius if wheel else 2.0)
-            made.guess(f"effort of {joint.name}", f"{effort:.3g}", "guess", f"<limit> in {made.name}.urdf")
-    if motors:
-        root.children.append(_control(motors))
-
-
-def _parent_of(model: RobotModel, link: str) -> str:
-    return next((joint.parent for joint in model.joints.values() if joint.child == link), "")
-
-
-def _control(motors: Mapping[str, str]) -> Element:
-    """Return <ros2_control> with the command types of joints."""
-    rows = [
-        Element("joint", {"name": name}, [Element("command_interface", {"name": kind})])
-        for name, kind in motors.items()
-    ]
-    return Element("ros2_control", {"name": "motors", "type": "system"}, rows)
-
-
-def _copy(element: Element) -> Element:
-    children = [_copy(child) for child in element.children]
-    return Element(element.tag, dict(element.attributes), children, stray=element.stray)
-
-
-def _all(element: Element) -> list[Element]:
-    found, waiting = [], [element]
-    while waiting:
-        found.append(waiting.pop())
-        waiting.extend(found[-1].children)
-    return found

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Element, InputError, RobotError, parse_number
 
 from .folders import Folders
+from .mesh_files import MeshFiles
 from .meshes import read_mesh, with_pieces
 from .model import Remark
 from .shapes import Mesh
@@ -38,7 +39,9 @@ class UrdfReader:
         self.found: list[tuple[int, str]] = []
         self.remarks: list[Remark] = []
         self.files: dict[str, Path] = {}
+        self.textures: dict[str, dict[str, Path]] = {}
         self.materials: dict[str, Color] = {}
+        self.mean_colors: dict[str, Color | None] = {}
         self.friction: dict[str, float] = {}
         self.springs: dict[str, dict[str, float]] = {}
         self.motors: dict[str, str] = {}
@@ -163,8 +166,12 @@ class UrdfReader:
         key = (str(path), scale)
         if key not in self._read:
             try:
-                self._read[key] = read_mesh(path, source, scale)
+                files = MeshFiles(self.folders, path)
+                self._read[key] = read_mesh(path, source, scale, files)
                 self.files[source] = path
+                self.textures[source] = files.found
+                for sentence in files.remarks:
+                    self.remark("ignored", element, sentence)
             except (InputError, OSError) as error:
                 self._read[key] = f"the mesh {source[:200]} cannot be used: {error}"
         mesh = self._read[key]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Element
 
 from .model import Link, LinkShape, RobotModel
-from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Texture
 from .transforms import quaternion
 
 __all__ = ["Geoms", "row"]
@@ -24,7 +25,10 @@ MOST_FACES = 150_000
 MOST_CORNERS = 64
 """Maximum number of vertices of a convex body in contacts; more are slower and not more accurate on a floor."""
 MOST_COLORS = 32
-"""A mesh with more colours is drawn in grey."""
+"""The colours of a mesh with more are rounded."""
+MOST_TESTED = 64
+"""Number of triangles that are tested first, since most meshes have an area there."""
+SMALLEST_AREA = 1e-12
 NOTHING = 1e-30
 """Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
@@ -54,6 +58,7 @@ class Geoms:
         self.files: dict[str, bytes] = {}
         self._parts: dict[int, list[tuple[Mesh, tuple[float, float, float, float]]]] = {}
         self._known: dict[tuple[int, bool], list[str]] = {}
+        self._materials: dict[tuple[bytes, tuple[float, float, float, float]], str] = {}
 
     def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
         """Return the geoms of a link.
@@ -81,16 +86,27 @@ class Geoms:
         return geoms
 
     def _painted(self, part: LinkShape) -> list[LinkShape]:
-        """Return a visual as one shape for each colour of its mesh; a colour in the robot file comes first."""
+        """Return a visual as one shape for each colour and texture of its mesh.
+
+        A colour in the robot file comes first.
+        """
         mesh = part.shape
         if part.color is not None or not isinstance(mesh, Mesh) or mesh.colors is None:
             return [part]
         if id(mesh) not in self._parts:
-            colors, which = np.unique(mesh.colors, axis=0, return_inverse=True)
-            if len(colors) > MOST_COLORS:
-                return [part]
-            rows = [(Mesh(mesh.source, mesh.vertices, mesh.faces[which.ravel() == k]), c) for k, c in enumerate(colors)]
-            self._parts[id(mesh)] = [(one, tuple((color / 255.0).tolist())) for one, color in rows]
+            rows = []
+            plain = np.ones(len(mesh.faces), dtype=bool)
+            for texture in mesh.textures:
+                plain[texture.first : texture.last] = False
+                whole = texture._replace(first=0, last=texture.last - texture.first)
+                faces = mesh.faces[texture.first : texture.last]
+                one = dataclasses.replace(mesh, faces=faces, colors=None, pieces=(), textures=(whole,))
+                rows.append((one, texture.color))
+            colors, which = distinct_colors(mesh.colors[plain])
+            for k, color in enumerate(colors):
+                one = Mesh(mesh.source, mesh.vertices, mesh.faces[plain][which == k])
+                rows.append((one, tuple((color / 255.0).tolist())))
+            self._parts[id(mesh)] = rows
         return [LinkShape(one, part.origin, part.name, color) for one, color in self._parts[id(mesh)]]
 
     def _parse_shape(
@@ -101,6 +117,9 @@ class Geoms:
         if not isinstance(part.shape, Mesh):
             return [Element("geom", {"name": name, **_sized(part.shape, wheel), **placed, **values})]
         files = self._mesh(part.shape, collision=values["group"] == "3")
+        if part.shape.textures and part.shape.colors is None and values["group"] != "3":
+            del values["rgba"]
+            values["material"] = self._material(part.shape.textures[0])
         names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
         return [
             Element("geom", {"name": one, "type": "mesh", "mesh": file, **placed, **values})
@@ -111,15 +130,18 @@ class Geoms:
         key = (id(mesh), collision)
         if key in self._known:
             return self._known[key]
+        shown = mesh
         if collision:
             bodies = [(piece.vertices, piece.faces) for piece in mesh.pieces]
         else:
-            bodies = [(mesh.vertices, mesh.faces[k : k + MOST_FACES]) for k in range(0, len(mesh.faces), MOST_FACES)]
+            shown = drawable(mesh)
+            bodies = [(shown.vertices, shown.faces[k : k + MOST_FACES]) for k in range(0, len(shown.faces), MOST_FACES)]
         names = []
         for vertices, faces in bodies:
             name = f"{self.prefix}mesh{len(self.files)}"
-            file = f"{name}.stl"
-            self.files[file] = _stl(vertices, faces)
+            drawn = shown.uv is not None and mesh.colors is None and not collision
+            file = f"{name}.obj" if drawn else f"{name}.stl"
+            self.files[file] = _obj(vertices, faces, shown.uv) if drawn else _stl(vertices, faces)
             values = {"name": name, "file": file, "inertia": "convex" if collision else "shell"}
             if collision:
                 values["maxhullvert"] = str(MOST_CORNERS)
@@ -127,6 +149,17 @@ class Geoms:
             names.append(name)
         self._known[key] = names
         return names
+
+    def _material(self, texture: Texture) -> str:
+        """Return the name of the material of a texture, with its assets."""
+        key = (texture.image, texture.color)
+        if key not in self._materials:
+            name = f"{self.prefix}texture{len(self.files)}"
+            self.files[f"{name}.png"] = texture.image
+            self.meshes.append(Element("texture", {"name": name, "type": "2d", "file": f"{name}.png"}))
+            self.meshes.append(Element("material", {"name": name, "texture": name, "rgba": row(texture.color)}))
+            self._materials[key] = name
+        return self._materials[key]
 
 
 def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
@@ -161,6 +194,61 @@ def _friction_attributes(friction: float | None) -> dict[str, str]:
     if friction < SMOOTH:
         return {"condim": "1", "priority": "1"}
     return {"friction": row((friction, 0.005, 0.0001)), "priority": "1"}
+
+
+def distinct_colors(colors: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """Return at most 32 colours ``[K, 4]`` and the number ``[M]`` of each row; many colours are rounded.
+
+    >>> distinct_colors(np.array([[9, 0, 0, 255], [0, 0, 0, 255], [9, 0, 0, 255]], dtype=np.uint8))[1].tolist()
+    [1, 0, 1]
+    """
+    bits = 0
+    while True:
+        rounded = np.minimum((colors >> bits << bits) + ((1 << bits) >> 1), 255).astype(np.uint8)
+        found, which = np.unique(rounded, axis=0, return_inverse=True)
+        if len(found) <= MOST_COLORS:
+            return found, np.asarray(which, dtype=np.int64).ravel()
+        bits += 1
+
+
+def drawable(mesh: Mesh) -> Mesh:
+    """Return a mesh that MuJoCo accepts: triangles with an area, and at least four points.
+
+    A mesh of one triangle gets a point 0.1 mm below it; a mesh without area has no triangles.
+    """
+    corners = mesh.vertices[mesh.faces[:MOST_TESTED]].astype(np.float32).astype(np.float64)
+    if len(np.unique(corners.reshape(-1, 3), axis=0)) >= 4 and _area(corners) > SMALLEST_AREA:
+        return mesh
+    whole = mesh.vertices[mesh.faces].astype(np.float32).astype(np.float64)
+    if _area(whole) <= SMALLEST_AREA:
+        return dataclasses.replace(mesh, faces=mesh.faces[:0])
+    if len(np.unique(whole.reshape(-1, 3), axis=0)) >= 4:
+        return mesh
+    largest = int(np.argmax(np.linalg.norm(np.cross(whole[:, 1] - whole[:, 0], whole[:, 2] - whole[:, 0]), axis=1)))
+    a, b, c = whole[largest]
+    normal = np.cross(b - a, c - a)
+    below = (a + b + c) / 3.0 - 1e-4 * normal / np.linalg.norm(normal)
+    first, second, third = mesh.faces[largest]
+    last = len(mesh.vertices)
+    more = [(second, first, last), (third, second, last), (first, third, last)]
+    uv = None if mesh.uv is None else np.vstack([mesh.uv, mesh.uv[first]])
+    faces = np.vstack([mesh.faces[largest : largest + 1], more])
+    return dataclasses.replace(mesh, vertices=np.vstack([mesh.vertices, below]), faces=faces, uv=uv)
+
+
+def _area(corners: Floats) -> float:
+    """Return twice the area [m2] of triangles ``[M, 3, 3]``."""
+    return float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum())
+
+
+def _obj(vertices: Floats, faces: NDArray[np.int64], uv: Floats | None) -> bytes:
+    """Return an OBJ file with texture coordinates; only vertices of the triangles are written."""
+    assert uv is not None
+    used, corners = np.unique(faces, return_inverse=True)
+    rows = [f"v {x:.8g} {y:.8g} {z:.8g}" for x, y, z in vertices[used].tolist()]
+    rows += [f"vt {u:.7g} {v:.7g}" for u, v in uv[used].tolist()]
+    rows += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (corners.reshape(-1, 3) + 1).tolist()]
+    return "\n".join([*rows, ""]).encode()
 
 
 def _stl(vertices: Floats, faces: NDArray[np.int64]) -> bytes:

@@ -11,7 +11,15 @@ from .model import LinkInertia, LinkShape
 from .shapes import Box, Solid, Sphere, together
 from .transforms import frame, transform_points
 
-__all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inertia", "solid_of", "unphysical"]
+__all__ = [
+    "DENSITY",
+    "default_inertia",
+    "find_inertia_problems",
+    "repair_inertia",
+    "replacement_shape",
+    "solid_of",
+    "unphysical",
+]
 
 Floats = NDArray[np.float64]
 DENSITY = 1000.0
@@ -93,6 +101,13 @@ def default_inertia(inertial: LinkInertia) -> tuple[LinkShape, str]:
         what = "the box of equal inertia"
     size = (float(sides[0]), float(sides[1]), float(sides[2]))
     return LinkShape(Box(size), frame(inertial.center, axes), name=what), what
+
+
+def replacement_shape(inertial: LinkInertia) -> tuple[tuple[float, float, float], Floats, str]:
+    """Return sides [m], frame ``[4, 4]`` and description of the box of :func:`default_inertia`."""
+    part, what = default_inertia(inertial)
+    assert isinstance(part.shape, Box)
+    return part.shape.size, part.origin, what
 
 
 def find_inertia_problems(inertial: LinkInertia, shapes: Sequence[LinkShape]) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from crowdbot.core import Element
+from crowdbot.core import Element, InputError
 
 from .elements import Color, UrdfReader
+from .mesh_colors import mean_color
 
 __all__ = ["read_color", "read_materials"]
 
@@ -23,7 +24,7 @@ def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
 
 
 def read_color(reader: UrdfReader, visual: Element) -> Color | None:
-    """Return the colour of a visual; None without a colour, or with a texture (not supported)."""
+    """Return the colour of a visual, or the mean colour of its texture; None without both."""
     material = reader.one(visual, "material")
     if material is None:
         return None
@@ -33,11 +34,30 @@ def read_color(reader: UrdfReader, visual: Element) -> Color | None:
     name = material.attributes.get("name", "")
     if name in reader.materials:
         return reader.materials[name]
-    if material.each("texture"):
-        reader.remark("ignored", material, "has a texture; textures are not supported")
-    elif name:
+    for texture in material.each("texture"):
+        mean = _mean_color(reader, texture)
+        if mean is not None:
+            return mean
+    if name and not material.each("texture"):
         reader.remark("ignored", material, f"uses the colour {name[:40]!r}, which is not defined; grey is used")
     return None
+
+
+def _mean_color(reader: UrdfReader, texture: Element) -> Color | None:
+    """Return the mean colour of an image, since shapes of a URDF have no texture coordinates."""
+    name = texture.attributes.get("filename", "").strip()
+    if not name:
+        return None
+    if name not in reader.mean_colors:
+        try:
+            path = reader.folders.find(name)
+            if path is None:
+                raise InputError("is missing")
+            reader.mean_colors[name] = mean_color(path)
+        except (InputError, OSError) as error:
+            reader.remark("ignored", texture, f"the texture {name[:80]!r} {error}; grey is used")
+            reader.mean_colors[name] = None
+    return reader.mean_colors[name]
 
 
 def _color(reader: UrdfReader, material: Element) -> Color | None:

@@ -7,12 +7,15 @@ import io
 import logging
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError, import_optional, reject_entities
+from crowdbot.core import InputError, import_optional
 
+from .mesh_colors import PartColors, join_colors, take_colors
+from .mesh_files import MeshFiles
+from .mesh_limits import MOST_PARTS, MOST_TRIANGLES, check_mesh_bytes
 from .piece_cache import load_or_compute_pieces
 from .shapes import ConvexPiece, Mesh
 
@@ -20,7 +23,6 @@ __all__ = ["FORMATS", "read_mesh", "with_pieces"]
 
 FORMATS = ("stl", "dae", "obj", "ply", "glb")
 MOST_BYTES = 64_000_000
-MOST_TRIANGLES = 2_000_000
 MOST_PIECES = 16
 RESOLUTION = 20_000
 """Number of voxels of the convex decomposition."""
@@ -28,15 +30,14 @@ LOOSE = 1.3
 """If the convex hull exceeds the volume of the mesh by this factor, the mesh is decomposed into convex pieces."""
 
 
-def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mesh:
+def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files: MeshFiles | None = None) -> Mesh:
     """Read a mesh file in metres. With a mirroring scale, triangles keep facing outwards.
-
-    Only this file is read, no materials, textures or external buffers.
 
     Args:
         path: an STL, DAE, OBJ, PLY or GLB file. The unit of a DAE file is applied, its "up" axis is ignored, as in ROS.
         source: the file name in the URDF.
         scale: scale along x, y and z.
+        files: finds material files and textures (default: only this file is read).
 
     Raises:
         InputError: the format is not supported, or the file is too large, has no triangles or cannot be read.
@@ -48,19 +49,19 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
     if path.stat().st_size > MOST_BYTES:
         raise InputError(f"it is larger than {MOST_BYTES} bytes, the maximum; simplify the mesh")
     data = path.read_bytes()
-    if kind == "dae":
-        reject_entities(data, path.name)
-    loaded, colors = _load_trimesh(data, kind, scale)
-    vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
+    check_mesh_bytes(data, kind, path.name)
+    found = _load_trimesh(data, kind, scale, files)
+    vertices, faces = np.asarray(found.whole.vertices, dtype=np.float64), np.asarray(found.whole.faces, dtype=np.int64)
     if not len(faces):
         raise InputError("it has no triangles")
     if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
         raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
-    if len(faces) > MOST_TRIANGLES:
-        raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
-    return Mesh(source, vertices, faces, colors=colors if colors is not None and len(colors) == len(faces) else None)
+    colors, uv, textures = join_colors(found.parts)
+    if colors is not None and len(colors) != len(faces):
+        return Mesh(source, vertices, faces)
+    return Mesh(source, vertices, faces, colors=colors, uv=uv, textures=textures)
 
 
 def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
@@ -97,17 +98,29 @@ def _trimesh() -> Any:
     return module
 
 
-def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> tuple[Any, Any]:
-    """Return the content of the file as one trimesh, in metres, with its scale, and the colours of its triangles."""
+class _Loaded(NamedTuple):
+    """A mesh file as one trimesh, and its parts with their look."""
+
+    whole: Any
+    parts: list[tuple[Any, PartColors]]
+
+
+def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float], files: MeshFiles | None) -> _Loaded:
+    """Return the content of the file as one trimesh, in metres, with its scale, and its parts."""
     trimesh = _trimesh()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=None)
+            scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=files)
             for part in scene.geometry.values():
                 _check_faces(part)
+            _check_count(scene)
+            looks = {
+                name: take_colors(part, kind, files)
+                for name, part in scene.geometry.items()
+                if isinstance(part, trimesh.Trimesh)
+            }
             meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
-            colors = _face_colors(meshes) if kind in ("dae", "glb") else None
             whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
             _check_faces(whole)
             whole.apply_scale(_unit(data) if kind == "dae" else 1.0)
@@ -116,18 +129,17 @@ def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float]) -> 
             raise
         except Exception as error:  # a broken file causes many kinds of exceptions inside the libraries
             raise InputError(f"it cannot be read as {kind}: {type(error).__name__}: {str(error)[:120]}") from None
-    return whole, colors
+    return _Loaded(whole, [(part, looks.get(part.metadata.get("name"), PartColors())) for part in meshes])
 
 
-def _face_colors(meshes: list[Any]) -> Any:
-    """Return the colours ``[M, 4]`` of the triangles of all parts from their materials, or None without materials."""
-    rows = []
-    for part in meshes:
-        main = np.asarray(getattr(getattr(part.visual, "material", None), "main_color", ()))
-        if main.shape != (4,):
-            return None
-        rows.append(np.tile(main.astype(np.uint8), (len(part.faces), 1)))
-    return np.concatenate(rows) if rows else None
+def _check_count(scene: Any) -> None:
+    """Raise an error if the scene has too many triangles after all copies of its parts."""
+    names = [scene.graph[node][1] for node in scene.graph.nodes_geometry]
+    count = sum(len(getattr(scene.geometry[name], "faces", ())) for name in names)
+    if count > MOST_TRIANGLES:
+        raise InputError(f"it has {count} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
+    if len(names) > MOST_PARTS:
+        raise InputError(f"it has {len(names)} parts, at most {MOST_PARTS} are allowed; join the parts of the mesh")
 
 
 def _check_faces(part: Any) -> None:

@@ -162,6 +162,8 @@ class RobotModel:
         root: name of the root link.
         remarks: what was replaced, repaired or ignored.
         meshes: paths of the mesh files, by their name in the URDF.
+        source: the URDF text, with xacro and SDF converted; empty for a robot that was made without a file.
+        mesh_files: paths of their material files and textures, by the name of the mesh and the name in it.
 
     >>> from crowdbot.world import read_urdf
     >>> arm = read_urdf(\"\"\"<robot name="arm"><link name="foot"/><link name="arm"><inertial><mass value="2"/>
@@ -178,6 +180,8 @@ class RobotModel:
     root: str
     remarks: tuple[Remark, ...] = ()
     meshes: Mapping[str, Path] = field(default_factory=dict)
+    source: str = field(default="", repr=False)
+    mesh_files: Mapping[str, Mapping[str, Path]] = field(default_factory=dict)
 
     @property
     def warnings(self) -> tuple[str, ...]:

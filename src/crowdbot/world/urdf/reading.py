@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from crowdbot.core import Element, InputError, RobotError, did_you_mean
+from crowdbot.core import Element, InputError, RobotError, did_you_mean, format_xml
 
 from .elements import UrdfReader
 from .joints import read_joint
@@ -89,7 +89,14 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
     kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
-    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
+    files, textures = dict(reader.files), dict(reader.textures)
+    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), files, _text(name, root), textures)
+
+
+def _text(name: str, root: Element) -> str:
+    """Return the URDF text of links, joints and materials."""
+    rows = [element for element in root.children if element.tag in ("link", "joint", "material")]
+    return format_xml(Element("robot", {"name": name}, rows))
 
 
 def _check_tree(

@@ -71,6 +71,11 @@ def parse_robot_file(
         return RobotDocument(root, place, folders)
     _check_root(root, place)
     found = expand_xacro(root, place, folders, path=path, arguments=arguments, environment=environment)
+    if found.macros and not found.root.each("link"):
+        listed = ", ".join(sorted(found.macros)[:8])
+        raise RobotError(
+            f"{place}: it only defines macros ({listed}) and contains no <link>; give the file that calls them"
+        )
     return RobotDocument(found.root, place, folders, found.ignored, found.arguments)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .transforms import transform_points
 
-__all__ = ["Box", "Capsule", "ConvexPiece", "Cylinder", "Mesh", "Shape", "Solid", "Sphere", "together"]
+__all__ = ["Box", "Capsule", "ConvexPiece", "Cylinder", "Mesh", "Shape", "Solid", "Sphere", "Texture", "together"]
 
 Floats = NDArray[np.float64]
 ROUND = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
@@ -147,6 +147,21 @@ class ConvexPiece(NamedTuple):
         return Solid(max(volume, 0.0), middle + center, rows / 20.0 - volume * np.outer(center, center))
 
 
+class Texture(NamedTuple):
+    """An image on triangles of a mesh.
+
+    Fields:
+        first, last: the first triangle, and the one after the last.
+        image: a PNG file.
+        color: factor (red, green, blue, alpha) of the image.
+    """
+
+    first: int
+    last: int
+    image: bytes
+    color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A mesh from a file, scaled to metres.
@@ -157,6 +172,8 @@ class Mesh:
         faces: triangles ``[M, 3]`` (int).
         pieces: convex bodies for contacts; empty for a visual mesh.
         colors: colours ``[M, 4]`` of the triangles from the file, 0 to 255, or None.
+        uv: texture coordinates ``[N, 2]`` of the vertices, or None without textures.
+        textures: images on some of the triangles.
     """
 
     source: str
@@ -164,6 +181,8 @@ class Mesh:
     faces: NDArray[np.int64]
     pieces: tuple[ConvexPiece, ...] = ()
     colors: NDArray[np.uint8] | None = None
+    uv: Floats | None = None
+    textures: tuple[Texture, ...] = ()
 
     def solid(self) -> Solid:
         """Return volume, centre and moments of its convex pieces, or of its bounding box without pieces."""

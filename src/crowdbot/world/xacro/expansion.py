@@ -32,11 +32,13 @@ class Expansion(NamedTuple):
         root: the root element.
         ignored: sentences about includes and macros that were left out.
         arguments: names and values of all arguments.
+        macros: names of all macros.
     """
 
     root: SourceElement
     ignored: tuple[str, ...]
     arguments: Mapping[str, str]
+    macros: tuple[str, ...] = ()
 
 
 def is_xacro(root: Element) -> bool:
@@ -93,7 +95,8 @@ def expand_xacro(
         meant = did_you_mean(unused[0], expander.declared)
         listed = ", ".join(sorted(expander.declared)[:20]) or "none"
         raise RobotError(f"{place}: there is no argument {unused[0][:60]!r}{meant}; the file has {listed}")
-    return Expansion(made, tuple(expander.ignored), {key: str(text) for key, text in texts.arguments.items()})
+    values = {key: str(text) for key, text in texts.arguments.items()}
+    return Expansion(made, tuple(expander.ignored), values, tuple(expander.macros))
 
 
 class _Expander:

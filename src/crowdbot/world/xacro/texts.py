@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import InputError, did_you_mean, parse_yaml
 
 from .evaluation import Budget, evaluate
 from .expression import parse_expression
@@ -14,7 +14,6 @@ from .files import FileSource
 from .functions import TOKENIZE
 from .scope import Scope
 from .tokens import split_text
-from .yaml import parse_yaml
 
 __all__ = ["Texts"]
 

@@ -31,12 +31,14 @@ def _arc(place: Floats, heading: Floats, forward: Floats, left: Floats, turn: Fl
 @kernel
 def _differential(
     place: Floats, heading: Floats, forward: Floats, turn: Floats, wanted: Floats, wanted_turn: Floats, top: float,
-    most: float, push: float, spin: float, dt: float, out: Floats,
+    most: float, aside: float, push: float, spin: float, dt: float, out: Floats,
 ) -> None:  # fmt: skip
     """Move each pose of a differential drive for ``dt``, and write the new twists."""
     for e in range(len(heading)):
-        goal, turning = min(max(wanted[e], -top), top), min(max(wanted_turn[e], -most), most)
+        goal = min(max(wanted[e], -top), top)
         out[0, e] = min(max(goal, forward[e] - push), forward[e] + push)
+        bend = min(most, aside / max(abs(goal), abs(out[0, e]), 1e-9))
+        turning = min(max(wanted_turn[e], -bend), bend)
         out[1, e] = min(max(turning, turn[e] - spin), turn[e] + spin)
         out[2, e] = 0.0
     _arc(place, heading, out[0], out[2], out[1], dt)
@@ -180,9 +182,11 @@ class DifferentialDrive(Drive):
         max_turn_rate: maximum turn rate [rad/s].
         max_acceleration: maximum acceleration and deceleration [m/s2].
         max_turn_acceleration: maximum angular acceleration [rad/s2].
+        max_lateral_acceleration: maximum product of speed and turn rate [m/s2]; at high speed, the turn rate is
+            reduced. A tall robot would otherwise tip over in curves.
 
     Raises:
-        InputError: a limit is not finite or not above 0.
+        InputError: a limit is not above 0, or one other than the last is not finite.
 
     >>> drive = DifferentialDrive(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=4.0)
     >>> pose, twist = drive.step(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), Twist(5.0, 0.0), dt=0.5)
@@ -194,9 +198,14 @@ class DifferentialDrive(Drive):
     max_turn_rate: float = 1.5
     max_acceleration: float = 1.0
     max_turn_acceleration: float = 3.0
+    max_lateral_acceleration: float = math.inf
 
     def __post_init__(self) -> None:
         check_limits(self)
+        if not self.max_lateral_acceleration > 0.0:
+            raise InputError(
+                f"DifferentialDrive: max_lateral_acceleration = {self.max_lateral_acceleration} m/s2 must be above 0"
+            )
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`DifferentialDrive`."""
@@ -204,7 +213,7 @@ class DifferentialDrive(Drive):
         check_step(dt)
         place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
         columns = np.empty((3, len(heading)))
-        limits = (float(self.max_speed), float(self.max_turn_rate))
+        limits = (float(self.max_speed), float(self.max_turn_rate), float(self.max_lateral_acceleration))
         changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
         now = (twist.forward, twist.turn, wanted.forward, wanted.turn)
         _differential(place, heading, *now, *limits, *changes, dt, columns)

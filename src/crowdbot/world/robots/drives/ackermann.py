@@ -69,6 +69,14 @@ class AckermannDrive(Drive):
         """Maximum turn rate [rad/s], at maximum speed and steering angle."""
         return self.max_speed / self.turning_radius
 
+    def motion(self, steering: float) -> Twist:
+        """Return the twist per 1 m/s of the rear axle at a steering angle [rad]."""
+        return Twist(1.0, math.tan(steering) / self.wheelbase)
+
+    def rolling(self, twist: Twist | Twists, steering: Floats) -> Floats:
+        """Return the signed speed ``[E]`` [m/s] of the rear axle."""
+        return np.asarray(twist.forward)
+
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`AckermannDrive`."""
         wanted = Twists.of(command, len(pose.heading))

@@ -1,4 +1,4 @@
-"""A small part of YAML: mappings, sequences and scalars, as in parameter files of robots.
+"""A small part of YAML: mappings, sequences and scalars, as in parameter files of robots and simulators.
 
 Anchors, aliases, merge keys, tags other than ``!degrees`` and ``!radians``, and several documents are refused.
 """
@@ -9,7 +9,7 @@ import math
 import re
 from typing import Any, NamedTuple
 
-from crowdbot.core import InputError
+from crowdbot.core.errors import InputError
 
 __all__ = ["parse_yaml"]
 

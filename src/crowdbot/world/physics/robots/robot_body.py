@@ -11,12 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
-from crowdbot.world.robots.ackermann import AckermannDrive, SteeredTwists
-from crowdbot.world.robots.drive import Twists
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.wheels.friction import WheelFriction
+from crowdbot.world.physics.wheels.skid_steering import SlipControl, SlipState
+from crowdbot.world.robots.drives.ackermann import AckermannDrive, SteeredTwists
+from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.robots.drives.servo import CommandDelay, Pending
+from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot, spatial
-from crowdbot.world.robots.servo import CommandDelay, Pending
 
-from .engine import engine
+from .base_servo import BASE_MOTORS, BaseForces
+from .wheel_servo import lag
 
 __all__ = ["RobotBody"]
 
@@ -36,6 +41,8 @@ class RobotBody:
     Attributes:
         robot: description of the robot.
         body: index of the root link in the engine.
+        friction: wheels whose friction has a direction.
+        loads: normal forces [N] of these wheels in the last engine step.
     """
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
@@ -46,6 +53,9 @@ class RobotBody:
         self._step_robots = [joint for joint in units[0] if joint in self._wheels]
         self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
         self._steers = any(wheel.steering for wheel in robot.wheels)
+        self.loads = np.zeros(len(self.friction))
+        self._slip = SlipControl.of(robot)
+        self._slip_state: SlipState | None = self._slip.first if self._slip else None
         self._delay = CommandDelay(robot.latency)
         self._pending: tuple[Pending, ...] = ()
         self._current: Twist | Twists = STILL
@@ -53,6 +63,9 @@ class RobotBody:
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
         self._held: dict[str, float] = {}
+        self._forces = BaseForces(robot, step)
+        self._quick: tuple[float, float, float] | tuple[()] = ()
+        self._lag = lag(step)
 
     def bind(self, model: Any, data: Any) -> None:
         """Continue in another model and state of the engine."""
@@ -60,11 +73,13 @@ class RobotBody:
         self._model, self._data = model, data
         self.body = int(model.body(prefix + robot.model.root).id)
         self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
-        self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
-            robot.base == "planar") else []  # fmt: skip
+        self._servo = [model.actuator(prefix + name).id for name in BASE_MOTORS] if robot.base == "planar" else []
+        joints = [model.joint(f"{prefix}base_{name}") for name in ("x", "y", "yaw")] if self._servo else []
+        self._base = [int(one.qposadr[0]) for one in joints], [int(one.dofadr[0]) for one in joints]
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
+        self.friction = WheelFriction(model, robot, prefix)
 
     def prepare(self) -> None:
         """Set posture and weight of the robot in a new model."""
@@ -125,28 +140,47 @@ class RobotBody:
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
             self._current = now
-        if now is self._forced:  # unchanged since the command was reached
+        if now is self._forced and self._slip_state is None:  # unchanged since the command was reached
             return
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
-        aim = np.array([self._aim.forward[0], self._aim.turn[0], self._aim.left[0]])
+        if self._servo:
+            self._pull(old)
+            return
         if _same(old, self._aim):
             self._forced = now
-        if self._servo:
-            self._data.ctrl[self._servo] = aim
-        elif self._steers:
+        if self._steers:
             self._steered(self._aim)
-        else:
-            self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = self._rolling @ aim
+            return
+        speeds, before = self._wheel_rates(self._aim), self._wheel_rates(old)
+        if self._slip is not None and self._slip_state is not None:
+            self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
+        lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
+        self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
+
+    def _wheel_rates(self, twist: Twists) -> Floats:
+        """Return the speeds of the driven wheels [rad/s] for a twist, with the slip of a skid-steer base."""
+        if self._slip is not None and self._slip_state is not None:
+            twist = Twists.of(self._slip.wheels(self._slip_state, twist.at(0)), 1)
+        return np.asarray(self._rolling @ _row(twist))
+
+    def _pull(self, old: Twists) -> None:
+        """Set the forces on a planar base for the way from the old commanded twist to the new one."""
+        place, speed = self._base
+        heading = float(self._data.qpos[place[2]])
+        if not self._quick:
+            self._quick = self._forces.weigh(self._model, self._data, speed, heading)
+        velocity = self._data.qvel[speed]
+        self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, velocity, heading, self._quick)
 
     def _steered(self, aim: Twists) -> None:
-        """Steer the wheels of a car; at rest they keep their angle."""
+        """Steer the wheels of a car or tricycle; at rest they keep their angle."""
         drive = self.robot.drive
-        assert isinstance(drive, AckermannDrive)
-        bend = math.tan(float(aim.steering[0])) / drive.wheelbase if isinstance(aim, SteeredTwists) else 0.0
-        way = Twist(1.0, bend)
+        assert isinstance(drive, AckermannDrive | TricycleDrive)
+        angle = aim.steering if isinstance(aim, SteeredTwists) else np.zeros(1)
+        way, speed = drive.motion(float(angle[0])), float(drive.rolling(aim, angle)[0])
         values = self.robot.steering(way)
-        values |= {joint: speed * float(aim.forward[0]) for joint, speed in self.robot.wheel_speeds(way).items()}
+        values |= {joint: rate * speed for joint, rate in self.robot.wheel_speeds(way).items()}
         for joint, value in values.items():
             self._data.ctrl[self._wheels[joint]] = value
 
@@ -229,6 +263,10 @@ class RobotBody:
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + name)
             if index >= 0:
                 self._data.ctrl[index] = float(np.atleast_1d(position)[0])
+
+
+def _row(twist: Twists) -> Floats:
+    return np.array([twist.forward[0], twist.turn[0], twist.left[0]])
 
 
 def _same(one: Twists, other: Twists) -> bool:

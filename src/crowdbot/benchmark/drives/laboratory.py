@@ -1,0 +1,141 @@
+"""Measurement of drives over robots, time steps and manoeuvres."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.benchmark.speed.timing import environment
+from crowdbot.world import Robot, builtin_robots
+
+from .figures import DriveFigures, compare_traces
+from .manoeuvre import Manoeuvre, manoeuvres
+from .traces import DriveTrace, trace_physics, trace_planar
+
+__all__ = ["DRIVE_BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]
+
+STEPS = (0.001, 0.002, 0.005, 0.01, 0.02)
+"""Time steps of the engine [s]."""
+BARRED = (0.002, 0.005, 0.01)
+"""Time steps [s] at which :data:`DRIVE_BARS` hold."""
+DRIVE_BARS: Mapping[str, float] = {
+    "overshoot": 0.05, "steady_error": 0.02, "acceleration": 1.1, "turn_acceleration": 1.1, "path_error": 0.02,
+    "heading_error": 0.02,
+}  # fmt: skip
+"""Largest figures over the grid of a robot."""
+STRAIGHT = 0.2
+"""Largest heading change [rad] beside the planar one, alone in a hall."""
+REGULAR = ("grid", "straight", "ramp", "sine", "weave")
+"""Manoeuvres on a floor with normal friction."""
+
+
+@dataclass(frozen=True)
+class DriveRow:
+    """Figures of one robot at one time step.
+
+    Fields:
+        robot: name of the robot.
+        base: actuation in the physics world, ``wheels`` or ``planar`` (pulled).
+        step: time step of the engine [s].
+        grid: largest figures over the grid of speeds.
+        others: figures by manoeuvre.
+    """
+
+    robot: str
+    base: str
+    step: float
+    grid: DriveFigures
+    others: dict[str, DriveFigures]
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Names of the figures that exceed their bars, of falls, and of heading changes."""
+        found = [name for name, most in DRIVE_BARS.items() if getattr(self.grid, name) > most]
+        regular = [self.grid, *(self.others[name] for name in REGULAR if name in self.others)]
+        if any(one.fallen for one in regular):
+            found.append("fall")
+        if any(one.heading_change > STRAIGHT for one in regular[1:]):
+            found.append("heading_change")
+        return tuple(found)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as plain values."""
+        others = {name: one.as_dict() for name, one in self.others.items()}
+        words = {"robot": self.robot, "base": self.base, "step": self.step}
+        return {**words, "grid": self.grid.as_dict(), "others": others, "failures": list(self.failures)}
+
+
+@dataclass(frozen=True)
+class DriveReport:
+    """Result of the drive laboratory.
+
+    Fields:
+        machine: processor, system and versions.
+        rows: figures by robot and time step.
+        traces: manoeuvres with both motions by robot, at the time step nearest to 5 ms, for plots.
+    """
+
+    machine: str
+    rows: tuple[DriveRow, ...]
+    traces: dict[str, tuple[tuple[Manoeuvre, DriveTrace, DriveTrace], ...]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return machine, bars and rows as plain values."""
+        return {"machine": self.machine, "bars": dict(DRIVE_BARS), "rows": [row.as_dict() for row in self.rows]}
+
+
+def measure_drives(
+    robots: Sequence[str] = (),
+    *,
+    steps: Sequence[float] | None = None,
+    quick: bool = False,
+    report: Callable[[str, float], None] | None = None,
+) -> DriveReport:
+    """Drive robots alone in an empty hall, in the plane and in the physics world, and compare the motions.
+
+    Args:
+        robots: built-in names or folders of robots; none: all built-in robots.
+        steps: time steps of the engine [s] (default: 1, 2, 5, 10 and 20 ms, or 5 ms if quick). The whole grid is driven
+            at 2, 5 and 10 ms, the quick one at others.
+        quick: three speeds and short manoeuvres.
+        report: called with the robot and the share that is done.
+
+    Raises:
+        RobotError: a robot does not exist or has errors.
+        InputError: a time step does not divide 20 ms.
+        MissingExtra: mujoco is not installed.
+
+    >>> row = measure_drives(["differential"], quick=True).rows[0]
+    >>> row.failures, row.grid.overshoot < 0.05
+    ((), True)
+    """
+    steps = tuple(steps) if steps else (0.005,) if quick else STEPS
+    loaded = [Robot.load(name) for name in (robots or builtin_robots())]
+    shown = min(steps, key=lambda step: abs(step - 0.005))
+    rows, traces = [], {}
+    for number, robot in enumerate(loaded):
+        for k, step in enumerate(steps):
+            if report is not None:
+                report("drives", (number + k / len(steps)) / len(loaded))
+            runs = [
+                (one, trace_physics(robot, one.commands, step, one.friction), trace_planar(robot, one.commands, step))
+                for one in manoeuvres(robot, quick or all(abs(step - one) > 1e-9 for one in BARRED))
+            ]
+            rows.append(_row(robot, step, runs))
+            if step == shown:
+                traces[robot.name] = tuple(runs)
+    if report is not None:
+        report("drives", 1.0)
+    return DriveReport(environment(), tuple(rows), traces)
+
+
+def _row(robot: Robot, step: float, runs: Sequence[tuple[Manoeuvre, DriveTrace, DriveTrace]]) -> DriveRow:
+    grid, others = DriveFigures(), {}
+    for one, physics, plane in runs:
+        found = compare_traces(robot.drive, one, physics, plane)
+        if one.name == "grid":
+            grid = grid.worst(found)
+        else:
+            others[one.name] = found
+    return DriveRow(robot.name, robot.base, step, grid, others)

@@ -1,0 +1,1 @@
+"""Wheel odometry: the rotation of wheels, and the pose that a robot integrates from it."""

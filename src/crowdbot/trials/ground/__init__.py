@@ -1,0 +1,1 @@
+"""Elements of the stage for uneven ground and doors."""

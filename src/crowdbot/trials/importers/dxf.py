@@ -1,0 +1,301 @@
+"""Stages from drawings in DXF (ASCII): lines, polylines, arcs and circles become thin walls.
+
+The format is that of the AutoCAD DXF reference: pairs of lines with a group code and a value. Entities of the model
+space are read, in the unit of ``$INSUNITS``.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from crowdbot.core import TrialError
+from crowdbot.models import ORCA
+from crowdbot.trials.notation import Points
+from crowdbot.trials.stage import Stage, Wall
+from crowdbot.trials.trial import End, Trial
+
+from .dxf_curves import Ring, arc_points, bulge_points
+from .original import ImportedTrial
+
+__all__ = ["UNITS", "import_dxf", "is_dxf"]
+
+MOST_BYTES = 64_000_000
+MOST_ENTITIES = 50_000
+MOST_WALLS = 10_000
+MOST_CORNERS = 200_000
+FARTHEST = 1e6
+UNITS = {"in": 0.0254, "ft": 0.3048, "mm": 0.001, "cm": 0.01, "m": 1.0, "km": 1000.0}
+"""Units by name [m]."""
+INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km"}
+"""Units by the number in ``$INSUNITS``."""
+KINDS = ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE")
+PARTS = ("VERTEX", "SEQEND")
+
+
+class DxfGroup(NamedTuple):
+    """A group code with its value."""
+
+    code: int
+    value: str
+    line: int
+
+
+@dataclass
+class DxfEntity:
+    """An entity or a table entry: its kind, its groups, and the vertices of a polyline."""
+
+    kind: str
+    line: int
+    groups: list[DxfGroup] = field(default_factory=list)
+    vertices: list[DxfEntity] = field(default_factory=list)
+
+    def text(self, code: int, otherwise: str = "") -> str:
+        """Return the first value of a group code."""
+        return next((group.value.strip() for group in self.groups if group.code == code), otherwise)
+
+
+def is_dxf(data: bytes) -> bool:
+    """Return whether a file begins as a DXF file.
+
+    >>> is_dxf(b"  0\\r\\nSECTION\\r\\n"), is_dxf(b"<trial/>")
+    (True, False)
+    """
+    if data.startswith(b"AutoCAD Binary DXF"):
+        return True
+    words = data[:2000].split(b"\n")
+    while len(words) >= 2 and words[0].strip() == b"999":  # comments
+        words = words[2:]
+    return len(words) >= 2 and words[0].strip() == b"0" and words[1].strip() == b"SECTION"
+
+
+def import_dxf(path: str | Path, layers: Collection[str] = (), unit: str = "") -> ImportedTrial:
+    """Read the walls of a drawing into the stage of a trial without people.
+
+    Args:
+        path: the file, ASCII.
+        layers: names of the layers to read (default: all that are on and not frozen).
+        unit: unit of the drawing, one of :data:`UNITS` (default: from the file, or metres).
+
+    Raises:
+        TrialError: the file is missing, malformed, binary or too large, a layer or unit does not exist, or no wall is
+            left.
+    """
+    path = Path(path)
+    reader = _Reader(path, _read(path), unit)
+    return ImportedTrial(((path.stem, reader.trial(layers)),), tuple(reader.notes))
+
+
+def _read(path: Path) -> list[DxfGroup]:
+    if not path.is_file():
+        raise TrialError(f"there is no DXF file {path}")
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise TrialError(f"{path} cannot be read: {error.strerror}") from None
+    if len(data) > MOST_BYTES:
+        raise TrialError(f"{path} is larger than {MOST_BYTES} bytes, the limit of a DXF file")
+    if data.startswith(b"AutoCAD Binary DXF"):
+        raise TrialError(f"{path} is a binary DXF file; save it as ASCII DXF")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+    return list(_groups(path, text.replace("\r\n", "\n").split("\n")))
+
+
+def _groups(path: Path, lines: Sequence[str]) -> Iterator[DxfGroup]:
+    for k in range(0, len(lines) - 1, 2):
+        try:
+            code = int(lines[k])
+        except ValueError:
+            raise TrialError(f"{path}:{k + 1}: {lines[k].strip()[:40]!r} is not a group code of DXF") from None
+        if code == 0 and lines[k + 1].strip() == "EOF":
+            return
+        yield DxfGroup(code, lines[k + 1], k + 2)
+    raise TrialError(f"{path} ends without EOF: it is not a complete DXF file")
+
+
+class _Reader:
+    """Converts a drawing, and notes what is not imported."""
+
+    def __init__(self, path: Path, groups: list[DxfGroup], unit: str) -> None:
+        self.path = path
+        self.notes: dict[str, None] = {}
+        sections = _sections(path, groups)
+        self.entities = _entities(path, sections.get("ENTITIES", []))
+        tables = _entities(path, sections.get("TABLES", []))
+        self.hidden = {one.text(2) for one in tables if one.kind == "LAYER" and self._is_hidden(one)}
+        self.scale = self._unit(sections.get("HEADER", []), unit)
+        self.corners = 0
+
+    def trial(self, layers: Collection[str]) -> Trial:
+        """Return the trial."""
+        shapes = [one for one in self.entities if one.text(67, "0") == "0"]
+        known = sorted({one.text(8, "0") for one in shapes if one.kind in KINDS})
+        for layer in layers:
+            if layer not in known:
+                some = ", ".join(known[:20]) or "none"
+                raise TrialError(f"{self.path}: there is no layer {layer[:40]!r} with walls; layers are {some}")
+        chosen = set(layers) or set(known) - self.hidden
+        for layer in known:
+            if layer not in chosen:
+                why = "off or frozen" if layer in self.hidden and not layers else "not chosen"
+                self.notes[f"layer {layer[:60]}: {why}"] = None
+        rings: dict[Ring, None] = {}
+        for one in shapes:
+            if one.kind not in KINDS:
+                self.notes[f"entities {one.kind[:40]} are not imported"] = None
+            elif one.text(8, "0") in chosen:
+                ring = self._ring(one)
+                rings |= dict.fromkeys([ring] if len(set(ring)) > 1 else [])
+        if not rings:
+            raise TrialError(f"{self.path}: there are no lines, polylines, arcs or circles on the layers to read")
+        if len(rings) > MOST_WALLS:
+            raise TrialError(
+                f"{self.path}: {len(rings)} walls are more than {MOST_WALLS}; choose layers: {', '.join(known[:20])}"
+            )
+        self.notes["people and robots are not in the file: the trial has only the stage"] = None
+        return Trial(
+            name=(self.path.stem.strip() or "imported")[:80],
+            about="Imported from DXF.",
+            duration=60.0,
+            stage=Stage(walls=tuple(Wall(Points.of(ring)) for ring in rings)),
+            crowd=ORCA(),
+            end=End(goal=False, collision=False),
+        )
+
+    def _unit(self, header: list[DxfGroup], unit: str) -> float:
+        """Return the unit of the drawing [m]."""
+        if unit:
+            if unit not in UNITS:
+                raise TrialError(f"the unit {unit[:20]!r} is unknown; units are {', '.join(UNITS)}")
+            return UNITS[unit]
+        for name, value in itertools.pairwise(header):
+            if name.code == 9 and name.value.strip() == "$INSUNITS":
+                number = int(self._number(value))
+                if number in INSUNITS:
+                    return UNITS[INSUNITS[number]]
+                if number != 0:
+                    raise TrialError(f"{self.path}: the unit $INSUNITS = {number} is not supported; give the unit")
+        self.notes["the file has no unit: coordinates are metres"] = None
+        return 1.0
+
+    def _is_hidden(self, layer: DxfEntity) -> bool:
+        flags, color = (next((g for g in layer.groups if g.code == code), None) for code in (70, 62))
+        frozen = flags is not None and int(self._number(flags)) & 1
+        return bool(frozen) or (color is not None and self._number(color) < 0.0)
+
+    def _ring(self, one: DxfEntity) -> Ring:
+        """Return the points of an entity [m]; a closed one ends at its first point. Empty if it cannot be a wall."""
+        if one.kind == "LINE":
+            points = [(self._value(one, 10), self._value(one, 20)), (self._value(one, 11), self._value(one, 21))]
+            return self._points(one, points, 1.0)
+        side = self._side(one)
+        if side == 0.0:
+            return ()
+        if one.kind in ("LWPOLYLINE", "POLYLINE"):
+            return self._points(one, self._polyline(one), side)
+        center, radius = (self._value(one, 10), self._value(one, 20)), self._value(one, 40)
+        if radius <= 0.0:
+            raise TrialError(f"{self.path}:{one.line}: the radius {radius:g} of {one.kind} must be above 0")
+        begin, end = (0.0, 360.0) if one.kind == "CIRCLE" else (self._value(one, 50), self._value(one, 51))
+        return self._points(one, arc_points(center, radius, begin, end, self.scale), side)
+
+    def _polyline(self, one: DxfEntity) -> list[tuple[float, float]]:
+        """Return the points of a polyline, with arcs for its bulges."""
+        flags = int(self._value(one, 70, 0.0))
+        if one.kind == "POLYLINE":
+            if flags & (16 | 64):
+                self.notes["polygon meshes are not imported"] = None
+                return []
+            spots = [part for part in one.vertices if not int(self._value(part, 70, 0.0)) & 16]
+            rows = [(self._value(part, 10), self._value(part, 20), self._value(part, 42, 0.0)) for part in spots]
+        else:
+            rows = []
+            for group in one.groups:
+                if group.code == 10:
+                    rows.append((self._number(group), 0.0, 0.0))
+                elif group.code in (20, 42) and rows:
+                    x, y, bulge = rows[-1]
+                    value = self._number(group)
+                    rows[-1] = (x, value, bulge) if group.code == 20 else (x, y, value)
+        return bulge_points(rows, bool(flags & 1), self.scale)
+
+    def _side(self, one: DxfEntity) -> float:
+        """Return 1, -1 for an entity that is drawn from below, 0 for one that is not horizontal."""
+        x, y, z = (self._value(one, code, otherwise) for code, otherwise in ((210, 0.0), (220, 0.0), (230, 1.0)))
+        if abs(x) > 1e-6 or abs(y) > 1e-6:
+            self.notes["entities that are not horizontal are not imported"] = None
+            return 0.0
+        return -1.0 if z < 0.0 else 1.0
+
+    def _points(self, one: DxfEntity, points: Sequence[tuple[float, float]], side: float) -> Ring:
+        found: list[tuple[float, float]] = []
+        for x, y in points:
+            spot = (round(side * x * self.scale, 6), round(y * self.scale, 6))
+            if not max(abs(spot[0]), abs(spot[1])) <= FARTHEST:
+                raise TrialError(f"{self.path}:{one.line}: {one.kind} is more than {FARTHEST:g} m from the origin")
+            if not found or found[-1] != spot:
+                found.append(spot)
+        self.corners += len(found)
+        if self.corners > MOST_CORNERS:
+            raise TrialError(f"{self.path}: the walls have more than {MOST_CORNERS} corners; choose layers")
+        return tuple(found)
+
+    def _value(self, one: DxfEntity, code: int, otherwise: float | None = None) -> float:
+        found = next((group for group in one.groups if group.code == code), None)
+        if found is None:
+            if otherwise is None:
+                raise TrialError(f"{self.path}:{one.line}: {one.kind} lacks the group {code}")
+            return otherwise
+        return self._number(found)
+
+    def _number(self, group: DxfGroup) -> float:
+        try:
+            value = float(group.value)
+        except ValueError:
+            value = math.nan
+        if not abs(value) < 1e300 or "_" in group.value:
+            raise TrialError(f"{self.path}:{group.line}: {group.value.strip()[:40]!r} is not a finite number")
+        return value
+
+
+def _sections(path: Path, groups: list[DxfGroup]) -> dict[str, list[DxfGroup]]:
+    """Return the groups of each section."""
+    found: dict[str, list[DxfGroup]] = {}
+    now: list[DxfGroup] | None = None
+    for k, group in enumerate(groups):
+        if group.code == 0 and group.value.strip() == "SECTION":
+            name = groups[k + 1].value.strip() if k + 1 < len(groups) and groups[k + 1].code == 2 else ""
+            now = found.setdefault(name, [])
+        elif group.code == 0 and group.value.strip() == "ENDSEC":
+            now = None
+        elif now is not None:
+            now.append(group)
+    if "ENTITIES" not in found:
+        raise TrialError(f"{path} has no section ENTITIES: it is not a drawing in DXF")
+    return found
+
+
+def _entities(path: Path, groups: list[DxfGroup]) -> list[DxfEntity]:
+    """Return the entities of a section; vertices belong to their polyline."""
+    found: list[DxfEntity] = []
+    now: DxfEntity | None = None
+    for group in groups:
+        if group.code == 0:
+            now = DxfEntity(group.value.strip(), group.line)
+            if now.kind not in PARTS:
+                found.append(now)
+            elif found and now.kind == "VERTEX" and found[-1].kind == "POLYLINE":
+                found[-1].vertices.append(now)
+            if len(found) > MOST_ENTITIES:
+                raise TrialError(f"{path}:{group.line}: more than {MOST_ENTITIES} entities are too many")
+        elif now is not None:
+            now.groups.append(group)
+    return found

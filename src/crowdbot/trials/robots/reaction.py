@@ -1,0 +1,120 @@
+"""Reactions of people to robots in a trial."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core import InputError
+from crowdbot.trials.fields import FieldProblem, attribute, check
+from crowdbot.trials.partial_element import readable
+from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
+
+__all__ = ["ReactionSpec", "check_shares", "robot_reactions", "share_problems"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReactionSpec:
+    """How a share of people reacts to robots.
+
+    Each person draws a reaction by the shares, from a random stream of their own; the rest of the people treats robots
+    like people. See :class:`crowdbot.world.RobotReaction` for the kinds.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> ReactionSpec(type="curious", share=0.2, distance=4, duration=8).reaction().gap
+    1.0
+    """
+
+    type: str = attribute(about="kind of reaction", choices=REACTIONS)
+    share: float = attribute(1.0, about="share of the people with this reaction", min=0.0, max=1.0)
+    distance: float | None = attribute(
+        None, about="distance at which a robot that is seen causes the reaction (default: 4)", unit="m",
+        exclusive_min=0.0, max=1000.0,
+    )  # fmt: skip
+    duration: float | None = attribute(
+        None, about="longest duration (default: by type)", unit="s", exclusive_min=0.0, max=86_400.0
+    )
+    pause: float | None = attribute(
+        None, about="time before the next reaction (default: by type)", unit="s", min=0.0, max=86_400.0
+    )
+    once: bool = attribute(False, about="whether a person reacts only once")
+    speed: float | None = attribute(
+        None, about="speed as a multiple of the preferred speed (default: by type)", min=0.0, max=1.3
+    )
+    gap: float | None = attribute(
+        None, about="clearance to the robot, or to its lane, that people aim at (default: by type)", unit="m",
+        min=0.0, max=100.0,
+    )  # fmt: skip
+    repulsion: float | None = attribute(
+        None, about="speed of scared people away from a robot at contact (default: 1.5)", unit="m/s", min=0.0, max=10.0
+    )
+    range: float | None = attribute(
+        None, about="clearance at which the repulsion is 1/e of that (default: 1)", unit="m", min=0.01, max=100.0
+    )
+    field_of_view: float = attribute(
+        math.pi, about="full angle around the heading in which robots are seen", unit="rad", exclusive_min=0.0,
+        max=2.0 * math.pi,
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check(self)
+        for _, sentence in self.mistakes(vars(self)):
+            raise InputError(sentence)
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
+        """Return attributes that do not act with the kind of reaction, or exclude each other."""
+        found: list[FieldProblem] = []
+        kind = values.get("type")
+        for name in ("repulsion", "range"):
+            if kind in REACTIONS and kind != "scared" and values.get(name) is not None:
+                found.append(((name,), f'{name} acts with type="scared" only, not with type="{kind}"'))
+        if values.get("once") and values.get("pause") is not None:
+            found.append((("pause",), "pause has no effect with once"))
+        return found
+
+    def reaction(self) -> RobotReaction:
+        """Return the reaction of a world."""
+        pause = math.inf if self.once else self.pause
+        numbers = (self.distance, self.duration, pause, self.speed, self.gap, self.repulsion, self.range)
+        return RobotReaction(self.type, *numbers, self.field_of_view)
+
+
+def share_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
+    """Return the problem of the shares of an element with reactions, if there is one."""
+    shares = [share for _, share in readable(values.get("reactions", ()), "share")]
+    if sum(shares) <= 1.0 + 1e-9:
+        return []
+    return [((), f"the shares of the reactions are {sum(shares):g} together, they must be at most 1")]
+
+
+def check_shares(element: Any) -> None:
+    """Raise :class:`InputError` if the shares of the reactions of an element are more than 1 together."""
+    for _, sentence in share_problems(vars(element)):
+        raise InputError(sentence)
+
+
+def robot_reactions(
+    owners: Sequence[Any], owner: Sequence[int], sources: Sequence[Any], agents: int
+) -> RobotReactions | None:
+    """Return the reactions of the people of a world; None if nobody reacts.
+
+    Args:
+        owners: elements that people come from; those without reactions do not react.
+        owner: index of the element of each initial person.
+        sources: sources of the trial.
+        agents: number of agents of the world.
+    """
+    elements = [*owners, *sources]
+    reactions = [tuple(getattr(one, "reactions", ())) for one in elements]
+    if not any(reactions):
+        return None
+    groups = [[(spec.reaction(), spec.share) for spec in rows] for rows in reactions if rows]
+    numbers = iter(range(len(groups)))
+    group = [next(numbers) if rows else -1 for rows in reactions]
+    members = [group[k] for k in owner] + [-1] * (agents - len(owner))
+    return RobotReactions(groups, members, group[len(owners) :])

@@ -1,0 +1,1 @@
+"""Doors: leaves that close a passage, and when they open."""

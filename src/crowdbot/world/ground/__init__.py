@@ -1,0 +1,1 @@
+"""Uneven ground: ramps, stairs, platforms and thresholds, how high they are, who can pass them, and what rays hit."""

@@ -1,0 +1,1 @@
+"""Robots in the physics world: bodies, servos of wheels and bases, springs of castors, forces on links."""

@@ -1,0 +1,92 @@
+"""Robots whose pose comes from outside, in the engine: they keep to their path with the velocity of their motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene, Twist
+from crowdbot.world.robots.drives.drive import Twists
+
+from .robot_body import RobotBody
+
+__all__ = ["MirroredRobots"]
+
+Floats = NDArray[np.float64]
+
+
+class MirroredRobots:
+    """Robots of one step of a physics world that are moved along the path to their new pose.
+
+    Their base is kinematic: at each engine step it has the pose on this path and the velocity of the motion, which
+    contacts do not change. So what a robot hits feels its speed. A robot stays upright at its height. Driven wheels
+    roll with it.
+
+    Args:
+        bodies: bodies of these robots by agent.
+        before, after: scenes with their poses at the start and at the end of the step, E = 1.
+        dt: time step of the world [s].
+
+    Attributes:
+        twists: twist of each robot during the step.
+    """
+
+    def __init__(self, bodies: Mapping[int, RobotBody], before: Scene, after: Scene, dt: float) -> None:
+        self.dt = dt
+        self.twists: dict[int, Twists] = {}
+        self._bases: list[_MirroredBase] = []
+        for agent, body in bodies.items():
+            start = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
+            end = (*after.position[0, agent].tolist(), float(after.heading[0, agent]))
+            base = _MirroredBase(body, start, end, dt)
+            self._bases.append(base)
+            self.twists[agent] = Twists.of(base.twist, 1)
+
+    def go(self, share: float) -> None:
+        """Put the robots where they are at this fraction of the step."""
+        for base in self._bases:
+            base.go(share * self.dt)
+
+
+class _MirroredBase:
+    """Base of one robot that moves from one pose x, y [m], heading [rad] to another in a time [s]."""
+
+    def __init__(
+        self, body: RobotBody, start: tuple[float, float, float], end: tuple[float, float, float], dt: float
+    ) -> None:
+        turn = math.pi - (math.pi - (end[2] - start[2])) % (2.0 * math.pi)
+        self.start, self.turn = start, turn / dt
+        self.vx, self.vy = (end[0] - start[0]) / dt, (end[1] - start[1]) / dt
+        heading = start[2] + 0.5 * turn
+        cos, sin = math.cos(heading), math.sin(heading)
+        self.twist = Twist(cos * self.vx + sin * self.vy, self.turn, cos * self.vy - sin * self.vx)
+        model, self._data = body._model, body._data
+        names = {model.joint(k).name for k in range(model.njnt)}
+        self._planar = f"{body.prefix}base" not in names
+
+        def column(name: str) -> tuple[int, int]:
+            joint: Any = model.joint(body.prefix + name)
+            return int(joint.qposadr[0]), int(joint.dofadr[0])
+
+        self._base = [column(name) for name in (("base_x", "base_y", "base_yaw") if self._planar else ("base",))]
+        self._height = 0.0 if self._planar else float(self._data.qpos[self._base[0][0] + 2])
+        speeds = body.robot.wheel_speeds(self.twist)
+        self._wheels = [(column(name)[1], speed) for name, speed in speeds.items() if f"{body.prefix}{name}" in names]
+
+    def go(self, time: float) -> None:
+        """Set pose and velocity at a time [s] after the start."""
+        x, y, heading = self.start[0] + time * self.vx, self.start[1] + time * self.vy, self.start[2] + time * self.turn
+        place, speed = self._data.qpos, self._data.qvel
+        if self._planar:
+            for (row, dof), value, rate in zip(self._base, (x, y, heading), (self.vx, self.vy, self.turn), strict=True):
+                place[row], speed[dof] = value, rate
+        else:
+            row, dof = self._base[0]
+            place[row : row + 7] = x, y, self._height, math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)
+            speed[dof : dof + 6] = self.vx, self.vy, 0.0, 0.0, 0.0, self.turn
+        for dof, rate in self._wheels:
+            speed[dof] = rate

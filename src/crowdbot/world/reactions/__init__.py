@@ -1,0 +1,1 @@
+"""Reactions of people to robots, on top of any crowd model."""

@@ -1,0 +1,289 @@
+"""RobotReactions: the reactions of a crowd to robots, as a layer between routing and crowd model."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene
+from crowdbot.world.crowd.agent_arrays import BOOL, FLOAT, dense
+from crowdbot.world.crowd.journey import JOURNEY
+from crowdbot.world.crowd.people_flow import PeopleFlow
+from crowdbot.world.crowd.person_random import uniform
+
+from .reaction import REACTIONS, RobotReaction
+from .reaction_kernel import choose_motion, update_states
+
+__all__ = ["REACTION", "REACTION_STATE", "RobotReactions", "people_by_reaction", "reaction_codes"]
+
+Floats = NDArray[np.float64]
+Step = Callable[[Scene, float], Scene]
+
+REACTION, REACTION_STATE = "reaction", "reaction_state"
+"""Names in the memory of a scene. ``[E, A]``: 1 + the index of the reaction of a person, -1 for none, 0 if it is not
+drawn yet. ``[E, A, 4]``: code of the reaction in force (0: none), time left of it or of the pause [s], index of the
+robot, time for which the robot has been out of sight [s].
+"""
+AHEAD = 2.0
+"""Time [s] that a goal lies ahead of a person who reacts."""
+STILL = 0.2
+"""Speed [m/s] below which people turn on the spot."""
+TURN = 2.5
+"""Turn rate of a person who turns to a robot [rad/s]."""
+ASIDE = math.pi / 4.0
+"""Largest angle [rad] between the walking direction and the body of a person who looks at a robot."""
+
+
+@dataclass(frozen=True)
+class RobotReactions:
+    """Which people react to robots, and how.
+
+    Each person draws one of the reactions of their group, or none, by a random number that depends only on the seed
+    and their id. Reactions change the goal and the preferred speed that the crowd model gets, so they work with every
+    model. People with the reactions ``ignore`` and ``impassive`` take their step from a second call of the model,
+    without robots or with robots that stand still.
+
+    Fields:
+        groups: groups of people: pairs of a reaction and its share in the group. The sum of the shares is at most 1;
+            the rest does not react.
+        members: group of each initial agent ``[A]``, -1 for none.
+        sources: group of the people of each source, -1 for none.
+
+    Raises:
+        InputError: a share is not from 0 to 1, their sum is larger, or a group does not exist.
+
+    >>> groups = ([(RobotReaction("curious"), 0.25), (RobotReaction("scared"), 0.75)],)
+    >>> reactions = RobotReactions(groups, members=[0, 0, -1])
+    >>> reactions.reactions[0].kind, len(reactions.reactions)
+    ('curious', 2)
+    """
+
+    groups: Sequence[Sequence[tuple[RobotReaction, float]]]
+    members: Sequence[int] = ()
+    sources: Sequence[int] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "groups", tuple(tuple(group) for group in self.groups))
+        for name in ("members", "sources"):
+            numbers = np.asarray(getattr(self, name), dtype=np.int64)
+            object.__setattr__(self, name, tuple(numbers.tolist()))
+            if numbers.size and not -1 <= numbers.min() <= numbers.max() < len(self.groups):
+                raise InputError(f"RobotReactions: {name} must be from -1 to {len(self.groups) - 1}")
+        for group in self.groups:
+            shares = [float(share) for _, share in group]
+            if not all(0.0 <= share <= 1.0 for share in shares) or sum(shares) > 1.0 + 1e-9:
+                raise InputError(f"RobotReactions: the shares {shares} must be from 0 to 1, and at most 1 together")
+
+    @functools.cached_property
+    def reactions(self) -> tuple[RobotReaction, ...]:
+        """The reactions of all groups, in order."""
+        return tuple(reaction for group in self.groups for reaction, _ in group)
+
+    @functools.cached_property
+    def _table(self) -> tuple[NDArray[np.int64], Floats]:
+        rows = [
+            (one.distance, one.duration, one.pause, one.speed, one.gap, one.repulsion, one.range,
+             math.cos(0.5 * one.field_of_view))
+            for one in self.reactions
+        ]  # fmt: skip
+        codes = np.array([one.code for one in self.reactions], dtype=np.int64)
+        return codes, np.array(rows, dtype=np.float64).reshape(-1, 8)
+
+    def start(self, scene: Scene, flow: PeopleFlow) -> Scene:
+        """Return the initial scene with the reaction of each initial person in its memory.
+
+        Args:
+            scene: the scene.
+            flow: seeds and identities of the people.
+        """
+        group = np.full(scene.shape, -1, dtype=np.int64)
+        first = min(len(self.members), scene.shape[1])
+        group[:, :first] = self.members[:first]
+        who = np.zeros(scene.shape, dtype=np.bool_)
+        who[:, :first] = True
+        memory = {REACTION: np.zeros(scene.shape), REACTION_STATE: np.zeros((*scene.shape, 4))}
+        return self._assign(scene.replace(memory={**scene.memory, **memory}), group, who & ~scene.external, flow)
+
+    def apply(
+        self, scene: Scene, step: Step, robots: Sequence[int], radius: Floats, flow: PeopleFlow, dt: float
+    ) -> tuple[Scene, Step]:
+        """Return the scene for the crowd model with the wishes of people who react, and the step of the model.
+
+        Args:
+            scene: the scene at the start of the step, with the next points of paths as goals.
+            step: step of the crowd model.
+            robots: indices of the robots.
+            radius: ``[E, A]`` radii of all bodies [m], without margins.
+            flow: seeds and identities of the people.
+            dt: time step [s].
+        """
+        scene = self._assign_new(scene, flow)
+        shape, codes = scene.shape, self._table[0]
+        memory, pairs = scene.memory, (*scene.shape, 2)
+        rule, state = dense(memory[REACTION], shape, FLOAT), memory[REACTION_STATE].copy()
+        if not len(codes) or not len(robots):
+            return scene, step
+        ahead = np.stack([np.cos(scene.heading), np.sin(scene.heading)], axis=-1)
+        position, active = dense(scene.position, pairs, FLOAT), dense(scene.active, shape, BOOL)
+        some = update_states(
+            *self._table, rule, position, ahead, active, dense(scene.external, shape, BOOL),
+            dense(scene.visible, shape, BOOL), np.array(robots, dtype=np.int64),
+            np.ascontiguousarray(scene.walls.segments()), float(dt), state,
+        )  # fmt: skip
+        scene = scene.replace(memory={**memory, REACTION_STATE: state})
+        views = self._views(step, robots, state[..., 0])
+        if not some:
+            return scene, views
+        wish, steers, toward = np.array(scene.desired_velocity(dt)), np.zeros(shape, dtype=np.bool_), np.zeros(pairs)
+        choose_motion(
+            self._table[1], rule, state, position, dense(scene.velocity, pairs, FLOAT), ahead,
+            dense(radius, shape, FLOAT), dense(scene.preferred_speed, shape, FLOAT),
+            dense(scene.max_speed, shape, FLOAT), active, wish, steers, toward,
+        )  # fmt: skip
+        looks = (state[..., 0] == REACTIONS.index("look")) & steers
+        return _with_wishes(scene, wish, steers), _turn_after(views, toward, looks)
+
+    def _assign_new(self, scene: Scene, flow: PeopleFlow) -> Scene:
+        """Return the scene with the reactions of people who have entered since the last step."""
+        new = (scene.memory[REACTION] == 0.0) & np.greater(scene.active, scene.external)
+        if not np.any(new):
+            return scene
+        group = np.full(scene.shape, -1, dtype=np.int64)
+        if self.sources and flow.journeys is not None:
+            first = len(flow.journeys.journeys) - len(self.sources)
+            source = scene.memory[JOURNEY].astype(np.int64) - first
+            group = np.where(source >= 0, np.asarray(self.sources)[np.maximum(source, 0)], -1)
+        return self._assign(scene, group, new, flow)
+
+    def _assign(self, scene: Scene, group: NDArray[np.int64], who: NDArray[np.bool_], flow: PeopleFlow) -> Scene:
+        """Return the scene in which the people ``who`` of groups ``[E, A]`` have drawn their reactions."""
+        luck = uniform(flow.seeds[:, None], flow.ids, "reaction")
+        rule, first = np.where(who, -1.0, scene.memory[REACTION]), 0
+        for number, rows in enumerate(self.groups):
+            ends = np.cumsum([share for _, share in rows])
+            drawn = np.searchsorted(ends, luck, side="right")
+            mine = who & (group == number) & (drawn < len(rows))
+            rule = np.where(mine, 1.0 + first + drawn, rule)
+            first += len(rows)
+        state = np.where(who[..., None], 0.0, scene.memory[REACTION_STATE])
+        return scene.replace(memory={**scene.memory, REACTION: rule, REACTION_STATE: state})
+
+    def _views(self, step: Step, robots: Sequence[int], code: Floats) -> Step:
+        """Return a step in which some people see no robots, or robots that stand still."""
+        present = {one.kind for one in self.reactions}
+        views = [kind for kind in ("ignore", "impassive") if kind in present]
+        if not views:
+            return step
+
+        def look(scene: Scene, dt: float) -> Scene:
+            after = step(scene, dt)
+            for kind in views:
+                who = code == REACTIONS.index(kind)
+                after = _merge(after, step(_view(scene, kind, robots), dt), who)
+            return after
+
+        return look
+
+
+def reaction_codes(scene: Scene) -> NDArray[np.int8] | None:
+    """Return ``[E, A]`` the code of the reaction in force of each person; None in a world without reactions.
+
+    A code is an index in :data:`REACTIONS`, 0 for none.
+
+    >>> reaction_codes(Scene.of([[0.0, 0.0]])) is None
+    True
+    """
+    state = scene.memory.get(REACTION_STATE)
+    if state is None:
+        return None
+    return np.where(scene.active, state[..., 0], 0.0).astype(np.int8)
+
+
+def people_by_reaction(scene: Scene, ids: NDArray[np.int64]) -> dict[str, list[int]] | None:
+    """Return the ids of the people with a reaction in force, by kind; None in a world without reactions.
+
+    Args:
+        scene: scene with E = 1.
+        ids: ``[A]`` identities.
+
+    >>> people_by_reaction(Scene.of([[0.0, 0.0]]), np.array([7])) is None
+    True
+    """
+    codes = reaction_codes(scene)
+    if codes is None:
+        return None
+    kinds = sorted({int(code) for code in codes[0].tolist()} - {0})
+    return {REACTIONS[code]: np.sort(ids[codes[0] == code]).tolist() for code in kinds}
+
+
+def _view(scene: Scene, kind: str, robots: Sequence[int]) -> Scene:
+    """Return the scene as people with a reaction see it."""
+    index = list(robots)
+    if kind == "ignore":
+        active = scene.active.copy()
+        active[:, index] = False
+        return scene.replace(active=active)
+    velocity = scene.velocity.copy()
+    velocity[:, index] = 0.0
+    return scene.replace(velocity=velocity)
+
+
+def _merge(after: Scene, other: Scene, who: NDArray[np.bool_]) -> Scene:
+    """Return a scene in which the people ``who`` ``[E, A]`` move as in another one."""
+
+    def choose(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
+        return np.where(who.reshape(*who.shape, *(1,) * (one.ndim - 2)), two, one)
+
+    memory = {name: choose(value, other.memory[name]) for name, value in after.memory.items() if name in other.memory}
+    return after.replace(
+        position=choose(after.position, other.position),
+        velocity=choose(after.velocity, other.velocity),
+        heading=choose(after.heading, other.heading),
+        memory={**after.memory, **memory},
+    )
+
+
+def _with_wishes(scene: Scene, wish: Floats, steers: NDArray[np.bool_]) -> Scene:
+    """Return the scene with goals and preferred speeds for the desired velocities ``[E, A, 2]`` of some people."""
+    if scene.preferred_velocity is not None:
+        return scene.replace(preferred_velocity=np.where(steers[..., None], wish, scene.preferred_velocity))
+    length = np.sqrt(wish[..., 0] ** 2 + wish[..., 1] ** 2)
+    goal = scene.position + AHEAD * np.where((length > 1e-3)[..., None], wish, 0.0)
+    speed = np.where(steers & (length > 1e-3), length, scene.preferred_speed)
+    return scene.replace(goal=np.where(steers[..., None], goal, scene.goal), preferred_speed=speed)
+
+
+def _turn_after(step: Step, toward: Floats, looks: NDArray[np.bool_]) -> Step:
+    """Return a step after which people turn to a robot.
+
+    Args:
+        step: step of the crowd model.
+        toward: ``[E, A, 2]`` vector to the robot, 0 for people who do not turn.
+        looks: ``[E, A]`` who turns while walking, too.
+    """
+    turns = np.any(toward != 0.0, axis=-1)
+    if not np.any(turns):
+        return step
+    robot = np.arctan2(toward[..., 1], toward[..., 0])
+
+    def turn(scene: Scene, dt: float) -> Scene:
+        after = step(scene, dt)
+        speed = np.sqrt(after.velocity[..., 0] ** 2 + after.velocity[..., 1] ** 2)
+        way = np.arctan2(after.velocity[..., 1], after.velocity[..., 0])
+        slow = speed < STILL
+        aim = np.where(slow, robot, way + np.clip(_wrap(robot - way), -ASIDE, ASIDE))
+        heading = scene.heading + np.clip(_wrap(aim - scene.heading), -TURN * dt, TURN * dt)
+        return after.replace(heading=np.where(turns & (slow | looks), _wrap(heading), after.heading))
+
+    return turn
+
+
+def _wrap(angle: Floats) -> Floats:
+    """Return angles [rad] from -pi, exclusive, to pi."""
+    return math.pi - (math.pi - angle) % (2.0 * math.pi)

@@ -1,0 +1,122 @@
+"""Choice of the drive of an imported robot: type, limits and geometry by kind of base."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.world.robots.base_kind import BaseKind, FoundWheel
+from crowdbot.world.urdf import RobotModel
+
+from .skid_steer import slip_of
+
+__all__ = ["drive_type", "middle_angle", "rollers_of", "turns_wheels", "wheel_attributes"]
+
+WHEELED = ("differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional")
+"""Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
+FASTEST = 3.0
+"""Largest guess of the maximum turn rate [rad/s]."""
+FASTEST_SLIDING = 2.0
+"""The same for skid-steer bases and omnidirectional wheels, as that of Husky: faster, they slide outwards."""
+
+
+def turns_wheels(model: RobotModel, base: BaseKind) -> bool:
+    """Return whether motors turn the wheels in the physics world.
+
+    Wheels with rollers of their own links, and wheels that all steer, cannot be controlled: these bases are moved
+    directly.
+    """
+    driven = [wheel for wheel in base.wheels if wheel.joint in base.driven]
+    needed = {"differential": 2, "skid-steer": 4, "mecanum": 4, "omnidirectional": 3}.get(base.kind, 1)
+    if base.kind not in WHEELED or len(driven) < needed:
+        return False
+    if not all(model.links[wheel.link].collisions for wheel in base.wheels):
+        return False
+    if base.kind in ("mecanum", "omnidirectional"):
+        plain = not any(joint.parent in {wheel.link for wheel in driven} for joint in model.movable)
+        return plain and (len(driven) == 4 if base.kind == "mecanum" else _star(base) is not None)
+    return base.kind != "skid-steer" or base.wheelbase_of_axles > 0.0
+
+
+def rollers_of(base: BaseKind, wheel: FoundWheel) -> float | None:
+    """Return the angle [rad] of the rollers of a wheel from its rolling direction, None without rollers.
+
+    The rollers of mecanum wheels are taken to be in the usual arrangement, see :class:`MecanumDrive`.
+    """
+    if base.kind == "omnidirectional":
+        return 0.0
+    if base.kind != "mecanum":
+        return None
+    centre = np.mean([one.center for one in base.wheels], axis=0)
+    ahead, aside = (wheel.center - centre)[:2].tolist()
+    return -math.copysign(math.pi / 4.0, ahead * aside)
+
+
+def drive_type(base: BaseKind, wheeled: bool) -> str:
+    """Return the type of the drive of a base, as in ``robot.xml``."""
+    if base.kind in ("ackermann", "tricycle"):
+        steered = all(wheel.steering for wheel in base.wheels if wheel.joint in base.driven)
+        return "tricycle-drive" if base.kind == "tricycle" and steered else "ackermann-drive"
+    if base.kind == "legged":
+        return "legged-drive"
+    if base.kind in ("mecanum", "omnidirectional"):
+        own = "mecanum-drive" if base.kind == "mecanum" else "omni-wheel-drive"
+        return own if wheeled else "omnidirectional"
+    return "skid-steer-drive" if base.kind == "skid-steer" and wheeled else "differential-drive"
+
+
+def wheel_attributes(base: BaseKind, track: float, wheeled: bool) -> tuple[list[tuple[str, float, str]], float, float]:
+    """Return attributes of a drive that say where its wheels are, rim speed per turn rate [m], and largest turn rate.
+
+    The attributes are name, value and unit; the largest turn rate [rad/s] is a guess.
+    """
+    most = FASTEST_SLIDING if base.kind in ("skid-steer", "omnidirectional") else FASTEST
+    long, star = base.wheelbase_of_axles, _star(base)
+    radius = ("wheel_radius", base.wheels[0].radius if base.wheels else 0.0, "m")
+    if wheeled and base.kind in ("skid-steer", "mecanum"):
+        rows = [("track", track, "m"), ("wheelbase", long, "m"), radius]
+        return rows, 0.5 * (track * slip_of(track, long) if base.kind == "skid-steer" else track + long), most
+    if wheeled and base.kind == "omnidirectional" and star is not None:
+        count, distance, first = star
+        return (
+            [("wheels", float(count), ""), ("distance", distance, "m"), ("first_angle", first, "rad"), radius],
+            (distance),
+            most,
+        )
+    return [], 0.5 * track, most
+
+
+def _star(base: BaseKind) -> tuple[int, float, float] | None:
+    """Return number, distance [m] and first angle [rad] of wheels at equal angles on a circle; None for others."""
+    places = np.array([wheel.center[:2] for wheel in base.wheels])
+    if len(places) < 3 or any(wheel.steering for wheel in base.wheels):
+        return None
+    away = places - (places.mean(axis=0) * (1.0, 0.0))
+    distance = np.hypot(away[:, 0], away[:, 1])
+    angles = np.sort(np.arctan2(away[:, 1], away[:, 0]))
+    gaps = np.diff([*angles, angles[0] + 2.0 * math.pi])
+    radial = [
+        abs(float(wheel.axle[0] * way[1] - wheel.axle[1] * way[0]))
+        for wheel, way in zip(base.wheels, away / distance[:, None].clip(1e-9), strict=True)
+    ]
+    even = np.ptp(distance) < 0.02 * distance.mean() and np.ptp(gaps) < 0.05
+    return (len(places), float(distance.mean()), float(angles[0])) if even and max(radial) < 0.1 else None
+
+
+def middle_angle(base: BaseKind, inner: float) -> float:
+    """Return the maximum steering angle [rad] of the (virtual central) steered wheel; 0 if the limit is useless.
+
+    The inner wheel of a car steers more than the middle: ``cot(middle) = cot(inner) + track / (2 wheelbase)``.
+
+    Args:
+        base: wheels and kind of base.
+        inner: limit of the steering joints [rad].
+    """
+    if base.kind == "tricycle":
+        return min(inner, math.pi / 2.0 if drive_type(base, True) == "tricycle-drive" else 1.4)
+    if not 0.0 < inner < 1.4:
+        return 0.0
+    sides = [float(wheel.center[1]) for wheel in base.wheels if wheel.steering]
+    half = 0.5 * (max(sides) - min(sides)) / base.wheelbase if base.wheelbase else 0.0
+    return math.atan(1.0 / (1.0 / math.tan(inner) + half))

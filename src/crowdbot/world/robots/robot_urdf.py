@@ -1,0 +1,233 @@
+"""URDF file of a robot folder: links and joints of the maker's file, meshes, masses, friction and motors."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Element
+from crowdbot.world.urdf import Link, LinkInertia, RobotModel, replacement_shape
+
+from .base_kind import BaseKind
+from .guess_table import DERIVED, FILE, GUESS, GuessTable
+
+__all__ = ["add_masses", "add_motors", "add_shapes", "copy_elements", "copy_meshes", "format_number"]
+
+Floats = NDArray[np.float64]
+GRAVITY = 9.81
+
+
+def format_number(value: float) -> str:
+    """Return a number with 9 digits.
+
+    >>> format_number(0.1)
+    '0.1'
+    """
+    return f"{value:.9g}"
+
+
+def copy_elements(source: Element, name: str) -> Element:
+    """Return <robot> with copies of links, joints and materials."""
+    kept = [child for child in source.children if child.tag in ("link", "joint", "material")]
+    return Element("robot", {"name": name}, [_copy(child) for child in kept])
+
+
+def _copy(element: Element) -> Element:
+    children = [_copy(child) for child in element.children]
+    return Element(element.tag, dict(element.attributes), children, stray=element.stray)
+
+
+def _all(element: Element) -> list[Element]:
+    found, waiting = [], [element]
+    while waiting:
+        found.append(waiting.pop())
+        waiting.extend(found[-1].children)
+    return found
+
+
+def copy_meshes(root: Element, model: RobotModel) -> dict[str, Path]:
+    """Name meshes by their place in the robot folder, and return the files to copy by that place.
+
+    A mesh with material files or textures gets a folder of its own. A mesh that was not found keeps a name, so that it
+    can be added later.
+    """
+    names: dict[str, str] = {}
+    copies: dict[str, Path] = {}
+    for element in _all(root):
+        if element.tag == "texture":
+            element.attributes.pop("filename", None)
+        if element.tag != "mesh" or "filename" not in element.attributes:
+            continue
+        reference = element.attributes["filename"].strip()
+        path, beside = model.meshes.get(reference), model.mesh_files.get(reference, {})
+        name = names.setdefault(reference, _mesh_name(path, reference, names, bool(beside)))
+        element.attributes["filename"] = name
+        if path is not None:
+            copies[name] = path
+        for inner, file in beside.items():
+            copies[f"{name.rpartition('/')[0]}/{_place_of(inner, file)}"] = file
+    return copies
+
+
+def _mesh_name(path: Path | None, reference: str, names: Mapping[str, str], folder: bool) -> str:
+    """Return a new file name in ``meshes``."""
+    file = Path(reference.rpartition("/")[2] if path is None else path.name)
+    plain = "".join(letter if letter.isalnum() or letter in "_-" else "_" for letter in file.stem)[:60] or "mesh"
+    ending = file.suffix.lower()[:6]
+    for number in range(1, len(names) + 2):
+        stem = plain if number == 1 else f"{plain}-{number}"
+        name = f"meshes/{stem}/{stem}{ending}" if folder else f"meshes/{stem}{ending}"
+        if name not in names.values():
+            break
+    return name
+
+
+def _place_of(name: str, file: Path) -> str:
+    """Return where a file of a mesh is put beside it: the name in the mesh if it is a plain path below it."""
+    plain = name.strip().replace("\\", "/").removeprefix("./")
+    safe = re.fullmatch(r"[\w][\w .+-]*(?:/[\w][\w .+-]*){0,4}", plain, re.ASCII) is not None and len(plain) < 120
+    return plain if safe else file.name
+
+
+def add_masses(table: GuessTable, root: Element, model: RobotModel, urdf: str) -> float:
+    """Write the masses that the file does not give, list them and the total, and return the total mass [kg]."""
+    known = sum(any(_has_mass(inner) for inner in link.each("inertial")) for link in root.each("link"))
+    why = "it moves, and has no <inertial>" if known else "no link has <inertial>: density of water"
+    total = guessed = 0.0
+    for element in root.each("link"):
+        name = element.attributes.get("name", "")
+        inertial = model.links[name].inertial
+        if inertial is None:
+            continue
+        mass = inertial.mass
+        if not any(_has_mass(inner) for inner in element.each("inertial")):
+            mass = table.number(f"mass of {name}", mass, why, f"<mass> in {urdf}", GUESS, unit="kg")
+            element.children = [child for child in element.children if child.tag != "inertial"]
+            element.children.append(_inertial(mass, inertial))
+            guessed += mass
+        total += mass
+    source = f"<inertial> of {known} links" + (f"; {guessed:.4g} kg are guesses" if guessed else "")
+    table.add("mass", f"{total:.4g} kg", source, f"<mass> in {urdf}", DERIVED if guessed else FILE)
+    return total
+
+
+def _has_mass(inertial: Element) -> bool:
+    values = [mass.attributes.get("value", "0") for mass in inertial.each("mass")]
+    try:
+        return any(float(value) > 0.0 for value in values)
+    except ValueError:
+        return True
+
+
+def _inertial(mass: float, inertial: LinkInertia) -> Element:
+    tensor = inertial.tensor * (mass / inertial.mass)
+    names = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
+    return Element("inertial", {}, [
+        Element("origin", {"xyz": " ".join(repr(float(value)) for value in inertial.center)}),
+        Element("mass", {"value": repr(float(mass))}),
+        Element("inertia", {key: repr(float(tensor[i, j])) for key, i, j in names}),
+    ])  # fmt: skip
+
+
+def add_shapes(table: GuessTable, root: Element, model: RobotModel, urdf: str) -> None:
+    """Give every link with mass a box, for a robot without any shape."""
+    for element in root.each("link"):
+        link: Link = model.links[element.attributes.get("name", "")]
+        if link.inertial is None:
+            continue
+        size, origin, what = replacement_shape(link.inertial)
+        for tag in ("visual", "collision"):
+            geometry = Element("geometry", {}, [Element("box", {"size": " ".join(map(format_number, size))})])
+            place = {"xyz": " ".join(map(format_number, origin[:3, 3])), "rpy": _angles(origin[:3, :3])}
+            element.children.append(Element(tag, {}, [Element("origin", place), geometry]))
+        sides = " x ".join(f"{side:.3g}" for side in size)
+        table.add(f"shape of {link.name}", f"{sides} m", f"the file has no shapes: {what}", f"<link> in {urdf}", GUESS)
+
+
+def _angles(rotation: Floats) -> str:
+    """Return roll, pitch and yaw of a rotation ``[3, 3]``."""
+    pitch = math.asin(min(1.0, max(-1.0, -float(rotation[2, 0]))))
+    if abs(math.cos(pitch)) < 1e-9:
+        roll, yaw = 0.0, math.atan2(-float(rotation[0, 1]), float(rotation[1, 1]))
+    else:
+        roll = math.atan2(float(rotation[2, 1]), float(rotation[2, 2]))
+        yaw = math.atan2(float(rotation[1, 0]), float(rotation[0, 0]))
+    return " ".join(map(format_number, (roll, pitch, yaw)))
+
+
+def add_motors(
+    table: GuessTable,
+    root: Element,
+    model: RobotModel,
+    base: BaseKind,
+    wheeled: bool,
+    torque: float | None,
+    urdf: str,
+) -> None:
+    """Add motors of wheels and other joints, and limits that the file does not give.
+
+    Args:
+        table: lists the motors.
+        root: <robot> of the folder.
+        model: the robot.
+        base: its base.
+        wheeled: whether motors turn the wheels.
+        torque: largest torque [N m] of the wheels, if a plugin gives it.
+        urdf: name of the URDF file.
+    """
+    elements = {joint.attributes.get("name", ""): joint for joint in root.each("joint")}
+    wheels = {wheel.joint: wheel for wheel in base.wheels}
+    parents = {joint.child: joint.parent for joint in model.joints.values()}
+    swivels = {parents.get(link, "") for link in base.castors} - {model.root}
+    motors: dict[str, str] = {}
+    for joint in model.movable:
+        if joint.size != 1 or joint.child in base.castors or (joint.child in swivels and not joint.motor.kind):
+            continue
+        wheel = wheels.get(joint.name)
+        if wheel is not None and not (wheeled and joint.name in base.driven):
+            continue
+        kind = "velocity" if wheel else "position"
+        if joint.motor.kind != kind:
+            source = "no transmission gives it" if not joint.motor.kind else f"instead of {joint.motor.kind}"
+            change = f"<ros2_control> in {urdf}"
+            status = GUESS if not joint.motor.kind else DERIVED
+            words = ("position", "velocity", "effort", "none")
+            kind = table.word(f"motor of {joint.name}", kind, source, change, status, words)
+        if kind == "none":
+            continue
+        motors[joint.name] = kind
+        if 0.0 < joint.motor.effort < math.inf:
+            continue
+        effort = max(10.0, model.mass)
+        if wheel:  # skid-steer wheels also push against the friction of the others
+            share = (2.0 if base.kind == "skid-steer" else 1.0) / max(1, len(base.driven))
+            effort = share * model.mass * GRAVITY * wheel.radius
+        known = wheel is not None and torque is not None
+        why = "the drive plugin" if known else ("weight and radius" if wheel else "mass of the robot")
+        effort = table.number(
+            f"effort of {joint.name}", torque if known and torque is not None else effort, why, f"<limit> in {urdf}",
+            FILE if known else GUESS, unit="N" if joint.kind == "prismatic" else "N m",
+        )  # fmt: skip
+        limit = next(iter(elements[joint.name].each("limit")), None)
+        if limit is None:
+            limit = Element("limit")
+            elements[joint.name].children.append(limit)
+        limit.attributes["effort"] = format_number(effort)
+        if not 0.0 < joint.motor.velocity < math.inf:
+            limit.attributes["velocity"] = format_number(3.0 / wheel.radius if wheel else 2.0)
+    if motors:
+        root.children.append(_control(motors))
+
+
+def _control(motors: Mapping[str, str]) -> Element:
+    """Return <ros2_control> with the command types of joints."""
+    rows = [
+        Element("joint", {"name": name}, [Element("command_interface", {"name": kind})])
+        for name, kind in motors.items()
+    ]
+    return Element("ros2_control", {"name": "motors", "type": "system"}, rows)

@@ -1,0 +1,144 @@
+"""The drive laboratory: traces, manoeuvres, figures, and the bars of the robots that ship."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from crowdbot.benchmark import (
+    DRIVE_BARS,
+    DriveFigures,
+    DriveTrace,
+    Manoeuvre,
+    compare_traces,
+    manoeuvres,
+    measure_drives,
+    speed_grid,
+    trace_physics,
+    trace_planar,
+    write_drives_page,
+)
+from crowdbot.cli import main
+from crowdbot.core import InputError, Scene, Twist
+from crowdbot.models import ORCA
+from crowdbot.world import AckermannDrive, Omnidirectional, PlanarWorld, Robot, builtin_robots
+
+STEP = 0.01
+
+
+def test_a_planar_trace_is_the_planar_world():
+    """With latency, the trace equals what PlanarWorld does in an empty hall."""
+    robot = Robot.load("turtlebot2")
+    commands = [Twist(0.5, 1.0)] * 50 + [Twist()] * 50
+    trace = trace_planar(robot, commands, STEP)
+    scene = Scene.of([[0.0, 0.0]], heading=[0.0], external=[True], radius=[robot.radius])
+    world = PlanarWorld(scene, ORCA(), {0: robot.drive}, dt=STEP, latency={0: robot.latency})
+    for k, command in enumerate(commands):
+        for _ in range(2):
+            world.step({0: command})
+        np.testing.assert_allclose(trace.position[k], world.scene.position[0, 0], atol=1e-12)
+    assert trace.heading[-1] == pytest.approx(0.0 + np.sum(trace.twist[:, 2]) * 0.02, abs=0.02)
+
+
+def test_headings_of_traces_do_not_jump():
+    trace = trace_physics(Robot.load("differential"), [Twist(0.0, 1.5)] * 300, STEP)
+    assert trace.heading[-1] > 2.0 * math.pi
+    assert np.abs(np.diff(trace.heading)).max() < 0.05
+
+
+def test_figures_of_made_up_motions():
+    robot = Robot.load("differential")  # 1 m/s, 1.5 rad/s, 1 m/s2, 3 rad/s2
+    first = Manoeuvre("grid", (Twist(1.0, 0.0),) * 150 + (Twist(),) * 100, 150)
+    plane = trace_planar(robot, first.commands, STEP)
+    fast = plane._replace(twist=plane.twist * 1.1)
+    found = compare_traces(robot.drive, first, fast, plane)
+    assert found.overshoot == pytest.approx(0.1)
+    assert found.steady_error == pytest.approx(0.1)
+    assert found.acceleration == pytest.approx(1.1)
+    away = plane._replace(position=plane.position + [0.0, 0.25], heading=plane.heading + 0.5, tilt=plane.tilt + 0.6)
+    found = compare_traces(robot.drive, first, away, plane)
+    assert found.path_error == pytest.approx(0.25 / 3.0, rel=0.05)
+    assert found.heading_error == pytest.approx(0.5)
+    assert found.fallen
+    assert found.stop_distance == pytest.approx(0.495)
+    assert compare_traces(robot.drive, first, plane, plane) == dataclasses.replace(
+        DriveFigures(), acceleration=pytest.approx(1.0), stop_distance=pytest.approx(0.495)
+    )
+
+
+def test_the_grid_holds_what_a_drive_can_do():
+    grid = speed_grid(Omnidirectional(max_speed=0.5))
+    assert any(twist.left for twist in grid)
+    assert all(twist.forward != 0.0 for twist in speed_grid(AckermannDrive()))
+    names = [one.name for one in manoeuvres(Robot.load("pepper"))]
+    assert names.count("grid") == 26
+    assert names[-5:] == ["straight", "ramp", "sine", "weave", "slip"]
+
+
+@pytest.mark.parametrize("name", builtin_robots())
+def test_shipped_robots_are_within_the_bars(name):
+    """At full speed, full turn rate and both; the command measures the whole grid at 2, 5 and 10 ms."""
+    report = measure_drives([name], steps=[0.005, 0.01], quick=True)
+    for row in report.rows:
+        assert row.failures == ()
+        assert {bar: getattr(row.grid, bar) <= most for bar, most in DRIVE_BARS.items()} == dict.fromkeys(
+            DRIVE_BARS, True
+        )
+        assert row.others["straight"].heading_change < 0.01
+        assert row.grid.stop_error < 0.02
+
+
+def test_qolo_keeps_its_wheels_on_the_floor():
+    """Asked for 1.5 m/s and 2.06 rad/s, it spun out; its drive now limits the turn rate at this speed."""
+    robot = Robot.load("qolo")
+    trace = trace_physics(robot, [Twist(1.5, 2.06)] * 150, 0.005)
+    assert trace.twist[-1, 0] == pytest.approx(1.5, rel=0.01)
+    assert trace.twist[-1, 2] == pytest.approx(1.0 / 1.5, rel=0.01)
+    assert trace.tilt.max() < 0.01
+
+
+def test_a_page_has_its_tables_and_plots(tmp_path):
+    report = measure_drives(["differential"], quick=True)
+    files = write_drives_page(report, tmp_path / "drives.md", "crowdbot bench drives --quick")
+    assert [file.name for file in files] == ["drives.md", "steps.png", "paths.png", "slip.png", "time-steps.png"]
+    assert all(file.stat().st_size > 1000 for file in files)
+    text = files[0].read_text(encoding="utf-8")
+    assert "| differential | wheels | 5 |" in text
+    assert "All figures of 1 robot are within the bars." in text
+    worse = dataclasses.replace(report.rows[0], grid=DriveFigures(overshoot=0.5, tilt=1.0))
+    write_drives_page(dataclasses.replace(report, rows=(worse,)), tmp_path / "drives.md")
+    text = files[0].read_text(encoding="utf-8")
+    assert "Not within the bars: differential at 5 ms (overshoot, fall)." in text
+
+
+def test_the_command_prints_a_table_or_json(capsys, tmp_path):
+    assert main(["bench", "drives", "--robot", "differential", "--quick", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["rows"][0]["robot"] == "differential"
+    assert found["rows"][0]["failures"] == []
+    assert found["bars"] == dict(DRIVE_BARS)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["bench", "drives", "environments"], "is measured alone"),
+        (["bench", "--robot", "qolo"], "--robot and --page belong to crowdbot bench drives"),
+        (["bench", "drives", "--robot", "turtlebot9"], "there is no robot 'turtlebot9'"),
+    ],
+)
+def test_wrong_options_are_told(words, says, capsys):
+    assert main(words) != 0
+    assert says in capsys.readouterr().err
+
+
+def test_a_step_must_divide_a_sample():
+    robot = Robot.load("differential")
+    for step in (0.003, 0.0, 0.05, -0.01):
+        with pytest.raises(InputError, match=r"0.02 s must be a whole number of steps"):
+            trace_planar(robot, [Twist()], step)
+        with pytest.raises(InputError, match=r"0.02 s must be a whole number of steps"):
+            trace_physics(robot, [Twist()], step)
+    assert isinstance(trace_planar(robot, [Twist()], 0.02), DriveTrace)
