@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .output import add_json, note, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from crowdbot.models import CrowdModel
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,6 +23,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, default=Path("validate"), metavar="DIR", help="output folder (default: validate)"
     )
     parser.add_argument("--quick", action="store_true", help="short runs with few people, to test the installation")
+    parser.add_argument(
+        "--contacts",
+        action="store_true",
+        help="only contacts of people in built-in trials and the time for 40 m, as contacts.md",
+    )
+    parser.add_argument("--starts", type=int, default=20, metavar="N", help="runs of each trial (default: 20)")
     add_json(parser)
 
 
@@ -27,6 +38,8 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.validation import CHECKS, select_models, validate, write_page
 
     models, skipped = select_models([name for name in (options.models or "").split(",") if name])
+    if options.contacts:
+        return _contacts(options, models)
     kept = options.out / "validation"
     try:
         with progress(options.json) as report, explain_write_errors(options.out):
@@ -46,6 +59,32 @@ def main(options: argparse.Namespace) -> int:
     print_table("validation", ("model", "passed", "failed criteria"), rows)
     for model, why in skipped.items():
         print(f"not run   {model}: {why}")
+    print(f"page      {page}")
+    return 0
+
+
+def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> int:
+    """Measure contacts, write the page and print the table."""
+    from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.validation import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
+
+    if options.starts < 1:
+        raise InputError(f"--starts {options.starts} must be at least 1")
+    models = models if options.models else {**models, **OTHER_VALUES}
+    file = options.out / "validation" / "contacts.json"
+    seconds = 4.0 if options.quick else CONTACT_SECONDS
+    with progress(options.json) as report, explain_write_errors(options.out):
+        rows = compare_contacts(
+            models, file, lambda part: report("contacts", part), starts=options.starts, seconds=seconds
+        )
+        command = f"crowdbot validate --contacts --starts {options.starts} --out docs/results"
+        page = write_contact_page(rows, options.out / "contacts.md", command, CONTACT_REASONS)
+    if options.json:
+        print_json({"models": rows, "page": str(page)})
+        return 0
+    failed = {name: [key for key, one in row.items() if not one["passed"]] for name, row in rows.items()}
+    table = [(name, ", ".join(keys) or "-") for name, keys in failed.items()]
+    print_table("contacts", ("model", "limits exceeded in"), table)
     print(f"page      {page}")
     return 0
 

@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from .stage_contract import check_stage
     from .sweep import Sweep
     from .trial import End, EndCondition, RecordingSpec, Trial
+    from .validation.model_ranges import MODEL_RANGES, ModelRange, model_range
     from .validation.rates import trial_remarks
     from .validation.trial_checks import robot_place_problem
     from .variants import apply_values, expand_sweeps
@@ -113,6 +114,7 @@ __getattr__, __dir__ = lazy_exports(
         "stage_contract": ["check_stage"],
         "sweep": ["Sweep"],
         "trial": ["End", "EndCondition", "RecordingSpec", "Trial"],
+        "validation.model_ranges": ["MODEL_RANGES", "ModelRange", "model_range"],
         "validation.rates": ["trial_remarks"],
         "validation.trial_checks": ["robot_place_problem"],
         "variants": ["apply_values", "expand_sweeps"],
@@ -129,6 +131,7 @@ __all__ = [
     "DENSITIES",
     "FLOWS",
     "GAP",
+    "MODEL_RANGES",
     "OVERVIEW",
     "PRESETS",
     "SIZES",
@@ -155,6 +158,7 @@ __all__ = [
     "Journey",
     "Light",
     "Limits",
+    "ModelRange",
     "Mount",
     "Obstacle",
     "OldNameWarning",
@@ -218,6 +222,7 @@ __all__ = [
     "kind_of",
     "load_trial",
     "map_files",
+    "model_range",
     "needs_trust",
     "outline",
     "overview",

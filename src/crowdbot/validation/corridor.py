@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import Scene
+from crowdbot.measurement import compute_fundamental_diagram
 from crowdbot.models import CrowdModel
 
 from .literature import weidmann_speed
 from .scenario import (
     FREE_SPEED,
     RADIUS,
-    STEP,
     Check,
+    CrowdTracks,
     Report,
     Verdict,
     corridor_walls,
@@ -25,6 +28,8 @@ from .scenario import (
     starts,
     stream_of,
 )
+from .section import section_of, section_values
+from .statistics import STARTS, SteadyWindow, find_steady_window
 
 __all__ = ["CORRIDOR", "corridor_crowd"]
 
@@ -32,7 +37,11 @@ LENGTH, WIDTH = 12.0, 3.0
 DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 """People per square metre."""
 QUICK = (0.5, 1.5, 3.0)
-WARM, MEASURED = 15.0, 15.0
+SECONDS = 45.0
+EVERY = 1.0
+"""Time between measurements [s]."""
+LEAST = 5
+"""Minimum number of values of a bin."""
 LIMIT = 0.25
 """Allowed root mean square deviation from Weidmann's curve [m/s]."""
 SPREAD = 0.05
@@ -40,20 +49,41 @@ SPREAD = 0.05
 
 
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the mean forward speed at each density; densities are environments."""
-    densities = QUICK if quick else DENSITIES
-    warm, measured = (4.0, 2.0) if quick else (WARM, MEASURED)
-    crowd = corridor_crowd([("one-way", d, 0) for d in densities], LENGTH, WIDTH, two_way=False, spread=SPREAD)
-    walk = simulate_periodic(model, crowd, LENGTH, warm + measured, stream_of("corridor", "model"), report)
-    first = round(warm / (4.0 * STEP))
-    moved = (walk.position[-1, ..., 0] - walk.position[first, ..., 0]) / (walk.times[-1] - walk.times[first])
+    """Measure speed over Voronoi density in the steady state; densities and starts are environments."""
+    densities, starts_, seconds = (QUICK, 1, 6.0) if quick else (DENSITIES, STARTS, SECONDS)
+    runs = [("one-way", density, k) for density in densities for k in range(starts_)]
+    crowd = corridor_crowd(runs, LENGTH, WIDTH, two_way=False, spread=SPREAD)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("corridor", "model"), report)
     y, here = walk.position[..., 1], crowd.active
+    windows = [_window(walk, here, slice(k * starts_, (k + 1) * starts_)) for k in range(len(densities))]
     return {
-        "density": list(densities),
-        "speed": [float(moved[e, here[e]].mean()) for e in range(len(densities))],
+        **_diagram(walk, [window.begin for window in windows], starts_),
+        "starts": starts_,
+        "initial_density": list(densities),
+        "steady_from": [window.begin if window.steady else None for window in windows],
         "outside": float(np.mean(np.any((y < 0.0) | (y > WIDTH), axis=0)[here])),
         "overlap": deepest_overlap(walk, LENGTH),
     }
+
+
+def _window(walk: CrowdTracks, here: NDArray[np.bool_], rows: slice) -> SteadyWindow:
+    """Return the steady window of the mean forward speed of all starts of a density."""
+    moved = np.diff(walk.position[:, rows, :, 0], axis=0) * here[rows]
+    speed = moved.sum(axis=(1, 2)) / (here[rows].sum() * (walk.times[1] - walk.times[0]))
+    return find_steady_window(walk.times[1:], speed)
+
+
+def _diagram(walk: CrowdTracks, begins: Sequence[float], starts_: int) -> dict[str, Any]:
+    """Return the fundamental diagram of all environments, with intervals over starts if there are several."""
+    density, speed, start = [], [], []
+    for e in range(walk.position.shape[1]):
+        rho, v = section_values(section_of(walk, e, LENGTH, begins[e // starts_]), WIDTH, EVERY)
+        density.append(rho)
+        speed.append(v)
+        start.append(np.full(len(rho), e % starts_))
+    who = np.concatenate(start) if starts_ > 1 else None
+    found = compute_fundamental_diagram(np.concatenate(density), np.concatenate(speed), 0.5, who, least=LEAST)
+    return {name: found[name].tolist() for name in found.columns}
 
 
 def judge(result: dict[str, Any]) -> Verdict:

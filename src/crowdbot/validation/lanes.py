@@ -12,15 +12,16 @@ from crowdbot.models import CrowdModel
 
 from .corridor import corridor_crowd
 from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, simulate_periodic, stream_of
+from .statistics import STARTS, summarize_starts, text_of
 
 __all__ = ["LANES", "NARROW"]
 
 LENGTH = 12.0
-WIDE, DENSITY, SEEDS = 4.0, 1.0, 4
+WIDE, DENSITY, SEEDS = 4.0, 1.0, STARTS
 """Width [m] and density [1/m2] of the recording bi_corr_400_b_03, and runs of each model."""
 NARROW_WIDTH = 2.0
 NARROW_DENSITIES = (0.5, 1.0, 1.5, 2.0)
-NARROW_SEEDS = 3
+NARROW_SEEDS = STARTS
 SECONDS, LAST = 60.0, 20.0
 NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
 ORDER = 0.5
@@ -42,11 +43,14 @@ def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     times = walk.times[every]
     late = times >= seconds - last
     y = walk.position[..., 1]
+    last_order = np.asarray(order)[late].mean(axis=0)
+    speed = _forward(walk.times, walk.position[..., 0], side, last).mean(axis=1)
     return {
         "time": times.tolist(),
         "order": np.mean(order, axis=1).tolist(),
-        "last_order": float(np.mean(np.asarray(order)[late])),
-        "speed": float(np.mean(_forward(walk.times, walk.position[..., 0], side, last))),
+        "last_order": float(last_order.mean()),
+        "speed": float(speed.mean()),
+        "interval": _ends(summarize_starts([last_order, speed])),
         "outside": float(np.mean(np.any((y < 0.0) | (y > WIDE), axis=0))),
         "overlap": deepest_overlap(walk, LENGTH),
     }
@@ -59,7 +63,8 @@ def judge_lanes(result: dict[str, Any]) -> Verdict:
         words.append(f"lanes hardly form in a two-way flow (order {result['last_order']:.2f})")
     if result["speed"] < 0.5 * FREE_SPEED:
         words.append(f"a two-way flow of 1 person/m2 in a 4 m corridor slows down to {result['speed']:.2f} m/s")
-    value = f"{result['last_order']:.2f}, {result['speed']:.2f} m/s"
+    order, speed = result.get("interval", (None, None))
+    value = f"{text_of(result['last_order'], order)}, {text_of(result['speed'], speed)} m/s"
     return Verdict(value, not words, "; ".join(words))
 
 
@@ -88,6 +93,7 @@ def run_narrow(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
     return {
         "density": list(densities),
         "speeds": speed.tolist(),
+        "interval": _ends(summarize_starts(speed)),
         "outside": float(np.mean(np.any((y < 0.0) | (y > NARROW_WIDTH), axis=0)[here])),
         "overlap": deepest_overlap(walk, LENGTH),
     }
@@ -118,6 +124,10 @@ NARROW = Check(
     run_narrow,
     judge_narrow,
 )
+
+
+def _ends(summary: dict[str, Any]) -> list[tuple[float, float]]:
+    return list(zip(summary["low"], summary["high"], strict=True))
 
 
 def _forward(times: Floats, x: Floats, side: NDArray[np.float64], last: float) -> Floats:

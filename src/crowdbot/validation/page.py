@@ -19,6 +19,8 @@ from .recording import METHODS
 from .rimea import NOT_APPLICABLE
 from .run import CHECKS, Validation
 from .scenario import RADIUS, STEP
+from .section import METHOD
+from .statistics import STARTS
 
 __all__ = ["write_page"]
 
@@ -27,9 +29,10 @@ DEFINITIONS = {
     f" speeds), walk along a periodic track of {single_file.LENGTH:g} m between walls {single_file.WIDTH} m apart."
     f" Density: people per metre of track. Speed: mean forward speed over {single_file.MEASURED:g} s, after a warm-up"
     f" of {single_file.WARM:g} s from rest.",
-    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide. Density: people per square"
-    f" metre of the whole floor. Speed: mean forward speed over {corridor.MEASURED:g} s, after a warm-up of"
-    f" {corridor.WARM:g} s.",
+    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide, {corridor.SECONDS:g} s,"
+    f" {STARTS} starts for each density; measured every {corridor.EVERY:g} s in the steady state of the mean speed"
+    f" (modified CUSUM method, Liao et al. 2016), in its last third if there is none. {METHOD}, with 95 % bootstrap"
+    " intervals over starts.",
     "lanes": f"A periodic track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, with 1 person/m2, half of them in each"
     f" direction; free speeds are 1.34 +- 0.26 m/s; mean over {lanes.SEEDS} initial states. Lane order: for each person"
     f" i with m others at a lateral distance below {LANE_BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
@@ -38,10 +41,10 @@ DEFINITIONS = {
     "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, with {lanes.NARROW_SEEDS} initial states per density. Speed:"
     f" mean speed in the walking direction over the last {lanes.NARROW_LAST:g} of {lanes.NARROW_SECONDS:g} s.",
     "bottleneck": f"{bottleneck.PEOPLE} people in a room {2 * bottleneck.HALF:g} m wide walk through an opening that is"
-    f" {bottleneck.LENGTH} m long. The goal of each person is the nearest point of the opening where a body fits. Flow:"
-    " (n - 1) / (t_n - t_1) for the n crossings of the middle line of the opening; t_n is the time limit of"
-    f" {bottleneck.SECONDS:g} s if somebody does not pass. Specific flow: flow / width (in the table: mean over"
-    " widths).",
+    f" {bottleneck.LENGTH} m long, {STARTS} starts for each width. The goal of each person is the nearest point of the"
+    " opening where a body fits. Flow: (n - 1) / (t_n - t_1) for the n crossings of the middle line of the opening"
+    " without the first and last sixth; if somebody does not pass, all crossings count, up to the time limit of"
+    f" {bottleneck.SECONDS:g} s. Specific flow: flow / width (in the table: mean over widths).",
 }
 
 
@@ -87,7 +90,9 @@ def _head(done: Validation, command: str) -> list[str]:
         "```",
         "",
         *(["**Quick runs with few people and short times. The verdicts mean little.**", ""] if done.quick else []),
-        f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s. All models start from the same initial"
+        f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s, in substeps of 0.01 s for the models that"
+        " are made for it (collision-free-speed and anticipation-velocity). Values in brackets are 95 % bootstrap"
+        f" intervals over {STARTS} starts; the RiMEA tests have one start. All models start from the same initial"
         " states, and results are reproducible. The results of each model are in a JSON file beside the plots.",
         "",
         "Crowds are chaotic: rounding errors can decide whether a single run jams. Two implementations of ORCA that"

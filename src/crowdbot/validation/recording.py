@@ -15,20 +15,18 @@ from crowdbot.core import DataError
 from crowdbot.data import Trajectories, load
 from crowdbot.measurement import (
     MeasurementLine,
-    WalkableArea,
     compute_fundamental_diagram,
     compute_headways,
     compute_individual_speed,
-    compute_individual_voronoi_polygons,
     crossing_times,
     lane_order,
-    mean_flow,
-    select_rows,
     walking_direction,
 )
 
+from .bottleneck import steady_flow
 from .literature import line_speed, weidmann_speed
 from .scenario import Floats, Report
+from .section import METHOD, section_values
 
 __all__ = ["METHODS", "measure_recordings"]
 
@@ -41,12 +39,11 @@ METHODS = {
     "single-file": "n56_cam1.csv, 3 m of a ring with 56 people. Density: 2 / (distance between the person ahead and the"
     " person behind) [1/m]. Speed: along the track over 0.8 s. Means are in bins of 0.2 /m. The frame rate of 25 Hz is"
     " inferred from the velocities in the file",
-    "corridor": "four one-way runs of HERMES in corridors of 1.8 and 2.4 m. Density: 1 / (area of the Voronoi cell of"
-    " the person inside the corridor) [1/m2]. Speed: along the corridor over 1 s. Both are measured every 0.5 s for"
-    " people within 1 m of the middle of the section. Means are in bins of 0.5 /m2",
+    "corridor": f"four one-way runs of HERMES in corridors of 1.8 and 2.4 m, every 0.5 s. {METHOD}",
     "lanes": "two-way runs in corridors of 3.6 and 4 m. Lane order: as for the models, for all people in the section,"
     " once per second while at least five people walk in each direction",
-    "bottleneck": "flow (n - 1) / (t_n - t_1) for the first crossings of a line in the bottleneck by n people",
+    "bottleneck": "as for the models: flow (n - 1) / (t_n - t_1) of the crossings of a line in the bottleneck, without"
+    " the first and last sixth of the people",
 }
 """Measured quantities and methods."""
 
@@ -142,26 +139,11 @@ def _corridors(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | 
     for corridor in CORRIDORS:
         tracks = found(f"{corridor.name}.txt")
         if tracks is not None:
-            runs[corridor.name] = _bins(*_voronoi(tracks, corridor.width), 0.5)
+            runs[corridor.name] = _bins(*section_values(tracks, corridor.width), 0.5)
     if not runs:
         return None
     pooled = {key: [value for run in runs.values() for value in run[key]] for key in ("density", "speed")}
     return {"runs": runs, "distance": _distance(pooled, weidmann_speed)}
-
-
-def _voronoi(tracks: Trajectories, width: float) -> tuple[Floats, Floats]:
-    """Return density ``[N]`` [1/m2] and speed ``[N]`` [m/s] of all people in the middle of a section."""
-    half = round(0.5 / tracks.dt) * tracks.frame_step
-    speed = compute_individual_speed(tracks, half, direction=(0.0, 1.0))
-    frames = np.unique(tracks.frame)[:: round(0.5 / tracks.dt)]
-    inside = np.isin(tracks.frame, frames) & (np.abs(tracks.y) < 4.0) & (tracks.x >= 0.0) & (tracks.x <= width)
-    # the cells of one or two people reach the ends of the section
-    count = np.bincount(tracks.frame[inside] - tracks.frame[0])
-    section = select_rows(tracks, inside & (count[np.minimum(tracks.frame - tracks.frame[0], len(count) - 1)] >= 3))
-    corridor = WalkableArea([(0.0, -4.0), (width, -4.0), (width, 4.0), (0.0, 4.0)])
-    cells = compute_individual_voronoi_polygons(section, corridor)
-    cells = cells[np.abs(section.y) < 1.0].merge(speed, on=["id", "frame"])
-    return cells.density.to_numpy(), np.abs(cells.speed.to_numpy())
 
 
 def _lanes(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | None:
@@ -202,7 +184,7 @@ def _doors(found: Callable[[str], Trajectories | None]) -> list[dict[str, Any]]:
         if tracks is None:
             continue
         times = crossing_times(tracks, MeasurementLine((-FAR, door.line), (FAR, door.line)))
-        flow = mean_flow(times)
+        flow = steady_flow(times)
         flows.append({"file": door.file, "width": door.width, "flow": flow, "people": len(times), "who": door.who})
     return flows
 

@@ -198,10 +198,11 @@ def _key(quick: bool) -> str:
     """Return a hash of all code that affects results: the core, the models, the measurements and the checks."""
     sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
     package = Path(__file__).parents[1]
-    excluded = ("__init__", "page", "plots", "recording", "run")
+    excluded = ("__init__", "contact_table", "contacts", "page", "plots", "recording", "run")
     here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in excluded]
     others = [path for name in ("core", "models", "measurement") for path in package.glob(f"{name}/*.py")]
-    for path in sorted([*others, *here]):
+    ranges = package / "trials" / "validation" / "model_ranges.py"  # they give the time steps
+    for path in sorted([*others, *here, ranges]):
         sum_.update(path.name.encode() + b"\0" + path.read_bytes())
     return sum_.hexdigest()
 

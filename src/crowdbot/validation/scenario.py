@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, stream
 from crowdbot.data import Trajectories
 from crowdbot.models import CrowdModel
+from crowdbot.trials import model_range
 
 __all__ = [
     "FREE_SPEED",
@@ -34,6 +35,7 @@ __all__ = [
     "simulate_periodic",
     "starts",
     "stream_of",
+    "substeps",
     "tracks_of",
 ]
 
@@ -44,7 +46,7 @@ FREE_SPEED = 1.34
 SPREAD = 0.26
 """Standard deviation of free speeds [m/s], same source."""
 STEP = 0.05
-"""Time step of all runs [s]; models that need shorter steps use substeps."""
+"""Time step of all runs [s]; models that are made for shorter steps take substeps (:func:`substeps`)."""
 SEEN = 6.0
 """Range [m] of the copies of people beyond the ends of a periodic track."""
 SEED = 20250
@@ -110,6 +112,17 @@ def tracks_of(walk: CrowdTracks, e: int = 0) -> Trajectories:
         frame_step=1,
         name="crowd",
     )
+
+
+def substeps(model: CrowdModel) -> int:
+    """Return the number of steps of a model in each :data:`STEP`: its time step is at most that of its range.
+
+    >>> from crowdbot.models import ORCA, CollisionFreeSpeed
+    >>> substeps(ORCA()), substeps(CollisionFreeSpeed())
+    (1, 5)
+    """
+    known = model_range(model)
+    return 1 if known is None else max(1, math.ceil(STEP / known.max_step - 1e-9))
 
 
 def stream_of(*path: str | int | float) -> np.random.Generator:
@@ -209,11 +222,12 @@ def simulate_periodic(
     Raises:
         InputError: a position is not finite.
     """
-    A, steps = crowd.shape[1], round(seconds / STEP)
+    A, steps, parts = crowd.shape[1], round(seconds / STEP), substeps(model)
     scene, rounds = _with_copies(crowd), np.zeros(crowd.shape)
     places = [crowd.position]
     for k in range(steps):
-        scene = model.step(_update_copies(scene, A, length), STEP, rng)
+        for _ in range(parts):
+            scene = model.step(_update_copies(scene, A, length), STEP / parts, rng)
         place = scene.position.copy()
         _check(place[:, :A], crowd.active, float(np.max(scene.time)))
         turn = np.floor(place[:, :A, 0] / length)
@@ -255,13 +269,15 @@ def simulate_open(
     Raises:
         InputError: a position is not finite.
     """
-    scene, steps, count = crowd, round(seconds / STEP), max(1, int(crowd.active.sum()))
+    scene, steps, count, parts = crowd, round(seconds / STEP), max(1, int(crowd.active.sum())), substeps(model)
     places, present = [crowd.position], [crowd.active]
     for k in range(steps):
         goal = goals(scene.position)
         away = goal - scene.position
         wish = away * (scene.preferred_speed / np.maximum(np.hypot(away[..., 0], away[..., 1]), 1e-9))[..., None]
-        scene = model.step(scene.replace(goal=goal, preferred_velocity=wish), STEP, rng)
+        scene = scene.replace(goal=goal, preferred_velocity=wish)
+        for _ in range(parts):
+            scene = model.step(scene, STEP / parts, rng)
         _check(scene.position, scene.active, float(np.max(scene.time)))
         places.append(scene.position)
         present.append(scene.active)

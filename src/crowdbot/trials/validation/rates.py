@@ -10,6 +10,7 @@ from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
 from .ground_checks import ground_remarks
+from .model_ranges import range_remarks
 
 __all__ = ["fitting", "misfits", "trial_remarks"]
 
@@ -41,7 +42,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 
 
 def trial_remarks(trial: Trial) -> list[str]:
-    """Return a sentence for every robot whose sensors measure at other rates than those of its type.
+    """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
     Robots that cannot pass uneven ground are told, too.
 
@@ -54,7 +55,7 @@ def trial_remarks(trial: Trial) -> list[str]:
     >>> [sentence[-32:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
     ['step="0.01" no period is rounded']
     """
-    found = []
+    found = range_remarks(trial)
     clock = FreeClock(trial.step)
     for robot in trial.robots:
         rows: dict[str, list[str]] = {}

@@ -1,0 +1,96 @@
+"""Statistics of the checks: steady states of simulations and intervals over starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crowdbot.measurement import detect_steady_state, mean_over_starts
+
+from .scenario import Floats
+
+__all__ = ["STARTS", "SteadyWindow", "find_steady_window", "summarize_starts", "text_of"]
+
+STARTS = 20
+"""Independent starts of each point."""
+MEMORY = 20
+"""Largest value of the CUSUM statistic: 20 stored steps of 0.2 s."""
+REFERENCE = 1.0 / 3.0
+"""Share of a run at its end that is the reference of the steady state."""
+DRIFT = 0.1
+"""Largest relative difference between the means of the two halves of the reference."""
+
+
+class SteadyWindow(NamedTuple):
+    """Part of a run that is measured.
+
+    Fields:
+        begin, end: times [s].
+        steady: whether the steady state was found; otherwise the window is the reference at the end of the run.
+    """
+
+    begin: float
+    end: float
+    steady: bool
+
+
+def find_steady_window(times: ArrayLike, values: ArrayLike) -> SteadyWindow:
+    """Return the steady window at the end of a time series by the modified CUSUM method.
+
+    The reference is the last third of the run. A series whose reference is constant is steady from the first of these
+    values on; one whose reference drifts by more than 10 % is not steady.
+
+    Args:
+        times: ``[N]`` equidistant times [s].
+        values: ``[N]`` values, such as the mean speed of all starts.
+
+    >>> times = np.arange(300) * 0.2
+    >>> speed = 1.0 - np.exp(-times / 3.0) + 0.01 * np.random.default_rng(0).normal(size=300)
+    >>> window = find_steady_window(times, speed)
+    >>> window.steady, 5.0 < window.begin < 20.0
+    (True, True)
+    """
+    t, x = np.asarray(times, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    first = float(t[-1] - REFERENCE * (t[-1] - t[0]))
+    part = x[t >= first]
+    if float(np.ptp(part)) < 1e-9:
+        away = np.flatnonzero(np.abs(x - part[-1]) >= 1e-9)
+        return SteadyWindow(float(t[away[-1] + 1] if len(away) else t[0]), float(t[-1]), True)
+    half = len(part) // 2
+    if abs(float(part[half:].mean() - part[:half].mean())) > DRIFT * abs(float(part.mean())):
+        return SteadyWindow(first, float(t[-1]), False)
+    found = detect_steady_state(t, x, (first, float(t[-1])), s_max=MEMORY).intervals
+    if len(found) and found[-1, 0] <= first:
+        return SteadyWindow(float(found[-1, 0]), float(t[-1]), True)
+    return SteadyWindow(first, float(t[-1]), False)
+
+
+def summarize_starts(rows: Sequence[Sequence[float]] | Floats) -> dict[str, Any]:
+    """Return means with 95 % bootstrap intervals over starts, one for each row.
+
+    Args:
+        rows: ``[points, starts]`` values.
+
+    >>> summarize_starts([[1.0, 1.2, 1.1]])["mean"]
+    [1.1]
+    """
+    found = [mean_over_starts(np.asarray(row, dtype=np.float64)) for row in rows]
+    single = [one.starts == 1 for one in found]
+    return {
+        "mean": [round(one.mean, 6) for one in found],
+        "low": [one.mean if alone else one.low for one, alone in zip(found, single, strict=True)],
+        "high": [one.mean if alone else one.high for one, alone in zip(found, single, strict=True)],
+        "starts": found[0].starts,
+    }
+
+
+def text_of(value: float, ends: Sequence[float] | None) -> str:
+    """Return a value with its interval as text, or alone if it has none.
+
+    >>> text_of(0.24, (0.22, 0.27)), text_of(0.24, None)
+    ('0.24 (0.22 to 0.27)', '0.24')
+    """
+    return f"{value:.2f} ({ends[0]:.2f} to {ends[1]:.2f})" if ends is not None else f"{value:.2f}"
