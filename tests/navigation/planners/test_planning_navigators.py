@@ -47,7 +47,13 @@ def drive(navigator, limits, goal, seconds, people=(), walls=()):
         moved[:, :2] += 0.1 * k * rows[:, 2:]
         x, y = pose.position[0].tolist()
         known = observe(
-            moved, pose=(x, y, float(pose.heading[0])), twist=twist.at(0), goal=goal, limits=limits, walls=stage, time=0.1 * k
+            moved,
+            pose=(x, y, float(pose.heading[0])),
+            twist=twist.at(0),
+            goal=goal,
+            limits=limits,
+            walls=stage,
+            time=0.1 * k,
         )
         gap = min(gap, known.nearest)
         pose, twist = vehicle.step(pose, twist, navigator.act(known), 0.1)

@@ -29,8 +29,8 @@ class PotentialFieldNavigator(Navigator):
     """Moves down an artificial potential: the waypoint attracts, people and walls repel.
 
     The attraction is the velocity-limited one, ``-k_v (v - v_d)`` with v_d towards the waypoint. An obstacle at
-    clearance rho below its influence rho_0 adds ``eta (1 / rho - 1 / rho_0) / rho^2`` away from it (the FIRAS function).
-    The velocity approaches ``v_d + F / k_v``. The field knows only where people are, not where they go, and has local
+    clearance rho below its influence rho_0 adds ``eta (1 / rho - 1 / rho_0) / rho^2`` away from it (the FIRAS
+    function). The velocity approaches ``v_d + F / k_v``. The field knows only where people are, not where they go, and has local
     minima.
 
     Fields:
@@ -93,7 +93,7 @@ class PotentialFieldNavigator(Navigator):
         return np.asarray(towards * (top / max(float(np.hypot(*towards)), TINY)) + force / self.damping)
 
     def _repulsion(self, away: Floats, size: Floats, influence: float) -> Floats:
-        """Return the force ``[2]`` of obstacles in the directions ``-away`` ``[N, 2]`` with the sums of radii ``[N]``."""
+        """Return the force ``[2]`` of obstacles, for vectors from them ``[N, 2]`` and sums of radii ``[N]``."""
         distance = np.maximum(np.hypot(*away.T), TINY)
         gap = np.maximum(distance - size, min(self.closest, influence))
         force = self.gain * np.maximum(1.0 / gap - 1.0 / influence, 0.0) / gap**2

@@ -66,7 +66,11 @@ class SocialForceNavigator(Navigator):
     """
 
     paper: ClassVar[Paper] = Paper(
-        "Helbing, Molnár", 1995, "Social force model for pedestrian dynamics", "Phys. Rev. E 51", "10.1103/PhysRevE.51.4282"
+        "Helbing, Molnár",
+        1995,
+        "Social force model for pedestrian dynamics",
+        "Phys. Rev. E 51",
+        "10.1103/PhysRevE.51.4282",
     )
 
     speed: float = 1.0
@@ -105,7 +109,11 @@ class SocialForceNavigator(Navigator):
         near, later = np.maximum(np.hypot(*d.T), TINY), np.maximum(np.hypot(*(d - y).T), TINY)
         b = 0.5 * np.sqrt(np.maximum((near + later) ** 2 - (y**2).sum(axis=1), 0.0)) + TINY
         gap = observation.radius + people.radius - b
-        size = self.strength * np.exp(np.minimum(gap / self.reach, STEEPEST)) * np.minimum((near + later) / (4.0 * b), 10.0)
+        size = (
+            self.strength
+            * np.exp(np.minimum(gap / self.reach, STEEPEST))
+            * np.minimum((near + later) / (4.0 * b), 10.0)
+        )
         weight = self.anisotropy + (1.0 - self.anisotropy) * 0.5 * (1.0 - d @ ahead / near)
         return np.asarray(((weight * size)[:, None] * (d / near[:, None] + (d - y) / later[:, None])).sum(axis=0))
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number
+from crowdbot.navigation.goal_motion import SLOWING_TIME
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import DriveLimits, Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
@@ -34,8 +35,9 @@ class DynamicWindowNavigator(Navigator):
 
     Each twist is an arc (a line for a holonomic drive). With t the time to the first contact, people predicted at
     constant velocity, a twist is admissible if the drive can stop before the contact:
-    ``v <= sqrt(2 a v t)``. Its value is ``heading (1 - |theta| / pi) + clearance min(t, look) / look + velocity v / top``,
-    with theta the angle to the waypoint when the twist is reached. Without an admissible twist the robot brakes.
+    ``v <= sqrt(2 a d)`` with the distance ``d = v t``. Its value is
+    ``heading (1 - |theta| / pi) + clearance min(t, look) / look + velocity v / top``, with theta the angle to the
+    waypoint 0.3 s later. Without an admissible twist the robot brakes.
 
     :func:`crowdbot.navigation.dynamic_window_twist` is another search: it follows a given velocity.
 
@@ -94,7 +96,7 @@ class DynamicWindowNavigator(Navigator):
         size = np.hypot(twists[:, 0], twists[:, 2])
         braking = min(limits.max_acceleration, EAGER)
         stops = size <= 2.0 * braking * np.maximum(free - STEP, 0.0)
-        arrives = size <= max(observation.remaining / STEP / 5.0, 0.0)
+        arrives = size <= max(observation.remaining / SLOWING_TIME, float(size.min()))
         slow = size <= max(observation.braking_speed(observation.remaining), float(size.min()))
         value = (
             self.heading * (1.0 - np.abs(angle) / math.pi)
