@@ -14,7 +14,7 @@ from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
 
 from .clearance import wall_gaps
-from .rollout import Rollout, roll_out
+from .rollout import PlanMotions, roll_out
 
 __all__ = ["MPCNavigator"]
 
@@ -100,7 +100,7 @@ class MPCNavigator(Navigator):
         cost += self._walls(observation, rollout.position)
         return Twist(*rollout.first[int(np.argmin(cost))].tolist())
 
-    def _progress(self, observation: Observation, rollout: Rollout) -> Floats:
+    def _progress(self, observation: Observation, rollout: PlanMotions) -> Floats:
         """Return the cost ``[C]`` of the remaining path and of a change of the twist."""
         top = min(self.speed, observation.limits.max_speed)
         late = (rollout.remaining.mean(axis=1) + rollout.remaining[:, -1]) / top

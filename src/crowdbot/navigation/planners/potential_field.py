@@ -30,8 +30,8 @@ class PotentialFieldNavigator(Navigator):
 
     The attraction is the velocity-limited one, ``-k_v (v - v_d)`` with v_d towards the waypoint. An obstacle at
     clearance rho below its influence rho_0 adds ``eta (1 / rho - 1 / rho_0) / rho^2`` away from it (the FIRAS
-    function). The velocity approaches ``v_d + F / k_v``. The field knows only where people are, not where they go, and has local
-    minima.
+    function). The velocity approaches ``v_d + F / k_v``. The field knows only where people
+    are, not where they go, and has local minima.
 
     Fields:
         speed: largest speed [m/s], limited by the drive.

@@ -1,4 +1,4 @@
-"""Rollouts: the motion of a drive under a fixed lattice of plans, for model-predictive control."""
+"""Rollout: the motion of a drive under a fixed lattice of plans, for model-predictive control."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.navigation.goal_motion import SLOWING_TIME, TURN_GAIN
 from crowdbot.navigation.observation import Observation
 
-__all__ = ["Rollout", "roll_out"]
+__all__ = ["PlanMotions", "roll_out"]
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ PASSED = 0.3
 """Distance [m] at which a plan leaves the waypoint for the goal."""
 
 
-class Rollout(NamedTuple):
+class PlanMotions(NamedTuple):
     """The motion under C plans in T steps."""
 
     first: Floats
@@ -56,7 +56,7 @@ def _plans() -> Floats:
 PLANS = _plans()
 
 
-def roll_out(observation: Observation, speed: float, steps: int, step: float) -> Rollout:
+def roll_out(observation: Observation, speed: float, steps: int, step: float) -> PlanMotions:
     """Return the motion of the drive within its limits under each plan.
 
     Args:
@@ -94,7 +94,7 @@ def roll_out(observation: Observation, speed: float, steps: int, step: float) ->
         remaining[:, k] = distance + np.where(passed, 0.0, beyond)
         passed = passed | (distance < PASSED)
         position[:, k] = place
-    return Rollout(first, position, remaining, change)
+    return PlanMotions(first, position, remaining, change)
 
 
 def _motion(observation: Observation) -> Floats:
