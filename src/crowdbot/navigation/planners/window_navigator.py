@@ -75,9 +75,9 @@ class DynamicWindowNavigator(Navigator):
     heading: float = 0.8
     clearance: float = 0.6
     velocity: float = 0.3
-    look: float = 2.5
+    look: float = 3.5
     window: float = 0.5
-    margin: float = 0.1
+    margin: float = 0.3
     wall_margin: float = 0.05
 
     def __post_init__(self) -> None:
