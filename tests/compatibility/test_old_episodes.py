@@ -29,7 +29,7 @@ CHANGED = {
 """Episodes that do not replay with the same digest, and why; see CHANGELOG."""
 MOVED = {name for name, row in EPISODES.items() if row["world"] == "physics"}
 """Robots of the physics world drive otherwise since: 0.1.0 let tyres slip, and bases lag behind; see CHANGELOG."""
-NEAR = 0.05
+NEAR = 0.1
 """Distance [m] within which a moved robot is after the seconds of these episodes."""
 DRAWN = "camera"
 """The episode with a colour camera; another graphics library draws other shades."""

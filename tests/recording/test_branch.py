@@ -36,9 +36,17 @@ def flowing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "episode.mcap"
 
 
+def is_latched(topic: str) -> bool:
+    """Whether each file has the topic at its start, and again when frames are new."""
+    return topic == "/tf_static" or topic.endswith("/robot_description")
+
+
 def messages(path: Path, begin: float = 0.0) -> list[tuple[str, int, bytes]]:
     with path.open("rb") as stream:
-        return [(h.topic.topic, h.stamp, h.data) for h in McapReader(stream).messages() if h.stamp >= begin * 1e9]
+        rows = [(h.topic.topic, h.stamp, h.data) for h in McapReader(stream).messages()]
+    latched = [row for row in rows if is_latched(row[0])]
+    assert rows[0][1] in {row[1] for row in latched}
+    return [row for row in rows if row[1] >= begin * 1e9 and not is_latched(row[0])]
 
 
 @pytest.mark.parametrize("at", [0.0, 0.1, 2.0, 3.9, 4.0])

@@ -141,6 +141,16 @@ def test_a_planar_world_without_bodies_says_so():
 
 
 def test_the_room_shows_its_contracts():
-    assert set(DRIVES) == {"ackermann-drive", "differential-drive", "omnidirectional", "velocity-servo"}
+    assert set(DRIVES) == {
+        "ackermann-drive",
+        "differential-drive",
+        "legged-drive",
+        "mecanum-drive",
+        "omni-wheel-drive",
+        "omnidirectional",
+        "skid-steer-drive",
+        "tricycle-drive",
+        "velocity-servo",
+    }
     assert set(WORLDS) == {"physics-world", "planar-world"}
     assert all(hasattr(room, name) for name in room.__all__)

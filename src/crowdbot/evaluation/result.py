@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import json
 import platform
 import sys
@@ -14,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot import __version__
 from crowdbot.core import EpisodeError, explain_write_errors, source_digest
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
@@ -160,7 +160,7 @@ def load_evaluation(path: Path | str) -> EvaluationResult:
 def provenance() -> dict[str, Any]:
     """Return what describes this program and machine."""
     return {
-        "crowdbot": __version__,
+        "crowdbot": str(importlib.import_module("crowdbot").__version__),
         "source": source_digest(),
         "python": platform.python_version(),
         "platform": platform.platform(),

@@ -12,7 +12,7 @@ from crowdbot.core import SpatialPose
 from crowdbot.messages import mount_pose
 from crowdbot.sensors import WheelGeometry
 from crowdbot.trials import RobotSpec
-from crowdbot.world import quaternion, wheel_geometry
+from crowdbot.world import quaternion
 
 __all__ = ["LinkFrames", "spatial_row"]
 
@@ -68,7 +68,6 @@ class LinkFrames:
                 word += "_link"
             self.names[link] = f"{name}/{word}"
         self.base = self.names[model.root] if root_is_base else f"{name}/{BASE}"
-        self.wheels = wheel_geometry(self.robot.body)
 
     @property
     def odom(self) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose
 from crowdbot.messages import MAP, Messages, codec_of
-from crowdbot.sensors import Odometry, Reading, arc_between, planar_pose
+from crowdbot.sensors import Odometry, Reading, planar_pose
 from crowdbot.simulation import Simulation, StepRecord
 from crowdbot.trials import RobotSpec
 from crowdbot.world import RobotBody, free_joints, joint_states, quaternion, robot_description, simulated_body
@@ -45,7 +45,6 @@ class RobotMessages:
         self._twists: dict[str, Any] = {}
         self._sensors: dict[str, str] = {}
         self._begin = True
-        self._rolled: dict[str, tuple[Pose, Floats]] = {}
 
     def latched(self, frame: StepRecord) -> Iterator[tuple[str, Any]]:
         """Yield descriptions of robots that are new, and all fixed frames if there are new ones."""
@@ -99,28 +98,12 @@ class RobotMessages:
         if simulation is None:
             return joint_states(None, 0, robot.body)
         agent = _agent(frame, k)
-        found = joint_states(simulation.world, agent, robot.body, targets=self._targets(robot))
-        if simulated_body(simulation.world, agent, 0) is None:
-            found |= self._wheels(frame, k, found)
-        return found
+        return joint_states(simulation.world, agent, robot.body, targets=self._targets(robot))
 
     @staticmethod
     def has_topic(robot: RobotSpec, name: str) -> bool:
         """Return whether no sensor of the robot has taken the topic ``/<robot>/name``."""
         return all(mount.name != name for mount in robot.sensors)
-
-    def _wheels(self, frame: StepRecord, k: int, states: dict[str, tuple[float, float]]) -> dict[str, Any]:
-        """Return the joints of wheels in the plane, which have rolled along the recorded path."""
-        robot, truth = frame.robots[k], self._truth(frame, k)
-        wheels = self._frames[robot.name].wheels
-        if wheels is None:
-            return {}
-        before, angle = self._rolled.get(robot.name, (truth, np.zeros(len(wheels.joints))))
-        if before is not truth:
-            forward, left, turn = arc_between(before, truth)
-            angle = angle + wheels.rolling @ np.array([forward[0], turn[0], left[0]])
-        self._rolled[robot.name] = truth, angle
-        return {name: (float(one), states[name][1]) for name, one in zip(wheels.joints, angle, strict=True)}
 
     def _targets(self, robot: RobotSpec) -> dict[str, float]:
         """Return the joint positions in the plane that an order has set."""

@@ -51,7 +51,14 @@ class BaseForces:
         """
         unit, found = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         unit[range(3), rows] = 1.0
-        engine().mj_solveM(model, data, found, unit)
+        mj = engine()
+        here = mj.MjData(model)  # the inertia of a new state is not known before its first step
+        here.qpos[:] = data.qpos
+        mj.mj_kinematics(model, here)
+        mj.mj_comPos(model, here)
+        mj.mj_makeM(model, here)
+        mj.mj_factorM(model, here)
+        mj.mj_solveM(model, here, found, unit)
         loose = np.linalg.inv(found[:, rows])
         cos, sin = math.cos(heading), math.sin(heading)
         turned = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
