@@ -12,6 +12,10 @@ from .observation import DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
+from .planners.model_predictive import MPCNavigator
+from .planners.potential_field import PotentialFieldNavigator
+from .planners.social_force import SocialForceNavigator
+from .planners.window_navigator import DynamicWindowNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
@@ -21,13 +25,17 @@ __all__ = [
     "AgentsInView",
     "Decisions",
     "DriveLimits",
+    "DynamicWindowNavigator",
     "ExternalNavigator",
     "HungNavigatorError",
+    "MPCNavigator",
     "Navigator",
     "ORCANavigator",
     "Observation",
     "ObservationBatch",
     "PathPlanner",
+    "PotentialFieldNavigator",
+    "SocialForceNavigator",
     "Straight",
     "TrackBatch",
     "TrackHistory",
