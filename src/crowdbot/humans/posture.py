@@ -17,7 +17,7 @@ from .measures import Measures
 from .stride import STRIKE, ankle_over, cycle, smooth
 from .turns import about, align_frame, cross, turn_zxy, unit
 
-__all__ = ["Posture", "place_chain", "posture"]
+__all__ = ["Posture", "bend_leg", "place_chain", "posture"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -142,14 +142,14 @@ def _pelvis_height(hips: Floats, feet: Floats, x: float, y: float, longest: floa
 
 
 @kernel
-def _pose_leg(
-    hip: Floats, foot: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
+def bend_leg(
+    hip: Floats, ankle: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
     work: Floats,
 ) -> None:  # fmt: skip
-    """Write the rotations of thigh, shank, foot and toes for an ankle at ``foot``; the knee bends forward."""
+    """Write the rotations of thigh and shank that take the ankle to its place; the knee bends forward."""
     axis, hinge, ahead, turned = work[0], work[1], work[2], work[3]
     for k in range(3):
-        axis[k] = foot[k] - hip[k]
+        axis[k] = ankle[k] - hip[k]
     reach = min(max(unit(axis), abs(thigh - shank) + 0.05), 0.9999 * (thigh + shank))
     ahead[0], ahead[1], ahead[2] = math.cos(yaw), math.sin(yaw), 0.2
     cross(ahead, axis, hinge)
@@ -160,6 +160,15 @@ def _pose_leg(
     align_frame(frame[f], turned, hinge, R[bone])
     about(hinge, at_ankle, axis, turned)
     align_frame(frame[2 + f], turned, hinge, R[bone + 1])
+
+
+@kernel
+def _pose_leg(
+    hip: Floats, foot: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
+    work: Floats,
+) -> None:  # fmt: skip
+    """Write the rotations of thigh, shank, foot and toes for an ankle at ``foot``; the knee bends forward."""
+    bend_leg(hip, foot, thigh, shank, yaw, frame, f, R, bone, work)
     turn_zxy(foot[3], 0.0, foot[4], R[bone + 2])
     turn_zxy(foot[3], 0.0, foot[5], R[bone + 3])
 

@@ -11,8 +11,7 @@ from crowdbot.core import kernel
 
 from .asset import shapes
 from .people import People
-from .posture import SOFT, STRAIGHT, Posture, place_chain
-from .turns import about, align_frame, cross, unit
+from .posture import SOFT, STRAIGHT, Posture, bend_leg, place_chain
 
 __all__ = ["ankle_positions", "stand_on_ground"]
 
@@ -25,27 +24,6 @@ LEGS = (20, 24)
 def ankle_positions(posture: Posture) -> Floats:
     """Return the positions ``[N, 2, 3]`` [m] of the left and right ankle."""
     return posture.position[:, [first + 2 for first in LEGS]]
-
-
-@kernel
-def _bend_leg(
-    hip: Floats, ankle: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
-    work: Floats,
-) -> None:  # fmt: skip
-    """Write the rotations of thigh and shank that take the ankle to its place; the knee bends forward."""
-    axis, hinge, ahead, turned = work[0], work[1], work[2], work[3]
-    for k in range(3):
-        axis[k] = ankle[k] - hip[k]
-    reach = min(max(unit(axis), abs(thigh - shank) + 0.05), 0.9999 * (thigh + shank))
-    ahead[0], ahead[1], ahead[2] = math.cos(yaw), math.sin(yaw), 0.2
-    cross(ahead, axis, hinge)
-    unit(hinge)
-    at_hip = math.acos(min(max((thigh**2 + reach**2 - shank**2) / (2.0 * thigh * reach), -1.0), 1.0))
-    at_ankle = math.acos(min(max((shank**2 + reach**2 - thigh**2) / (2.0 * shank * reach), -1.0), 1.0))
-    about(hinge, -at_hip, axis, turned)
-    align_frame(frame[f], turned, hinge, R[bone])
-    about(hinge, at_ankle, axis, turned)
-    align_frame(frame[2 + f], turned, hinge, R[bone + 1])
 
 
 @kernel
@@ -73,7 +51,7 @@ def _raise(
     for b in range(len(P)):
         P[b, 2] += lift
     for f in range(2):
-        _bend_leg(P[first[f]], ankle[f], thigh, shank, yaw, frame, f, R, first[f], work)
+        bend_leg(P[first[f]], ankle[f], thigh, shank, yaw, frame, f, R, first[f], work)
         place_chain(first[f] + 1, first[f] + 4, head, parents, R, P)
 
 
