@@ -8,8 +8,8 @@
 Every kind of file that crowdbot reads has samples in ``tools/fuzz_kinds.py``. One file of a sample is changed, and the
 sample is read in a child process with a memory limit: 1 GiB above its size after all unchanged samples. A crash or a
 hang ends the child only. The child reports every file that it opens for writing outside the folder of the sample and
-every connection. File number N of a kind depends on the seed, the kind and N only. ``--keep DIR`` copies the samples
-that failed.
+the cache, and every connection. File number N of a kind depends on the seed, the kind and N only. ``--keep DIR`` copies
+the samples that failed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from fuzz_kinds import KINDS, OUT
 from fuzzing import check_sentence, mutate_arrays, mutate_bytes, mutate_text, mutate_xml
 
-from crowdbot.core import CrowdbotError
+from crowdbot.core import CrowdbotError, cache_root
 
 TIME_LIMIT = 20.0
 """Longest time for one file [s]."""
@@ -141,7 +141,7 @@ def _child(pipe: Connection, kind: str, base: Path, work: Path, temporary: Path)
             empty(work)
         if not good:
             KINDS[kind].read(sample, name, random.Random(0))  # noqa: S311
-    watch = Watch(work, temporary, Path(os.environ.get("CROWDBOT_CACHE", temporary)))
+    watch = Watch(work, temporary, cache_root())
     limit = memory("VmSize") + MEMORY_LIMIT
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     pipe.send("ready")

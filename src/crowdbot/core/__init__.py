@@ -49,7 +49,7 @@ from .walls import Walls
 if TYPE_CHECKING:
     from .compiling import notify_compiling
     from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
-    from .kernels import cache_folder, is_cold, kernel, prange
+    from .kernels import cache_folder, cache_root, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .markup.yaml import parse_yaml
     from .neighbors import CHUNK, SMALL, Neighbors
@@ -61,7 +61,7 @@ __getattr__, __dir__ = lazy_exports(
     {
         "hashes.blake2b": ["HASH_BLOCK", "hash_blocks", "hash_start"],
         "compiling": ["notify_compiling"],
-        "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
+        "kernels": ["cache_folder", "cache_root", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
         "random_streams": ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"],
         "workers": ["each", "run_saved_jobs"],
@@ -115,6 +115,7 @@ __all__ = [
     "builtin_classes",
     "builtin_name",
     "cache_folder",
+    "cache_root",
     "check_number",
     "check_parameters",
     "dense",

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar, cast, overload
 
-__all__ = ["cache_folder", "is_cold", "kernel", "prange"]
+__all__ = ["cache_folder", "cache_root", "is_cold", "kernel", "prange"]
 
 STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -127,11 +127,27 @@ def _import_array_functions() -> None:
 @functools.cache
 def cache_folder() -> Path:
     """Return the folder of compiled kernels of the current sources; it is created if missing."""
-    folder = _cache_root() / f"kernels-{_source_key()}"
+    folder = cache_root() / f"kernels-{_source_key()}"
     folder.mkdir(parents=True, exist_ok=True)
     os.utime(folder)
     _remove_stale(folder)
     return folder
+
+
+def cache_root() -> Path:
+    """Return the folder of the user for what can be computed anew: ``CROWDBOT_CACHE``, otherwise that of the system.
+
+    >>> cache_root().is_absolute()
+    True
+    """
+    chosen = os.environ.get("CROWDBOT_CACHE")
+    if chosen:
+        return Path(chosen).absolute()
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "crowdbot"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "crowdbot"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "crowdbot"
 
 
 def is_cold() -> bool:
@@ -146,17 +162,6 @@ def _source_key() -> str:
         if b"@kernel" in source or path.name == "kernels.py":
             sum_.update(path.name.encode() + b"\0" + source)
     return sum_.hexdigest()
-
-
-def _cache_root() -> Path:
-    chosen = os.environ.get("CROWDBOT_CACHE")
-    if chosen:
-        return Path(chosen)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "crowdbot"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "crowdbot"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "crowdbot"
 
 
 def _remove_stale(keep: Path) -> None:

@@ -10,13 +10,14 @@ import contextlib
 import hashlib
 import importlib.metadata
 import os
-import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from crowdbot.core import cache_root
 
 from .shapes import ConvexPiece, Mesh
 
@@ -34,7 +35,7 @@ def load_or_compute_pieces(mesh: Mesh, settings: str, compute: Callable[[Mesh], 
         settings: settings of the decomposition; another text is another entry.
         compute: returns the pieces.
     """
-    path = _folder() / f"{_key(mesh, settings)}.npz"
+    path = cache_root() / "convex" / f"{_key(mesh, settings)}.npz"
     found = _load(path)
     if found is None:
         found = compute(mesh)
@@ -56,17 +57,6 @@ def _version(name: str) -> str:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
         return ""
-
-
-def _folder() -> Path:
-    chosen = os.environ.get("CROWDBOT_CACHE")
-    if chosen:
-        return Path(chosen) / "convex"
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "crowdbot" / "convex"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "crowdbot" / "convex"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "crowdbot" / "convex"
 
 
 def _load(path: Path) -> Pieces | None:
