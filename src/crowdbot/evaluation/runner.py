@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from pathlib import Path
 
-from crowdbot.core import run_saved_jobs, source_digest
-from crowdbot.trials import code_references
+from crowdbot.core import run_saved_jobs
+from crowdbot.trials import code_digest
 
 from .job import RunJob, RunRow, read_rows, run_job, write_rows
 from .plan import EvaluationPlan
@@ -55,7 +54,9 @@ def evaluate(
         for k, cell in enumerate(plan.cells)
         for begin in range(0, len(plan.seeds), CHUNK)
     ]
-    files = [] if folder is None else [folder / f"{_key(job)}.json" for job in jobs]
+    files = (
+        [] if folder is None else [folder / f"{code_digest(job.xml, job.folder, str(job.seeds))}.json" for job in jobs]
+    )
     rows: dict[int, list[RunRow]] = {}
     for number, found in run_saved_jobs(run_job, jobs, files, write_rows, read_rows, workers, cluster):
         rows[number] = found
@@ -73,14 +74,3 @@ def evaluate(
         for k, cell in enumerate(plan.cells)
     )
     return EvaluationResult(cells, provenance())
-
-
-def _key(job: RunJob) -> str:
-    """Return a name for the result of a job, which changes with everything that the result depends on."""
-    found = hashlib.blake2b(digest_size=12)
-    for part in (source_digest(), job.xml, str(job.seeds)):
-        found.update(part.encode() + b"\0")
-    folder = job.folder or Path.cwd()
-    for name in code_references({"trial": job.xml}, folder):
-        found.update(name.encode() + b"\0" + (folder / name).read_bytes())
-    return found.hexdigest()

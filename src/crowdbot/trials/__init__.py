@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
-    from .files.code_references import code_references, is_code
+    from .files.code_references import code_digest, code_references, is_code
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
     from .ground.door import Door
@@ -76,7 +76,7 @@ __getattr__, __dir__ = lazy_exports(
         "crowd": ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"],
         "distribution": ["Distribution"],
         "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
-        "files.code_references": ["code_references", "is_code"],
+        "files.code_references": ["code_digest", "code_references", "is_code"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
         "ground.door": ["Door"],
@@ -202,6 +202,7 @@ __all__ = [
     "check_stage",
     "check_trial",
     "children",
+    "code_digest",
     "code_references",
     "crowd_names",
     "element_from",

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from crowdbot.core import Element, InputError, parse_xml, plugin_sources, read_bytes
+from crowdbot.core import Element, InputError, parse_xml, plugin_sources, read_bytes, source_digest
 from crowdbot.trials.xml.trial_text import parse_trial_xml
 
-__all__ = ["code_references", "is_code"]
+__all__ = ["code_digest", "code_references", "is_code"]
 
 ENDINGS = (".py", ".pyc", ".pyo", ".pyw", ".pyd", ".so")
 ADDRESS = re.compile(r"([^\s,;|\"':=]+):[A-Za-z_]")
@@ -24,6 +25,25 @@ def is_code(name: str) -> bool:
     """
     plain = name.lower().rstrip(". ")  # Windows ignores case and trailing dots and blanks
     return plain.endswith(ENDINGS) or "__pycache__" in PurePosixPath(plain).parts
+
+
+def code_digest(xml: str, folder: Path | None, *more: str) -> str:
+    """Return a hash of all code that a run of a trial depends on: of crowdbot, the trial and the files beside it.
+
+    Args:
+        xml: text of the trial.
+        folder: folder of the trial, or None for the working directory.
+        more: further texts that the result depends on.
+
+    >>> code_digest("<trial/>", None) == code_digest("<trial/>", None, "seed 1")
+    False
+    """
+    found, place = hashlib.blake2b(digest_size=12), folder or Path.cwd()
+    for part in (source_digest(), xml, *more):
+        found.update(part.encode() + b"\0")
+    for name in code_references({"trial": xml}, place):
+        found.update(name.encode() + b"\0" + (place / name).read_bytes())
+    return found.hexdigest()
 
 
 def code_references(known: Mapping[str, str], folder: Path) -> list[str]:

@@ -1,0 +1,26 @@
+"""Generated data: sensor readings with ground truth, from trials and many seeds, as shards with a data card."""
+
+from .card import DataCard, card_of, card_text
+from .generator import generate
+from .occlusion import occluded_shares
+from .plan import FORMATS, GenerationPlan, ShardJob
+from .recipe import RECIPES, Recipe, find_recipe
+from .sample_log import SampleLog
+from .shard import Shard, make_shard
+
+__all__ = [
+    "FORMATS",
+    "RECIPES",
+    "DataCard",
+    "GenerationPlan",
+    "Recipe",
+    "SampleLog",
+    "Shard",
+    "ShardJob",
+    "card_of",
+    "card_text",
+    "find_recipe",
+    "generate",
+    "make_shard",
+    "occluded_shares",
+]

@@ -1,0 +1,1 @@
+"""Formats of generated data: npz, Parquet, WebDataset and COCO."""
