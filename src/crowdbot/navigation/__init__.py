@@ -16,6 +16,7 @@ from .planners.model_predictive import MPCNavigator
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
+from .process.process_navigator import ProcessNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
@@ -35,6 +36,7 @@ __all__ = [
     "ObservationBatch",
     "PathPlanner",
     "PotentialFieldNavigator",
+    "ProcessNavigator",
     "SocialForceNavigator",
     "Straight",
     "TrackBatch",
