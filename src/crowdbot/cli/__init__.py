@@ -26,6 +26,7 @@ COMMANDS = {
     "export": "write an episode as a table, Parquet or CSV",
     "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
     "generate": "write labelled sensor data of many runs, with true people",
+    "challenge": "run, verify and rank submissions to a competition of navigators",
     "experiment": "run trials with participants, instructions and questionnaires",
     "measure": "measure density, speed and flow in recordings, episodes and trials",
     "predict": "score predictors on recordings of people",

@@ -2,7 +2,7 @@
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
 from .intervals import Estimate, bootstrap_interval, wilson_interval
-from .job import RunRow
+from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods
 from .pareto import pareto_front
@@ -39,6 +39,8 @@ __all__ = [
     "parse_requirement",
     "parse_seeds",
     "parse_statistic",
+    "row_of",
+    "row_values",
     "wilson_interval",
     "worst_runs",
     "write_report",

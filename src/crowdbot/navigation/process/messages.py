@@ -100,13 +100,15 @@ def decode_observation(values: Mapping[str, Any]) -> Observation:
     people = {name: decode_array(array) for name, array in values["people"].items()}
     walls = {name: decode_array(array) for name, array in values["walls"].items()}
     tracks = values["tracks"]
-    *numbers, holonomic = (math.inf if value is None else value for value in values["limits"])
+    speed, turn, acceleration, turn_acceleration, holonomic = values["limits"]
     return Observation(
         pose=(values["pose"][0], values["pose"][1], values["pose"][2]),
         goal=(values["goal"][0], values["goal"][1]),
         waypoint=(values["waypoint"][0], values["waypoint"][1]),
         radius=values["radius"],
-        limits=DriveLimits(*map(float, numbers), holonomic=bool(holonomic)),
+        limits=DriveLimits(
+            _limit(speed), _limit(turn), _limit(acceleration), _limit(turn_acceleration), bool(holonomic)
+        ),
         dt=values["dt"],
         time=values["time"],
         twist=Twist(*values["twist"]),
@@ -122,6 +124,15 @@ def decode_observation(values: Mapping[str, Any]) -> Observation:
             tracks["length"],
         ),
     )
+
+
+def _decode_tracks(values: Mapping[str, Any]) -> TrackHistory:
+    times, ids, position = (decode_array(values[name]) for name in ("times", "ids", "position"))
+    return TrackHistory(times, ids, position, int(values["length"]))
+
+
+def _limit(value: float | None) -> float:
+    return math.inf if value is None else float(value)
 
 
 def _number(value: Any) -> Any:

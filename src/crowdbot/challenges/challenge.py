@@ -1,0 +1,179 @@
+"""Challenge: trials, seeds, statistics and limits of a competition, read from a TOML file."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.resources
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import InputError, UnknownName, did_you_mean
+from crowdbot.evaluation import parse_seeds, parse_statistic
+from crowdbot.trials import Trial, expand_sweeps, load_trial, trial_xml
+
+__all__ = ["Challenge", "builtin_challenges", "load_challenge"]
+
+MOST_BYTES = 1_000_000
+KEYS = ("title", "about", "source", "trials", "public-seeds", "held-back", "statistics", "rank", "limits")
+NEEDED = ("title", "trials", "public-seeds", "statistics", "rank")
+LIMITS = {"answer": 5.0, "memory": 4000.0, "cpu": 36000.0}
+"""Limits of a submission: longest answer [s], memory [MB] and CPU time of its process [s]."""
+ORDERS = ("high", "low")
+
+
+@dataclass(frozen=True)
+class Challenge:
+    """What all submissions have in common.
+
+    Fields:
+        name: name of the file without ending.
+        title, about, source: for people.
+        trials: the trials.
+        public_seeds: seeds that everybody can run.
+        held_back: SHA-256 of the seeds that are held back, see :class:`SecretSeeds`; empty if there are none.
+        statistics: columns of the board.
+        rank: statistics that order the board, the first one first, each with ``high`` or ``low`` for what is better.
+        limits: limits of a submission, see :data:`LIMITS`.
+
+    >>> challenge = load_challenge("crowd-against-the-machine")
+    >>> len(challenge.trials), challenge.public_seeds
+    (21, (0, 1, 2, 3, 4))
+    """
+
+    name: str
+    title: str
+    about: str
+    source: str
+    trials: tuple[Trial, ...]
+    public_seeds: tuple[int, ...]
+    held_back: str
+    statistics: tuple[str, ...]
+    rank: tuple[tuple[str, str], ...]
+    limits: Mapping[str, float]
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of everything that a result depends on: trials, seeds, statistics and limits."""
+        content = {
+            "trials": [trial_xml(trial) for trial in self.trials],
+            "public-seeds": list(self.public_seeds),
+            "held-back": self.held_back,
+            "statistics": list(self.statistics),
+            "rank": [list(one) for one in self.rank],
+            "limits": dict(self.limits),
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def builtin_challenges() -> dict[str, Path]:
+    """Return the files of the built-in challenges by name."""
+    folder = Path(str(importlib.resources.files("crowdbot"))) / "assets" / "challenges"
+    return {file.stem: file for file in sorted(folder.glob("*.toml"))}
+
+
+def load_challenge(source: str | Path) -> Challenge:
+    """Read a challenge from a file, or a built-in one by its name.
+
+    Trials are built-in names, or files beside the challenge.
+
+    Raises:
+        UnknownName: there is neither a file nor a built-in challenge of this name.
+        InputError: the file is damaged, or a value is not allowed.
+        TrialError: a trial is impossible.
+    """
+    file = Path(source)
+    if not file.is_file():
+        known = builtin_challenges()
+        if str(source) not in known:
+            raise UnknownName("challenge", str(source), known)
+        file = known[str(source)]
+    if file.stat().st_size > MOST_BYTES:
+        raise InputError(f"{file} has more than {MOST_BYTES} bytes; this is no challenge")
+    try:
+        values = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"{file} is not a challenge: {error}") from None
+    try:
+        return _challenge(file, values)
+    except InputError as error:
+        raise type(error)(f"{file}: {error}") from None
+
+
+def _challenge(file: Path, values: Mapping[str, Any]) -> Challenge:
+    for name in values:
+        if name not in KEYS:
+            raise InputError(f"{name!r} is unknown{did_you_mean(name, KEYS)}; known are {', '.join(KEYS)}")
+    for name in NEEDED:
+        if name not in values:
+            raise InputError(f"{name!r} is missing; a challenge needs {', '.join(NEEDED)}")
+    statistics = _texts("statistics", values["statistics"])
+    for name in statistics:
+        parse_statistic(name)
+    return Challenge(
+        file.stem,
+        _text("title", values["title"]),
+        _text("about", values.get("about", "")),
+        _text("source", values.get("source", "")),
+        _trials(file, _texts("trials", values["trials"])),
+        parse_seeds(_text("public-seeds", values["public-seeds"])),
+        _held_back(values.get("held-back", "")),
+        statistics,
+        tuple(_rank(text, statistics) for text in _texts("rank", values["rank"])),
+        _limits(values.get("limits", {})),
+    )
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r} must be a text")
+    return value
+
+
+def _texts(name: str, value: Any) -> tuple[str, ...]:
+    if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):
+        raise InputError(f"{name} = {value!r} must be a list of texts that is not empty")
+    if len(set(value)) < len(value):
+        raise InputError(f"{name}: an entry is there twice")
+    return tuple(value)
+
+
+def _trials(file: Path, names: tuple[str, ...]) -> tuple[Trial, ...]:
+    found: list[Trial] = []
+    for name in names:
+        beside = file.parent / name
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise InputError(f"trials: {name!r} must be a built-in name or a file beside the challenge")
+        found += expand_sweeps(load_trial(str(beside) if beside.is_file() else name))
+    for trial in found:
+        if not trial.robots:
+            raise InputError(f"trials: {trial.name!r} has no robot")
+    return tuple(found)
+
+
+def _held_back(value: Any) -> str:
+    text = _text("held-back", value)
+    if text and (len(text) != 64 or set(text) - set("0123456789abcdef")):
+        raise InputError(f"held-back = {text!r} must be the 64 digits that `crowdbot challenge seal` prints")
+    return text
+
+
+def _rank(text: str, statistics: tuple[str, ...]) -> tuple[str, str]:
+    name, _, order = text.rpartition(" ")
+    if order not in ORDERS or name not in statistics:
+        raise InputError(f"rank: {text!r} must be one of the statistics, followed by high or low")
+    return name, order
+
+
+def _limits(values: Any) -> dict[str, float]:
+    if not isinstance(values, dict):
+        raise InputError(f"limits = {values!r} must be a table")
+    for name, value in values.items():
+        if name not in LIMITS:
+            raise InputError(f"limits: {name!r} is unknown; known are {', '.join(LIMITS)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < 1e9:
+            raise InputError(f"limits: {name} = {value!r} must be a number above 0")
+    return LIMITS | {name: float(value) for name, value in values.items()}
