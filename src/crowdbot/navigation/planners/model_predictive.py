@@ -78,7 +78,7 @@ class MPCNavigator(Navigator):
     risk: float = 20.0
     margin: float = 0.05
     uncertainty: float = 0.05
-    growth: float = 0.08
+    growth: float = 0.02
     comfort: float = 1.0
     space: float = 0.4
     smoothness: float = 0.1
