@@ -12,6 +12,8 @@ from .observation import DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
+from .planners.driving_support import RDSNavigator
+from .planners.elastic_band import TimeElasticBandNavigator
 from .planners.model_predictive import MPCNavigator
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
@@ -37,8 +39,10 @@ __all__ = [
     "PathPlanner",
     "PotentialFieldNavigator",
     "ProcessNavigator",
+    "RDSNavigator",
     "SocialForceNavigator",
     "Straight",
+    "TimeElasticBandNavigator",
     "TrackBatch",
     "TrackHistory",
     "VisiblePeople",

@@ -17,6 +17,7 @@ from crowdbot.trials import (
     InitialPeople,
     PeopleBatch,
     RecordedPeople,
+    Spawner,
     Trial,
     own,
 )
@@ -24,7 +25,7 @@ from crowdbot.world import Avatars, Doors, JourneyAssignment, ReplayedPeople, Re
 
 __all__ = [
     "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls",
-    "script_of", "set_off", "start_scene", "start_scenes",
+    "people_at_rest", "script_of", "set_off", "start_scene", "start_scenes",
 ]  # fmt: skip
 
 
@@ -92,6 +93,7 @@ def start_scenes(trial: Trial, people: PeopleBatch, spare: NDArray[np.int64], wa
     distance = np.hypot(away[..., 0], away[..., 1])
     moving = away * (people.speed / np.maximum(distance, 1e-9))[..., None]
     ahead = np.arctan2(moving[..., 1], moving[..., 0])
+    moving[:, people_at_rest(people.first)] = 0.0
     places = np.array([robot.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     goals = np.array([robot.goal.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     tops = np.array([limits_of(robot.drive).max_speed for robot in robots])
@@ -119,6 +121,12 @@ def start_scenes(trial: Trial, people: PeopleBatch, spare: NDArray[np.int64], wa
         group=row(people.group, np.full(len(robots), -1), -1.0).astype(np.int64),
         walls=walls,
     )
+
+
+def people_at_rest(people: InitialPeople) -> NDArray[np.bool_]:
+    """Return ``[N]`` whether a person starts at rest, by the spawner."""
+    resting = np.array([isinstance(owner, Spawner) and owner.at_rest for owner in people.owners], dtype=np.bool_)
+    return resting[people.owner] if len(resting) else np.zeros(len(people), dtype=np.bool_)
 
 
 def limits_of(drive: Any, holonomic: bool = False) -> DriveLimits:

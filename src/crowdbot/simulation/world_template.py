@@ -33,7 +33,17 @@ from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_cou
 
 from .mounted_sensor import spatial
 from .robot_control import RobotControl
-from .world_builder import avatars_of, doors_of, journeys_of, model_of, own_walls, script_of, set_off, start_scenes
+from .world_builder import (
+    avatars_of,
+    doors_of,
+    journeys_of,
+    model_of,
+    own_walls,
+    people_at_rest,
+    script_of,
+    set_off,
+    start_scenes,
+)
 
 __all__ = ["WorldTemplate"]
 
@@ -255,7 +265,9 @@ class WorldTemplate:
         first, journeys = people.first, world.journeys
         walkers = len(first) - len(first.walks) - len(self.trial.avatars)
         if walkers and (self._router or journeys):
-            world.scene = set_off(world.scene, walkers, self._router, journeys, people.heading)
+            scene, resting = world.scene, np.flatnonzero(people_at_rest(first))
+            world.scene = set_off(scene, walkers, self._router, journeys, people.heading)
+            world.scene.velocity[:, resting] = 0.0
 
     def _with_bodies(
         self, scene: Scene, model: CrowdModel, robots: Mapping[int, RobotSpec], figures: Any, how: dict[str, Any]

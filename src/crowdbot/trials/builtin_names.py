@@ -56,6 +56,12 @@ TITLES = {
     "centre.",
     "one-against-ten": "A crowd of ten crosses the path of the robot at an angle, or walks towards it.",
     "crowd-against-crowd": "Two crowds meet, scattered or in ranks, and a robot crosses the place where they do.",
+    **{
+        f"crowdnav-{kind}-{count}": f"CrowdNav: {count} people {words}, and a robot that they do not see crosses; it"
+        " knows everybody's state."
+        for kind, words in (("circle", "on a circle go to the opposite side"), ("square", "swap the sides of a square"))
+        for count in (5, 10, 20)
+    },
     "challenge-alone": "CrowdBot challenge, scenario without a crowd: the robot alone in a corridor of 50 m by 10 m.",
     **{
         f"challenge-{kind}-{size}": (

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot import world
+from crowdbot.core import InputError
 
 from .distribution import Distribution
 from .fields import FieldProblem, attribute, check, children
@@ -68,6 +69,16 @@ class Spawner:
     heading: float | None = attribute(
         None, about="initial heading (default: towards the goal; random for standing people)", unit="rad"
     )
+    at_rest: bool = attribute(False, about="whether people start at rest (default: at their preferred speed)")
+    layout: str = attribute(
+        "zone",
+        about="start: anywhere in the zone; at a random angle of the ellipse in the box of the zone, with the opposite"
+        " point as goal; or in the left or right half of that box, with a goal in the other half",
+        choices=("zone", "circle", "halves"),
+    )
+    noise: float = attribute(
+        0.0, about="largest deviation of x and y from the ellipse of the layout", unit="m", min=0.0, max=100.0
+    )
     groups: tuple[Group, ...] = children("group", about="group sizes (default: no groups)", max=50)
     reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
 
@@ -75,12 +86,28 @@ class Spawner:
         check(self)
         check_words(self.body, self.activity)
         check_shares(self)
+        for _, sentence in _layout_problems(vars(self)):
+            raise InputError(f"Spawner: {sentence}")
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies, activities and reactions, independent of other problems of the element."""
+        """Return the problems of bodies, activities, reactions and the layout, independent of each other."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found] + share_problems(values)
+        return [((), sentence) for sentence in found] + share_problems(values) + _layout_problems(values)
+
+
+def _layout_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
+    """Return what does not go with the layout of a spawner."""
+    layout, found = values.get("layout", "zone"), list[FieldProblem]()
+    if layout != "circle" and values.get("noise"):
+        found.append((("noise",), 'noise acts with layout="circle" only'))
+    if layout not in ("circle", "halves"):
+        return found
+    if values.get("groups"):
+        found.append((("groups",), f'layout="{layout}" has no groups'))
+    if values.get("journey") or values.get("stands") or values.get("arrival", "leave") != "stay":
+        found.append((("layout",), f'layout="{layout}" needs a goal zone and arrival="stay"'))
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,6 +19,7 @@ from crowdbot.trials.stage import Stage, area
 
 from .placement_kernel import PlacementGeometry, Polygons, place_people
 from .population import place, place_fixed, recorded_people
+from .spawn_layouts import draw_layout, goal_discs
 from .spawn_placement import GAP, TRIES, InitialPeople, OccupiedDiscs, draw_heading
 
 __all__ = ["PeopleBatch", "PlacementPlan"]
@@ -124,7 +125,10 @@ class PlacementPlan:
 
     def _place_at_once(self, seeds: Sequence[int]) -> tuple[PeopleBatch | None, NDArray[np.bool_]]:
         """Return the people placed by the kernel, and ``[E]`` where it could decide."""
-        if self._geometry is None or not all(-(2**63) <= seed < 2**63 for seed in seeds):
+        small = all(-(2**63) <= seed < 2**63 for seed in seeds)
+        if small and self._has_layouts:
+            return self._place_layouts(seeds)
+        if self._geometry is None or not small:
             return None, np.zeros(len(seeds), dtype=np.bool_)
         keys = np.array(seeds, dtype=np.int64)
         counts = [one.count for one in self.spawners]
@@ -147,6 +151,25 @@ class PlacementPlan:
             drawn = (radius, position, goal, decided)
             place_people(states, counted, self._geometry, TRIES, *drawn)
         return self._whole(keys, (position, goal, radius, speed, heading)), decided
+
+    @property
+    def _has_layouts(self) -> bool:
+        """Whether one spawner with a layout, on a stage without walls, has all people of spawners."""
+        solids, ground = self.stage.shapes
+        alone = len(self.spawners) == 1 and not self._fixed[1]
+        return alone and self.spawners[0].layout != "zone" and not len(solids) and ground is None
+
+    def _place_layouts(self, seeds: Sequence[int]) -> tuple[PeopleBatch, NDArray[np.bool_]]:
+        """Return the people of the spawner with a layout, and ``[E]`` where they fit."""
+        one, E = self.spawners[0], len(seeds)
+        keys = np.array(seeds, dtype=np.int64)
+        radius = _draw(one.radius, keys, ("spawner", 0, "radius"), one.count)
+        speed = _draw(one.speed, keys, ("spawner", 0, "speed"), one.count)
+        heading = np.broadcast_to(_headings(one, seeds, 0), (E, one.count)).astype(np.float64)
+        discs = np.array(self._fixed[0].rows, dtype=np.float64).reshape(-1, 3)
+        tiled = (np.tile(rows, (E, 1, 1)) for rows in (discs, goal_discs(self.robots)))
+        drawn = draw_layout(one, 0, seeds, radius, *tiled)
+        return self._whole(keys, (drawn.position, drawn.goal, radius, speed, heading)), drawn.placed == one.count
 
     def _whole(self, seeds: Ints, drawn: Sequence[Floats]) -> PeopleBatch:
         """Return the people of spawners, with agents before and recorded people after them."""
@@ -182,6 +205,8 @@ class PlacementPlan:
 
 def _is_simple(spawners: Sequence[Spawner]) -> bool:
     """Return whether the kernel can place the people of these spawners."""
+    if any(one.layout != "zone" for one in spawners):
+        return False
     small = any(one.radius.extent[0] < SMALLEST for one in spawners)
     return not small and not any(one.groups for one in spawners) and sum(one.count for one in spawners) <= MOST_PEOPLE
 

@@ -15,6 +15,7 @@ from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.stage import Stage, area
 
+from .spawn_layouts import goal_discs
 from .spawn_placement import InitialPeople, OccupiedDiscs, SpawnPlacement
 
 __all__ = ["place", "place_fixed", "recorded_people"]
@@ -47,11 +48,11 @@ def place(
         recorded_people(walks, one.radius.draw(stream(seed, "recorded", k, "radius"), len(walks)))
         for k, (one, walks) in enumerate(recorded)
     ]
-    groups, led = [first], _avatars(avatars)
+    groups, led, robot_goals = [first], _avatars(avatars), goal_discs(robots)
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
-        company = SpawnPlacement(stage, spawner, index, taken, seed)
+        company = SpawnPlacement(stage, spawner, index, taken, seed, robot_goals)
         group = company.people(1 + max((int(g.group.max(initial=-1)) for g in groups), default=-1))
         groups.append(group)
         if len(group) < spawner.count:

@@ -17,6 +17,8 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.stage import Stage, area
 
+from .spawn_layouts import draw_layout
+
 __all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "draw_heading", "points_in"]
 
 Floats = NDArray[np.float64]
@@ -124,6 +126,7 @@ class SpawnPlacement(NamedTuple):
     number: int
     taken: OccupiedDiscs
     seed: int
+    robot_goals: Floats = np.zeros((0, 3))
 
     def stream(self, word: str) -> np.random.Generator:
         """Return the random stream of one quantity."""
@@ -134,6 +137,8 @@ class SpawnPlacement(NamedTuple):
         spawner = self.spawner
         radius = spawner.radius.draw(self.stream("radius"), spawner.count)
         speed = spawner.speed.draw(self.stream("speed"), spawner.count)
+        if spawner.layout != "zone":
+            return self._layout(radius, speed)
         sizes = self._sizes()
         position = self._place_groups(radius, sizes) if sizes else self._place_singles(radius)
         count = len(position)
@@ -151,6 +156,20 @@ class SpawnPlacement(NamedTuple):
         return InitialPeople(
             where, goal, radius[:count], speed[:count], self._heading(count), group, np.zeros(count, dtype=np.int64)
         )
+
+    def _layout(self, radius: Floats, speed: Floats) -> InitialPeople:
+        """Return the people of a layout who fit, up to the first who is in a wall."""
+        starts = np.array(self.taken.rows, dtype=np.float64).reshape(1, -1, 3)
+        drawn = draw_layout(self.spawner, self.number, [self.seed], radius[None], starts, self.robot_goals[None])
+        count = int(drawn.placed[0])
+        if count:
+            blocked = self.stage.clearance(drawn.position[0, :count]) < radius[:count]
+            count = int(np.argmax(blocked)) if blocked.any() else count
+        for (x, y), r in zip(drawn.position[0, :count].tolist(), radius[:count].tolist(), strict=True):
+            self.taken.add(x, y, r)
+        alone, owner = np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=np.int64)
+        where, goal = drawn.position[0, :count], drawn.goal[0, :count]
+        return InitialPeople(where, goal, radius[:count], speed[:count], self._heading(count), alone, owner)
 
     def _heading(self, count: int) -> Floats:
         if self.spawner.heading is not None:

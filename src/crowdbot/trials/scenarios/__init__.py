@@ -2,6 +2,7 @@
 
 from .arenas import ARENAS
 from .challenge import CHALLENGE
+from .crowdnav import CROWDNAV
 from .crowds import CROWDS, DENSITIES
 from .meetings import MEETINGS
 from .preset import Preset, PresetOption
@@ -9,5 +10,5 @@ from .shared_ways import SHARED_WAYS
 
 __all__ = ["DENSITIES", "PRESETS", "Preset", "PresetOption"]
 
-PRESETS = {preset.name: preset for preset in (*MEETINGS, *SHARED_WAYS, *CROWDS, *ARENAS, *CHALLENGE)}
+PRESETS = {preset.name: preset for preset in (*MEETINGS, *SHARED_WAYS, *CROWDS, *ARENAS, *CROWDNAV, *CHALLENGE)}
 """Presets by name."""
