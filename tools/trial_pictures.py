@@ -16,9 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core import kebab_case
 from crowdbot.recording import run
 from crowdbot.simulation import Episode
-from crowdbot.trials import PRESETS, Trial, builtin_trials, load_trial, parse_trial, trial_xml
+from crowdbot.trials import PRESETS, Crowds, Trial, builtin_trials, load_trial, parse_trial, trial_xml
 
 SECONDS = 20.0
 PIXELS, DPI = 320, 100
@@ -136,15 +137,20 @@ def page(file: Path) -> None:
         "with which the trial equals theirs. P&G: Francis et al. 2025 (doi:10.1145/3700599). CrowdNav, social-jym,",
         "UMANS, SEAN and RVO2 are simulators.",
         "",
-        "| trial | picture | parameters | also known as |",
-        "|---|---|---|---|",
+        "Trials that reproduce a benchmark or the CrowdBot challenge keep its crowd model, `orca`; in all others people",
+        "walk by the preset `people`. `--set model=orca` gives the crowd that these trials had before; for",
+        "`crossing-flows`, add `--set crowd/time-horizon-walls=1`.",
+        "",
+        "| trial | picture | crowd model | parameters | also known as |",
+        "|---|---|---|---|---|",
     ]
     for name in builtin_trials():
         preset = PRESETS.get(name)
-        about = load_trial(name).about
+        trial = load_trial(name)
+        crowd = ", ".join(f"`{kebab_case(type(one.model).__name__)}`" for one in Crowds.spread(trial.crowd))
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
         also = "" if preset is None else preset.also.replace("; ", "<br>")
-        lines.append(f"| **{name}**<br>{about} | ![{name}](trials/{name}.png) | {options} | {also} |")
+        lines.append(f"| **{name}**<br>{trial.about} | ![{name}](trials/{name}.png) | {crowd} | {options} | {also} |")
     lines += [
         "",
         "## Trials from recordings",

@@ -87,6 +87,7 @@ def test_nobody_runs_into_the_person_ahead_in_either_world(world):
     assert distance[-1] < 1.5
 
 
-def test_defaults_of_built_in_trials_are_untouched():
-    assert type(load_trial("crossing-flows").crowd) is ORCA
-    assert not isinstance(load_trial("crossing-flows").crowd, with_headway(ORCA) | People)
+def test_the_layer_is_on_the_previous_crowd_by_name_only():
+    assert type(load_trial("crossing-flows").crowd) is People
+    assert type(load_trial("crossing-flows", model="orca").crowd) is ORCA
+    assert type(load_trial("crossing-flows", model="orca+headway").crowd) is with_headway(ORCA)

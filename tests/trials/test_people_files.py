@@ -218,8 +218,8 @@ def test_values_are_changed_by_their_paths() -> None:
     given = parse_trial(GOOD)
     other = apply_values(given, {"robot/goal/x": "2", "recording/period": "0.2", "robot/navigator/type": "orca"})
     assert (other.robots[0].goal.x, other.recording.period) == (2.0, 0.2)
-    assert load_trial("crossing-flows", **{"crowd/time-horizon": 3}).crowd == dataclasses.replace(
-        load_trial("crossing-flows").crowd, time_horizon=3.0
+    assert load_trial("crossing-flows", **{"crowd/headway-time-gap": 0.9}).crowd == dataclasses.replace(
+        load_trial("crossing-flows").crowd, headway_time_gap=0.9
     )
     assert Sweep("a", "1;2 3; 4").each == ("1", "2 3", "4")
 

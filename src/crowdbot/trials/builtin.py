@@ -9,6 +9,7 @@ from typing import Any
 from crowdbot.core import TrialError, did_you_mean
 
 from .builtin_names import builtin_trials
+from .crowd import crowd_names
 from .fields import outline
 from .parser import parse_trial
 from .scenarios import PRESETS
@@ -17,6 +18,9 @@ from .variants import apply_values
 from .xml.trial_text import read_trial_bytes
 
 __all__ = ["load_trial"]
+
+MODEL = "crowd/type"
+"""Path of the crowd model in trial files: ``model`` is a parameter of every built-in trial with one crowd."""
 
 
 def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
@@ -35,6 +39,8 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
     40
     >>> load_trial("intersection", density=0.5).people
     10
+    >>> type(load_trial("intersection").crowd).__name__, type(load_trial("intersection", model="orca").crowd).__name__
+    ('People', 'ORCA')
     >>> load_trial("crossing-flows", **{"spawner[1]/count": 5}).people
     25
     >>> load_trial("frontal", world="physics", gap=5).world
@@ -57,6 +63,8 @@ def _builtin(name: str, trust: bool, values: dict[str, Any]) -> Trial:
     if preset is None:
         inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")
         trial = parse_trial(inside.read_bytes(), place=f"{name}.xml", trust=trust)
+        if not crowd_names(trial.crowd):
+            values = {MODEL if key == "model" else key: value for key, value in values.items()}
         return apply_values(trial, values, place=trial.name, trust=trust)
     plain = {part.word for part in outline(Trial) if part.role == "attribute"} - {*preset.options}
     paths = {key: value for key, value in values.items() if set("/.[") & set(key) or key.replace("_", "-") in plain}

@@ -209,6 +209,7 @@ ARENAS = (
             "delay": PresetOption(5.0, "maximum delay of a person", "s", 0.0, 60.0),
         },
         "social-jym: delayed circular crossing",
+        model="orca",
     ),
     Preset(
         "circle-with-standing",
@@ -221,6 +222,7 @@ ARENAS = (
             "size": PresetOption(1.0, "radius of standing people, +- 20 %", "m", 0.2, 1.5),
         },
         "social-jym: circular crossing with static obstacles",
+        model="orca",
     ),
     Preset(
         "corner-traffic",

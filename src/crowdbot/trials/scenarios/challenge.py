@@ -91,6 +91,7 @@ def _presets() -> tuple[Preset, ...]:
             TITLES["challenge-alone"],
             functools.partial(challenge, "", 0),
             {"acceleration": braking},
+            model="orca",
         )
     ]
     for kind in FLOWS:
@@ -100,6 +101,7 @@ def _presets() -> tuple[Preset, ...]:
                 TITLES[f"challenge-{kind}-{size}"],
                 functools.partial(challenge, kind),
                 {"people": PresetOption(size, "people", "", 0, 600), "acceleration": braking},
+                model="orca",
             )
             for size in SIZES
         ]

@@ -304,6 +304,7 @@ CROWDS = (
             "horizon": PresetOption(5.0, "time horizon of people", "s", 0.5, 10.0),
         },
         "CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
+        model="orca",
     ),
     Preset(
         "dense-circle",
@@ -314,6 +315,7 @@ CROWDS = (
             "radius": PresetOption(8.49, "radius of the circle", "m", 2.0, 30.0),
         },
         "CrowdNav_Prediction_AttnGraph: 20 people",
+        model="orca",
     ),
     Preset(
         "square-crossing",
@@ -324,6 +326,7 @@ CROWDS = (
             "side": PresetOption(10.0, "side of the square", "m", 5.0, 40.0),
         },
         "CrowdNav: square crossing",
+        model="orca",
     ),
     Preset(
         "static-crowd",

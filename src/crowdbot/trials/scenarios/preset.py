@@ -58,13 +58,16 @@ class PresetOption:
 
 
 COMMON = {
-    "model": PresetOption("orca", "crowd model of the people"),
+    "model": PresetOption("people", "crowd model of the people"),
     "navigator": PresetOption("orca", "navigator of the robot"),
     "robot": PresetOption(True, "whether there is a robot"),
     "reactive": PresetOption(True, "whether people see the robot"),
     "seed": PresetOption(1, "seed of everything random", "", -(2**53), 2**53),
 }
-"""Parameters of every preset."""
+"""Parameters of every preset. The default of ``model`` is that of the preset."""
+
+BUILT = "orca"
+"""Model of the crowds that presets build, with the parameters of each scenario."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,7 @@ class Preset:
         make: function of the parameters in ``own`` that returns the trial.
         own: parameters of this preset, without those of every preset.
         also: names of the scenario in other simulators and benchmarks, with the parameters.
+        model: crowd model of the people; scenarios of a benchmark keep its model.
     """
 
     name: str
@@ -84,11 +88,12 @@ class Preset:
     make: Callable[..., Trial]
     own: Mapping[str, PresetOption] = field(default_factory=dict)
     also: str = ""
+    model: str = str(COMMON["model"].default)
 
     @property
     def options(self) -> dict[str, PresetOption]:
         """All parameters by name."""
-        return {**self.own, **COMMON}
+        return {**self.own, **COMMON, "model": dataclasses.replace(COMMON["model"], default=self.model)}
 
     def trial(self, **given: Any) -> Trial:
         """Return the trial.
@@ -126,7 +131,7 @@ class Preset:
 def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
     """Return a trial with the parameters of every preset: model, navigator, robot, seed."""
     changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
-    if values["model"] != "orca":
+    if values["model"] != BUILT:
         changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
     robots: Iterable[RobotSpec] = trial.robots if values["robot"] else ()
     found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)

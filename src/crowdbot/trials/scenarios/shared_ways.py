@@ -123,6 +123,7 @@ SHARED_WAYS = (
             "gives_way": PresetOption(False, "whether they step aside"),
         },
         "P&G: pedestrian obstruction",
+        model="orca",  # people who stand step aside
     ),
     Preset(
         "down-path",
