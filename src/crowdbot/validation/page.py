@@ -13,10 +13,10 @@ import numpy as np
 from crowdbot.measurement import LANE_BAND
 
 from . import bottleneck, corridor, lanes, single_file
+from .cases import CASES
 from .literature import SOURCES, SPECIFIC_FLOW
 from .plots import PLOTS, draw
 from .recording import METHODS
-from .rimea import NOT_APPLICABLE
 from .run import CHECKS, Validation
 from .scenario import RADIUS, STEP
 from .section import METHOD
@@ -24,24 +24,28 @@ from .statistics import STARTS
 
 __all__ = ["write_page"]
 
+STEADY = (
+    "Steady state: of the mean forward speed of each start, found by the modified CUSUM method (Liao et al. 2016) with"
+    " the last third of the run as reference; a start without one is measured in its last third"
+)
 DEFINITIONS = {
     "single-file": f"People of radius {RADIUS} m, all with a free speed of 1.34 m/s (RiMEA test 4 requires equal"
     f" speeds), walk along a periodic track of {single_file.LENGTH:g} m between walls {single_file.WIDTH} m apart."
-    f" Density: people per metre of track. Speed: mean forward speed over {single_file.MEASURED:g} s, after a warm-up"
-    f" of {single_file.WARM:g} s from rest.",
-    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide, {corridor.SECONDS:g} s,"
-    f" {STARTS} starts for each density; measured every {corridor.EVERY:g} s in the steady state of the mean speed"
-    f" (modified CUSUM method, Liao et al. 2016), in its last third if there is none. {METHOD}, with 95 % bootstrap"
-    " intervals over starts.",
+    f" Density: people per metre of track. Speed: mean forward speed in the steady state of runs of"
+    f" {single_file.SECONDS:g} s from rest, with 95 % bootstrap intervals over starts. {STEADY}",
+    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide, runs of {corridor.SECONDS:g} s"
+    f" at densities of {', '.join(f'{d:g}' for d in corridor.DENSITIES)} people/m2, measured every {corridor.EVERY:g} s"
+    f" in the steady state. {METHOD}, with 95 % bootstrap intervals over starts. {STEADY}",
     "lanes": f"A periodic track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, with 1 person/m2, half of them in each"
-    f" direction; free speeds are 1.34 +- 0.26 m/s; mean over {lanes.SEEDS} initial states. Lane order: for each person"
+    f" direction; free speeds are 1.34 +- 0.26 m/s; mean over starts in the last {lanes.LAST:g} of {lanes.SECONDS:g} s."
+    " Lane order: for each person"
     f" i with m others at a lateral distance below {LANE_BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
     " phi and its expectation for randomly permuted directions, the lane order is (mean - expectation) / (1 -"
     " expectation): 0 for random directions, 1 for perfect lanes.",
-    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, with {lanes.NARROW_SEEDS} initial states per density. Speed:"
+    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, at several densities. Speed:"
     f" mean speed in the walking direction over the last {lanes.NARROW_LAST:g} of {lanes.NARROW_SECONDS:g} s.",
     "bottleneck": f"{bottleneck.PEOPLE} people in a room {2 * bottleneck.HALF:g} m wide walk through an opening that is"
-    f" {bottleneck.LENGTH} m long, {STARTS} starts for each width. The goal of each person is the nearest point of the"
+    f" {bottleneck.LENGTH} m long. The goal of each person is the nearest point of the"
     " opening where a body fits. Flow: (n - 1) / (t_n - t_1) for the n crossings of the middle line of the opening"
     " without the first and last sixth; if somebody does not pass, all crossings count, up to the time limit of"
     f" {bottleneck.SECONDS:g} s. Specific flow: flow / width (in the table: mean over widths).",
@@ -254,7 +258,7 @@ def _rimea() -> list[str]:
         " tests 9 and 12 document the behavior of a model and have no criterion. Goals are waypoints around corners"
         " and at doors. The other tests:",
         "",
-        *(f"* {number}: {why}." for number, why in NOT_APPLICABLE.items()),
+        *(f"* {one}" for one in CASES),
         "",
     ]
 
