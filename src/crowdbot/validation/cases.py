@@ -59,7 +59,9 @@ ISO_CASES = (
     Case("reduced visibility", "speed falls with visibility", (), STATE),
     Case("incapacitation", "people become unable to move", (), STATE),
     Case("elevators", "people use elevators", (), "elevators are not supported"),
-    Case("horizontal counter-flow", "time rises with the people against", ("counter-flow", "narrow"), "half the people"),
+    Case(
+        "horizontal counter-flow", "time rises with the people against", ("counter-flow", "narrow"), "half the people"
+    ),
     Case("group behaviour", "a group waits for its slow member", ("group",), "20 m in the open"),
     Case("people with disabilities", "slow and large bodies", (), "speed and radius of each person are inputs"),
     Case("exit route allocation", "people use assigned exits", ("exits",)),
