@@ -11,6 +11,7 @@ from .fit import Fit
 from .fit_prediction import futures
 from .genetic import Genetic
 from .greedy import Greedy
+from .identifiability import ParameterProfile, plot_profiles, profile_parameters
 from .inter_pedestrian import InterPedestrian
 from .parameter_space import ParameterSpace
 from .population_prior import PopulationPrior
@@ -36,6 +37,7 @@ __all__ = [
     "Geometric",
     "Greedy",
     "InterPedestrian",
+    "ParameterProfile",
     "ParameterSpace",
     "PopulationPrior",
     "Progressive",
@@ -51,6 +53,8 @@ __all__ = [
     "futures",
     "goal_class",
     "goal_for",
+    "plot_profiles",
+    "profile_parameters",
     "resolve_cost",
     "resolve_goal",
     "resolve_model",

@@ -165,6 +165,16 @@ class Calibrator:
             counted[part] = task.counted
         return self._fit(found, given, past, counted, begin)
 
+    def person_costs(self, past: Windows, values: Floats) -> Floats:
+        """Return the costs ``[S, W, A]`` [m] of people for S sets of shared parameters ``[S, D]``; NaN without a cost.
+
+        Raises:
+            InputError: the windows have fewer than two rows.
+        """
+        task = _Task(self, past, self.space.initial_values(past, self.rollout), None)
+        each = np.asarray(values, dtype=np.float64)[:, None, None]
+        return task(each, np.arange(len(past)))
+
     def _fit_all(self, pasts: list[Windows], rng: np.random.Generator, progress: Progress | None) -> Fit:
         space, begin = self.space, time.perf_counter()
         windows = sum(len(past) for past in pasts)

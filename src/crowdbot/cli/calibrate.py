@@ -11,8 +11,8 @@ from .recordings import add_recordings, print_notes, recordings
 from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
 
 if TYPE_CHECKING:
-    from crowdbot.calibration import CalibrationChunk, Calibrator, Fit
-    from crowdbot.data import Recording
+    from crowdbot.calibration import CalibrationChunk, Calibrator, Fit, ParameterProfile
+    from crowdbot.data import Recording, Windows
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +28,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="initial parameters of the crowd model (default: none)",
     )
     add("--shared", action="store_true", help="one common set of parameters instead of individual ones")
+    add(
+        "--profile",
+        type=int,
+        metavar="N",
+        help="profile and interval of each parameter at N values; requires --shared (default: none)",
+    )
     add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
     add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
     add("--out", type=Path, metavar="DIR", help="folder for parameters, prior and resumable results (default: none)")
@@ -37,22 +43,74 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Calibrate on the observed rows of every window of every recording."""
+    from crowdbot.core import InputError
+
+    if options.profile is not None and not options.shared:
+        raise InputError("--profile requires --shared: individual parameters have a spread over people instead")
     calibrator, goal = _calibrator(options)
     found = recordings(options)
     with progress(options.json) as report:
         if options.shared:
-            fits = {"together": _shared(calibrator, goal, found, options, report)}
+            calibrator = _with_goal(calibrator, goal, found)
+            fits = {
+                "together": calibrator.fit(
+                    _pasts(found), options.seed, lambda share: report("shared parameters", share)
+                )
+            }
         else:
             fits = {one.path: _each(calibrator, goal, one, options, report) for one in found}
+        profiles = _profiles(calibrator, fits["together"], found, options, report) if options.profile else ()
     if options.out is not None:
         _write_results(options.out, fits, options.shared)
+        _write_profiles(options.out, profiles)
     if options.json:
-        print_json({name: as_json(fit) for name, fit in fits.items()})
+        shown = {name: as_json(fit) for name, fit in fits.items()}
+        print_json({**shown, **({"profiles": [one.as_dict() for one in profiles]} if profiles else {})})
         return 0
     print_notes(found)
     for name, fit in fits.items():
         _table(Path(name).name, fit)
+    _print_profiles(profiles)
     return 0
+
+
+def _profiles(
+    calibrator: Calibrator, fit: Fit, found: tuple[Recording, ...], options: argparse.Namespace, report: Progress
+) -> tuple[ParameterProfile, ...]:
+    """Return the profiles of a shared fit; each value has a tenth of the budget."""
+    from crowdbot.calibration import profile_parameters
+
+    budget = max(1, options.budget // 10)
+    return profile_parameters(
+        calibrator, fit, _pasts(found), options.profile, budget, options.seed, lambda share: report("profiles", share)
+    )
+
+
+def _write_profiles(folder: Path, profiles: tuple[ParameterProfile, ...]) -> None:
+    from crowdbot.calibration import plot_profiles
+
+    if profiles:
+        text = json_text([one.as_dict() for one in profiles])
+        (folder / "profiles.json").write_text(text + "\n", encoding="utf-8")
+        plot_profiles(profiles, folder / "profiles.png")
+        note(f"wrote profiles.json, profiles.png in {folder}")
+
+
+def _print_profiles(profiles: tuple[ParameterProfile, ...]) -> None:
+    rows = [
+        (
+            one.name,
+            number(one.best),
+            f"{one.interval[0]:.3g} to {one.interval[1]:.3g}",
+            f"{one.bootstrap[0]:.3g} to {one.bootstrap[1]:.3g}",
+            one.identified,
+            one.unit,
+        )
+        for one in profiles
+    ]
+    if rows:
+        head = ("parameter", "value", "95 % by profile", "95 % by bootstrap", "identified", "unit")
+        print_table("profiles", head, rows)
 
 
 def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
@@ -103,26 +161,24 @@ def _each(
     return fit
 
 
-def _shared(
-    calibrator: Calibrator,
-    goal: str | None,
-    found: tuple[Recording, ...],
-    options: argparse.Namespace,
-    report: Progress,
-) -> Fit:
+def _with_goal(calibrator: Calibrator, goal: str | None, found: tuple[Recording, ...]) -> Calibrator:
+    """Return the calibrator of a shared fit with the goal of its recording, if it depends on the recording."""
     import dataclasses
 
     from crowdbot.calibration import goal_for
     from crowdbot.core import InputError
 
-    if goal is not None:
-        if len(found) > 1:
-            raise InputError(
-                f"the goal {goal} depends on the recording: calibrate one recording at a time, not {len(found)}"
-            )
-        calibrator = dataclasses.replace(calibrator, goal=goal_for(goal, found[0]))
-    pasts = [one.windows[0] for one in found]
-    return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
+    if goal is None:
+        return calibrator
+    if len(found) > 1:
+        raise InputError(
+            f"the goal {goal} depends on the recording: calibrate one recording at a time, not {len(found)}"
+        )
+    return dataclasses.replace(calibrator, goal=goal_for(goal, found[0]))
+
+
+def _pasts(found: tuple[Recording, ...]) -> list[Windows]:
+    return [one.windows[0] for one in found]
 
 
 def _print_frames(piece: CalibrationChunk) -> None:

@@ -28,22 +28,29 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="only contacts of people in built-in trials and the time for 40 m, as contacts.md",
     )
-    parser.add_argument("--starts", type=int, default=20, metavar="N", help="runs of each trial (default: 20)")
+    parser.add_argument(
+        "--starts", type=int, default=20, metavar="N", help="starts of each test, or runs of each trial (default: 20)"
+    )
+    parser.add_argument("--stored", action="store_true", help="write the page from stored results, without new runs")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
-    from crowdbot.core import explain_write_errors
+    from crowdbot.core import InputError, explain_write_errors
     from crowdbot.validation import CHECKS, select_models, validate, write_page
 
     models, skipped = select_models([name for name in (options.models or "").split(",") if name])
+    if options.starts < 1:
+        raise InputError(f"--starts {options.starts} must be at least 1")
     if options.contacts:
         return _contacts(options, models)
     kept = options.out / "validation"
     try:
         with progress(options.json) as report, explain_write_errors(options.out):
-            done = validate(models, kept, options.data, options.quick, report, skipped)
+            done = validate(
+                models, kept, options.data, options.quick, report, skipped, options.starts, not options.stored
+            )
     except KeyboardInterrupt:
         note(f"results are stored in {kept}; run the same command again to resume")
         raise
@@ -54,9 +61,11 @@ def main(options: argparse.Namespace) -> int:
         return 0
     rows = []
     for model, checks in done.outcomes.items():
-        wrong = [c.title for c in CHECKS if not checks[c.name].verdict.passed]
-        rows.append((model, f"{len(CHECKS) - len(wrong)} of {len(CHECKS)}", ", ".join(wrong) or "-"))
-    print_table("validation", ("model", "passed", "failed criteria"), rows)
+        ran = [c for c in CHECKS if c.name in checks]
+        wrong = [c.title for c in ran if not checks[c.name].verdict.passed]
+        starts = max((checks[c.name].starts for c in ran), default=0)
+        rows.append((model, f"{len(ran) - len(wrong)} of {len(CHECKS)}", f"{starts}", ", ".join(wrong) or "-"))
+    print_table("validation", ("model", "passed", "starts", "failed criteria"), rows)
     for model, why in skipped.items():
         print(f"not run   {model}: {why}")
     print(f"page      {page}")
@@ -65,11 +74,9 @@ def main(options: argparse.Namespace) -> int:
 
 def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> int:
     """Measure contacts, write the page and print the table."""
-    from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.core import explain_write_errors
     from crowdbot.validation import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
 
-    if options.starts < 1:
-        raise InputError(f"--starts {options.starts} must be at least 1")
     models = models if options.models else {**models, **OTHER_VALUES}
     file = options.out / "validation" / "contacts.json"
     seconds = 4.0 if options.quick else CONTACT_SECONDS
@@ -96,4 +103,6 @@ def _command(options: argparse.Namespace) -> str:
         words.append(f"--models {options.models}")
     if options.data:
         words.append("--data RECORDINGS")
-    return " ".join([*words, "--out docs", *(["--quick"] if options.quick else [])])
+    if options.starts != 20:
+        words.append(f"--starts {options.starts}")
+    return " ".join([*words, "--out docs/results", *(["--quick"] if options.quick else [])])

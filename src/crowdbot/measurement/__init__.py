@@ -17,6 +17,7 @@ from .flow import (
     mean_flow,
 )
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
+from .interaction_energy import FIT_RANGE, InteractionEnergy, compute_interaction_energy, fit_interaction_energy
 from .lanes import LANE_BAND, compute_lane_order, lane_order, walking_direction
 from .movement import (
     BORDERS,
@@ -44,11 +45,13 @@ __all__ = [
     "BORDERS",
     "DENSITY_PROFILES",
     "FIGURES",
+    "FIT_RANGE",
     "LANE_BAND",
     "METHODS",
     "SPEED_PROFILES",
     "CutOff",
     "Grid",
+    "InteractionEnergy",
     "MeasurementArea",
     "MeasurementLine",
     "MeasurementPlan",
@@ -69,6 +72,7 @@ __all__ = [
     "compute_individual_acceleration",
     "compute_individual_speed",
     "compute_individual_voronoi_polygons",
+    "compute_interaction_energy",
     "compute_lane_order",
     "compute_line_flow",
     "compute_mean_speed_per_frame",
@@ -88,6 +92,7 @@ __all__ = [
     "crossing_times",
     "detect_steady_state",
     "distribution",
+    "fit_interaction_energy",
     "lane_order",
     "mean_flow",
     "mean_over_starts",

@@ -19,7 +19,16 @@ from .rows import Floats, Integers, check_metres, rows_at, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compute_encounters", "compute_time_to_collision_distribution", "distribution"]
+__all__ = [
+    "compute_encounters",
+    "compute_time_to_collision_distribution",
+    "distribution",
+    "expected_times",
+    "time_edges",
+]
+
+REACH = 1e3
+"""Distance [m] beyond which pairs are not counted in distributions of times."""
 
 
 def compute_encounters(
@@ -93,27 +102,59 @@ def compute_time_to_collision_distribution(
     Raises:
         InputError: an argument is not above 0.
     """
+    edges = time_edges(bin_size, longest, shuffles)
+    pairs = compute_encounters(tracks, velocity, radius, reach=REACH)
+    found = np.histogram(pairs.ttc.to_numpy()[pairs.ttc.to_numpy() > 0.0], edges)[0]
+    expected = expected_times(tracks, velocity, radius, edges, shuffles, seed) * len(pairs)
+    known = (expected > 0.0) & (found > 0)
+    g = np.where(expected > 0.0, found / np.where(expected > 0.0, expected, 1.0), np.nan)
+    energy = np.where(known, -np.log(np.where(known, g, 1.0)), np.nan)
+    return table(ttc=edges[:-1] + 0.5 * bin_size, count=found, expected=expected, g=g, energy=energy)
+
+
+def time_edges(bin_size: float, longest: float, shuffles: int) -> Floats:
+    """Return the edges of bins of times to collision [s].
+
+    Raises:
+        InputError: an argument is not above 0.
+
+    >>> time_edges(0.5, 1.0, 1).tolist()
+    [0.0, 0.5, 1.0]
+    """
     if not bin_size > 0.0 or not longest >= bin_size or shuffles < 1:
         raise InputError("a distribution of times needs a bin size above 0, a longer range and at least 1 shuffle")
-    reach = 1e3
-    edges = np.arange(0.0, longest + 0.5 * bin_size, bin_size)
-    pairs = compute_encounters(tracks, velocity, radius, reach)
-    found = np.histogram(pairs.ttc.to_numpy()[pairs.ttc.to_numpy() > 0.0], edges)[0]
+    return np.arange(0.0, longest + 0.5 * bin_size, bin_size)
+
+
+def expected_times(
+    tracks: Trajectories, velocity: pd.DataFrame, radius: float, edges: Floats, shuffles: int, seed: int
+) -> Floats:
+    """Return the share of pairs ``[N]`` in bins of time to collision if people do not interact: with shuffled frames.
+
+    Args:
+        tracks, velocity, radius: as in :func:`compute_encounters`.
+        edges: ``[N + 1]`` edges of the bins [s].
+        shuffles: how often frames are shuffled.
+        seed: seed of the shuffles.
+
+    >>> from crowdbot.measurement import compute_individual_speed
+    >>> x = [0.0, 4.0, 1.0, 3.0]
+    >>> tracks = Trajectories([1, 2, 1, 2], [0, 0, 1, 1], x, [0.0] * 4, row_rate=1.0)
+    >>> speed = compute_individual_speed(tracks, 1, border="single-sided")
+    >>> float(expected_times(tracks, speed, 0.5, np.array([0.0, 8.0]), 4, 0)[0])
+    1.0
+    """
     rows = rows_at(tracks, velocity.frame.to_numpy(np.int64), velocity.id.to_numpy(np.int64))
     place, speed = tracks.position[rows], velocity[["v_x", "v_y"]].to_numpy()
     rng = stream(seed, "times to collision")
     free, count = np.zeros(len(edges) - 1), 0
     for _ in range(shuffles):
-        one, other = _pairs(tracks, rows, rng.permutation(tracks.frame[rows]), reach)
+        one, other = _pairs(tracks, rows, rng.permutation(tracks.frame[rows]), REACH)
         one, other = _strangers(tracks.id[rows], one, other)
         when = _time_to_collision(place[other] - place[one], speed[other] - speed[one], 2.0 * radius)
         free += np.histogram(when[when > 0.0], edges)[0]
         count += len(one)
-    expected = free / max(count, 1) * len(pairs)
-    known = (expected > 0.0) & (found > 0)
-    g = np.where(expected > 0.0, found / np.where(expected > 0.0, expected, 1.0), np.nan)
-    energy = np.where(known, -np.log(np.where(known, g, 1.0)), np.nan)
-    return table(ttc=edges[:-1] + 0.5 * bin_size, count=found, expected=expected, g=g, energy=energy)
+    return np.asarray(free / max(count, 1))
 
 
 def distribution(values: Floats, bin_size: float, low: float, high: float) -> pd.DataFrame:

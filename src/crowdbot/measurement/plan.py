@@ -19,7 +19,7 @@ METHODS = {
     "line": "N(t), flow and Voronoi flow at the line",
     "passing": "density and speed of each passage between two parallel lines",
     "profiles": "density, speed and flow on a grid",
-    "encounters": "times to collision and clearances between people",
+    "encounters": "times to collision, interaction energy and clearances between people",
     "pairs": "pair distribution function",
     "lanes": "order of lanes along the axis",
     "stops": "stops of people and the speed of stop-and-go waves",
@@ -32,7 +32,8 @@ FIGURES = {
     "voronoi_density": "1/m2", "voronoi_speed": "m/s", "steady_density": "1/m2", "steady_speed": "m/s",
     "steady_seconds": "s", "crossings": "1", "flow": "1/s", "specific_flow": "1/(m s)", "line_flow": "1/(m s)",
     "passages": "1", "smallest_clearance": "m", "mean_smallest_clearance": "m", "contact_share": "1",
-    "median_time_to_collision": "s", "lane_order": "1", "stop_share": "1", "stops_per_minute": "1/min",
+    "median_time_to_collision": "s", "energy_exponent": "1", "energy_exponent_low": "1", "energy_exponent_high": "1",
+    "energy_strength": "s^n", "lane_order": "1", "stop_share": "1", "stops_per_minute": "1/min",
     "stop_duration": "s", "wave_speed": "m/s", "mean_headway": "m",
 }  # fmt: skip
 """Units of the figures of :func:`measure`."""

@@ -31,7 +31,8 @@ def plot_measurements(found: Sequence[Measurements], folder: Path) -> list[Path]
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     for name, (x, y, draw) in CURVES.items():
-        some = [one for one in found if name in one.tables and len(one.tables[name])]
+        source = SOURCES.get(name, name)
+        some = [one for one in found if source in one.tables and len(one.tables[source])]
         if some:
             files.append(_curves(name, x, y, draw, some, folder))
     for name, title in PROFILES.items():
@@ -86,13 +87,33 @@ def _unity(x: str, y: str) -> Draw:
     return draw
 
 
+def _times(axis: Any, table: Any, label: str, color: str) -> None:
+    axis.fill_between(table.ttc, table.low, table.high, color=color, alpha=0.25, linewidth=0)
+    _line(axis, table, label, color, "ttc", "g")
+    axis.axhline(1.0, color="#9a9a9a", linewidth=0.8, linestyle="--")
+
+
+def _energy(axis: Any, table: Any, label: str, color: str) -> None:
+    near = table[table.ttc <= LONGEST_TIME]
+    low, mean, high = (near[name].to_numpy() for name in ("energy_low", "energy", "energy_high"))
+    spread = np.nan_to_num(np.abs(np.stack([mean - low, high - mean])))
+    axis.errorbar(near.ttc, mean, spread, fmt="o", color=color, label=label, markersize=3,
+                  linewidth=0.8)  # fmt: skip
+    axis.plot(near.ttc, near.fit, color=color, linewidth=1.4)
+    axis.axhline(0.0, color="#9a9a9a", linewidth=0.8, linestyle="--")
+
+
+LONGEST_TIME = 4.0
+"""Longest time to collision of the plot of the energy [s]."""
+
 CURVES: Mapping[str, tuple[str, str, Draw]] = {
     "diagram": ("Voronoi density [1/m²]", "speed [m/s]", _diagram),
     "diagram-values": ("Voronoi density [1/m²]", "speed [m/s]", _points("density", "speed")),
     "n-t": ("time [s]", "people beyond the line", _steps),
     "passages": ("density during the passage [1/m²]", "speed of the passage [m/s]", _points("density", "speed")),
     "clearance": ("clearance [m]", "frequency [1/m]", _curve("value", "density")),
-    "time-to-collision": ("time to collision τ [s]", "g(τ)", _unity("ttc", "g")),
+    "time-to-collision": ("time to collision τ [s]", "g(τ), with 95 % interval", _times),
+    "interaction-energy": ("time to collision τ [s]", "energy ln 1/g(τ), with fit k τ^-n + c", _energy),
     "pair-distribution": ("distance r [m]", "g(r)", _unity("radius", "g")),
     "lanes": ("time [s]", "order of lanes", _curve("time", "order", marker=".")),
     "acceleration": ("acceleration [m/s²]", "frequency [s²/m]", _curve("value", "density")),
@@ -100,6 +121,9 @@ CURVES: Mapping[str, tuple[str, str, Draw]] = {
     "headways": ("gap ahead [m]", "speed [m/s]", _points("ahead", "speed")),
 }
 """Tables that are one panel: label of x, label of y, how a recording is drawn."""
+
+SOURCES = {"interaction-energy": "time-to-collision"}
+"""Tables of the plots that have another name."""
 
 PROFILES = {"density": "density [1/m²]", "speed": "speed [m/s]", "flow": "specific flow [1/(m s)]"}
 
@@ -118,7 +142,7 @@ def _curves(name: str, x: str, y: str, draw: Draw, found: Sequence[Measurements]
     figure = _figure(6.0, 4.0)
     axis = figure.subplots()
     for k, one in enumerate(found):
-        draw(axis, one.tables[name], one.name, _color(k))
+        draw(axis, one.tables[SOURCES.get(name, name)], one.name, _color(k))
     axis.set(xlabel=x, ylabel=y)
     if name in ("diagram", "file-diagram", "clearance", "acceleration", "time-to-collision", "pair-distribution"):
         axis.set_ylim(bottom=0.0)

@@ -15,9 +15,10 @@ from crowdbot.data import Trajectories
 
 from .density import CutOff, compute_classic_density, compute_individual_voronoi_polygons, compute_voronoi_density
 from .diagram import compute_fundamental_diagram
-from .encounters import compute_encounters, compute_time_to_collision_distribution, distribution
+from .encounters import compute_encounters, distribution
 from .flow import compute_flow, compute_line_flow, compute_n_t, compute_species, crossing_times, mean_flow
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
+from .interaction_energy import compute_interaction_energy
 from .lanes import compute_lane_order
 from .movement import (
     compute_individual_acceleration,
@@ -252,9 +253,15 @@ class _Survey:
         pairs = compute_encounters(self.sample, _rows_of(self.speed, self.sample), self.plan.radius)
         gap, ttc = pairs.clearance.to_numpy(), pairs.ttc.to_numpy()
         self.tables["clearance"] = distribution(gap, 0.1, -2.0 * self.plan.radius, 10.0)
-        self.tables["time-to-collision"] = compute_time_to_collision_distribution(
+        energy = compute_interaction_energy(
             self.sample, _rows_of(self.speed, self.sample), self.plan.radius, seed=self.plan.seed
         )
+        self.tables["time-to-collision"] = energy.table
+        if not np.isnan(energy.exponent):
+            self.figures |= {"energy_exponent": energy.exponent, "energy_strength": energy.strength}
+        if not np.isnan(energy.exponent_low):
+            ends = (energy.exponent_low, energy.exponent_high)
+            self.figures |= {"energy_exponent_low": ends[0], "energy_exponent_high": ends[1]}
         if len(pairs):
             borders = np.flatnonzero(np.diff(pairs.frame.to_numpy(), prepend=pairs.frame[0] - 1))
             nearest = np.minimum.reduceat(gap, borders)

@@ -12,6 +12,7 @@ from crowdbot.core import Scene
 from crowdbot.measurement import MeasurementLine, crossing_times, mean_flow
 from crowdbot.models import CrowdModel
 
+from .crowd_motion import deepest_overlap, one_start, simulate_open
 from .literature import SPECIFIC_FLOW
 from .scenario import (
     RADIUS,
@@ -19,22 +20,20 @@ from .scenario import (
     CrowdTracks,
     Floats,
     Report,
+    Row,
     Solid,
     Verdict,
-    deepest_overlap,
-    free_speeds,
+    crowds,
     inside_solids,
     opening,
     rings,
     share,
-    simulate_open,
-    starts,
     stream_of,
     tracks_of,
 )
-from .statistics import STARTS, summarize_starts, text_of
+from .statistics import summarize_starts, text_of
 
-__all__ = ["BOTTLENECK", "crossings", "steady_flow"]
+__all__ = ["BOTTLENECK", "bottleneck_flow", "crossings", "steady_flow"]
 
 PEOPLE = 60
 ROOM, HALF = 8.0, 3.0
@@ -42,7 +41,6 @@ ROOM, HALF = 8.0, 3.0
 LENGTH = 2.8
 """Widths of the bottleneck [m], as in Seyfried et al. 2009."""
 WIDTHS = (0.8, 1.0, 1.2, 1.6, 2.0)
-SEEDS = STARTS
 TRANSIENT = 1.0 / 6.0
 """Share of the crossings at either end that is left out: the first people meet no jam, the last ones leave it."""
 SECONDS = 120.0
@@ -50,29 +48,40 @@ TOLERANCE = 0.25
 """Allowed mean relative deviation of the flow from 1.9 persons per second and metre."""
 
 
-def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the flow for each width; runs with different initial positions are environments."""
-    widths, seeds, people, seconds = ((0.8, 1.2), 1, 20, 30.0) if quick else (WIDTHS, SEEDS, PEOPLE, SECONDS)
-    flows, passed, outside, overlap = [], [], [], []
+def run(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Measure the flow for each width; starts are environments."""
+    widths, people, seconds = ((0.8, 1.2), 20, 30.0) if quick else (WIDTHS, PEOPLE, SECONDS)
+    rows: list[Row] = [
+        {"width": list(widths), "people": people, "flow": [], "passed": [], "outside": 0.0, "overlap": 0.0}
+        for _ in numbers
+    ]
     for k, width in enumerate(widths):
 
         def report_part(part: float, done: int = k) -> None:
             report((done + part) / len(widths))
 
-        walk = _leave(model, width, people, seeds, seconds, report_part)
-        flow = [_flow(crossings(walk, 0.5 * LENGTH, e), people, seconds) for e in range(seeds)]
-        flows.append([f for f, _ in flow])
-        passed.append([count for _, count in flow])
-        outside.append(inside_solids(walk, _solids(width)))
-        overlap.append(deepest_overlap(walk))
+        walk = _leave(model, width, people, numbers, seconds, report_part)
+        for e, row in enumerate(rows):
+            own = one_start(walk, e)
+            flow, passed = _flow(crossings(own, 0.5 * LENGTH), people, seconds)
+            row["flow"].append(flow)
+            row["passed"].append(passed)
+            row["outside"] = max(row["outside"], inside_solids(own, _solids(width)))
+            row["overlap"] = max(row["overlap"], deepest_overlap(own))
+    return rows
+
+
+def summarize(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the flows of all starts by width, and the interval of the specific flow."""
+    flows = np.asarray([row["flow"] for row in rows]).T.tolist()
     return {
-        "width": list(widths),
+        "width": rows[0]["width"],
         "flows": flows,
-        "interval": _specific_interval(flows, widths),
-        "passed": passed,
-        "people": people,
-        "outside": max(outside),
-        "overlap": max(overlap),
+        "interval": _specific_interval(flows, rows[0]["width"]),
+        "passed": np.asarray([row["passed"] for row in rows]).T.tolist(),
+        "people": rows[0]["people"],
+        "outside": max(row["outside"] for row in rows),
+        "overlap": max(row["overlap"] for row in rows),
     }
 
 
@@ -104,6 +113,7 @@ BOTTLENECK = Check(
     f"the mean relative deviation of the flow from {SPECIFIC_FLOW} persons per second and metre is at most"
     f" {TOLERANCE:.0%}, all people leave the room, and nobody's centre enters a wall",
     run,
+    summarize,
     judge,
 )
 
@@ -111,6 +121,12 @@ BOTTLENECK = Check(
 def crossings(walk: CrowdTracks, x: float, e: int = 0) -> Floats:
     """Return the sorted times [s] at which people of environment ``e`` first pass ``x`` [m]."""
     return crossing_times(tracks_of(walk, e), MeasurementLine((x, -HALF - 1.0), (x, HALF + 1.0)))
+
+
+def bottleneck_flow(model: CrowdModel, width: float, people: int, numbers: Sequence[int], step: float) -> list[float]:
+    """Return the flow [1/s] through a bottleneck for some starts, with a time step of the model [s]."""
+    walk = _leave(model, width, people, numbers, SECONDS, lambda part: None, step)
+    return [_flow(crossings(walk, 0.5 * LENGTH, e), people, SECONDS)[0] for e in range(len(numbers))]
 
 
 def _specific_interval(flows: Sequence[Sequence[float]], widths: Sequence[float]) -> tuple[float, float]:
@@ -137,12 +153,16 @@ def _flow(times: Floats, people: int, seconds: float) -> tuple[float, int]:
     return steady_flow(times) if len(times) == people else mean_flow(times, seconds), len(times)
 
 
-def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: float, report: Report) -> CrowdTracks:
-    place, speed = np.zeros((seeds, people, 2)), np.zeros((seeds, people))
-    for e in range(seeds):
-        rng = stream_of("bottleneck", people, e)
-        place[e] = starts(people, (-ROOM + 0.3, -HALF + 0.3), (-1.0, HALF - 0.3), rng)
-        speed[e] = free_speeds((people,), rng)
+def _leave(
+    model: CrowdModel,
+    width: float,
+    people: int,
+    numbers: Sequence[int],
+    seconds: float,
+    report: Report,
+    step: float | None = None,
+) -> CrowdTracks:
+    place, speed = crowds("bottleneck", people, numbers, (-ROOM + 0.3, -HALF + 0.3), (-1.0, HALF - 0.3))
     crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_solids(width)))
 
     def goals(now: Floats) -> Floats:
@@ -153,7 +173,9 @@ def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: fl
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 0] > LENGTH + 2.0)
 
-    return simulate_open(model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width), report)
+    return simulate_open(
+        model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width, numbers[0]), report
+    )
 
 
 def _solids(width: float) -> list[Solid]:

@@ -81,8 +81,8 @@ def compare_contacts(
         row = rows.setdefault(name, {})
         if row.get(trial, {}).get("settings") != settings:
             if trial == "rimea-1":
-                found = CORRIDOR_TIME.run(models[name], False, lambda share: None)
-                found = {**found, "passed": CORRIDOR_TIME.judge(found).passed}
+                alone = CORRIDOR_TIME.run(models[name], (0,), False, lambda share: None)[0]
+                found = {**alone, "passed": CORRIDOR_TIME.judge(alone).passed}
             else:
                 found = measure_contacts(models[name], trial, range(starts), seconds).as_dict()
             row[trial] = {**found, "settings": settings}

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.measurement import compute_fundamental_diagram
 from crowdbot.models import CrowdModel
 
+from .crowd_motion import deepest_overlap, one_start, simulate_periodic
 from .literature import weidmann_speed
 from .scenario import (
     FREE_SPEED,
@@ -19,27 +18,28 @@ from .scenario import (
     Check,
     CrowdTracks,
     Report,
+    Row,
     Verdict,
     corridor_walls,
-    deepest_overlap,
     free_speeds,
     share,
-    simulate_periodic,
     starts,
     stream_of,
 )
 from .section import section_of, section_values
-from .statistics import STARTS, SteadyWindow, find_steady_window
+from .statistics import bin_values, find_steady_window, pool_bins
 
-__all__ = ["CORRIDOR", "corridor_crowd"]
+__all__ = ["CORRIDOR", "LENGTH", "SPREAD", "WIDTH", "corridor_crowd"]
 
 LENGTH, WIDTH = 12.0, 3.0
-DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0)
 """People per square metre."""
 QUICK = (0.5, 1.5, 3.0)
 SECONDS = 45.0
-EVERY = 1.0
+EVERY = 2.0
 """Time between measurements [s]."""
+BIN = 0.5
+"""Width of the bins of density [1/m2]."""
 LEAST = 5
 """Minimum number of values of a bin."""
 LIMIT = 0.25
@@ -48,42 +48,53 @@ SPREAD = 0.05
 """Standard deviation of free speeds [m/s]; RiMEA test 4 requires nearly equal ones, 1.2 to 1.4 m/s."""
 
 
-def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+def run(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
     """Measure speed over Voronoi density in the steady state; densities and starts are environments."""
-    densities, starts_, seconds = (QUICK, 1, 6.0) if quick else (DENSITIES, STARTS, SECONDS)
-    runs = [("one-way", density, k) for density in densities for k in range(starts_)]
+    densities, seconds = (QUICK, 6.0) if quick else (DENSITIES, SECONDS)
+    runs = [("one-way", density, k) for density in densities for k in numbers]
     crowd = corridor_crowd(runs, LENGTH, WIDTH, two_way=False, spread=SPREAD)
-    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("corridor", "model"), report)
-    y, here = walk.position[..., 1], crowd.active
-    windows = [_window(walk, here, slice(k * starts_, (k + 1) * starts_)) for k in range(len(densities))]
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("corridor", "model", numbers[0]), report)
+    rows: list[Row] = []
+    for j in range(len(numbers)):
+        parts = [_measure(one_start(walk, k * len(numbers) + j)) for k in range(len(densities))]
+        values = [np.concatenate([part[name] for part in parts]) for name in ("density", "speed")]
+        rows.append(
+            {
+                "initial_density": list(densities),
+                "bins": bin_values(values[0], values[1], BIN),
+                "steady_from": [part["steady_from"] for part in parts],
+                "outside": float(np.mean([part["outside"] for part in parts])),
+                "overlap": max(part["overlap"] for part in parts),
+            }
+        )
+    return rows
+
+
+def _measure(walk: CrowdTracks) -> dict[str, Any]:
+    """Return the values of one density and start in the steady state of the mean forward speed."""
+    people = walk.present[0, 0]
+    x, y = walk.position[:, 0, people, 0], walk.position[:, 0, people, 1]
+    speed = np.diff(x, axis=0).mean(axis=1) / (walk.times[1] - walk.times[0])
+    window = find_steady_window(walk.times[1:], speed)
+    density, values = section_values(section_of(walk, 0, LENGTH, window.begin), WIDTH, EVERY)
     return {
-        **_diagram(walk, [window.begin for window in windows], starts_),
-        "starts": starts_,
-        "initial_density": list(densities),
-        "steady_from": [window.begin if window.steady else None for window in windows],
-        "outside": float(np.mean(np.any((y < 0.0) | (y > WIDTH), axis=0)[here])),
+        "density": density,
+        "speed": values,
+        "steady_from": window.begin if window.steady else None,
+        "outside": float(np.mean(np.any((y < 0.0) | (y > WIDTH), axis=0))),
         "overlap": deepest_overlap(walk, LENGTH),
     }
 
 
-def _window(walk: CrowdTracks, here: NDArray[np.bool_], rows: slice) -> SteadyWindow:
-    """Return the steady window of the mean forward speed of all starts of a density."""
-    moved = np.diff(walk.position[:, rows, :, 0], axis=0) * here[rows]
-    speed = moved.sum(axis=(1, 2)) / (here[rows].sum() * (walk.times[1] - walk.times[0]))
-    return find_steady_window(walk.times[1:], speed)
-
-
-def _diagram(walk: CrowdTracks, begins: Sequence[float], starts_: int) -> dict[str, Any]:
-    """Return the fundamental diagram of all environments, with intervals over starts if there are several."""
-    density, speed, start = [], [], []
-    for e in range(walk.position.shape[1]):
-        rho, v = section_values(section_of(walk, e, LENGTH, begins[e // starts_]), WIDTH, EVERY)
-        density.append(rho)
-        speed.append(v)
-        start.append(np.full(len(rho), e % starts_))
-    who = np.concatenate(start) if starts_ > 1 else None
-    found = compute_fundamental_diagram(np.concatenate(density), np.concatenate(speed), 0.5, who, least=LEAST)
-    return {name: found[name].tolist() for name in found.columns}
+def summarize(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the fundamental diagram of all starts with intervals."""
+    return {
+        **pool_bins([row["bins"] for row in rows], BIN, LEAST),
+        "initial_density": rows[0]["initial_density"],
+        "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
+        "outside": float(np.mean([row["outside"] for row in rows])),
+        "overlap": max(row["overlap"] for row in rows),
+    }
 
 
 def judge(result: dict[str, Any]) -> Verdict:
@@ -111,6 +122,7 @@ CORRIDOR = Check(
     f"the root mean square deviation of the speeds from Weidmann's curve is at most {LIMIT:.2f} m/s, and nobody's"
     " centre leaves the corridor (together with single file, this is RiMEA test 4)",
     run,
+    summarize,
     judge,
 )
 

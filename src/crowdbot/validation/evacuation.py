@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
+from .crowd_motion import deepest_overlap, one_start, simulate_open
 from .scenario import (
     RADIUS,
     STEP,
@@ -18,19 +19,18 @@ from .scenario import (
     CrowdTracks,
     Floats,
     Report,
+    Row,
     Solid,
     Verdict,
-    deepest_overlap,
-    free_speeds,
+    crowds,
     gate,
     inside_solids,
     opening,
     rings,
     share,
-    simulate_open,
-    starts,
     stream_of,
 )
+from .statistics import summarize_starts, text_of
 
 __all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS"]
 
@@ -45,42 +45,58 @@ LEAST, MOST = 1.6, 2.4
 """Range of time ratios that count as doubling, as in the system test of JuPedSim."""
 
 
-def run_doors(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Simulate a crowd that leaves a hall by four doors, then by two."""
+def run_doors(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Simulate a crowd that leaves a hall by four doors, then by two; starts are environments."""
     people, limit = (40, 20.0) if quick else (DOOR_PEOPLE, LIMIT)
-    seconds, out, outside, overlap = [], [], [], []
+    rows: list[Row] = [
+        {"seconds": [], "out": [], "people": people, "limit": limit, "outside": 0.0, "overlap": 0.0} for _ in numbers
+    ]
     for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
 
         def report_part(part: float, done: int = k) -> None:
             report(0.5 * (done + part))
 
-        walk = _hall(model, people, sides, limit, report_part)
-        y = walk.position[..., 1]
-        seconds.append(float(walk.times[-1]))
-        out.append(int(np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0).sum()))
-        outside.append(inside_solids(walk, _hall_solids()))
-        overlap.append(deepest_overlap(walk))
+        walk = _hall(model, people, sides, numbers, limit, report_part)
+        for e, row in enumerate(rows):
+            own = one_start(walk, e)
+            y = own.position[..., 1]
+            row["seconds"].append(float(own.times[-1]))
+            row["out"].append(int(np.any(((y < -0.5) | (y > DEPTH + 0.5)) & own.present, axis=0).sum()))
+            row["outside"] = max(row["outside"], inside_solids(own, _hall_solids()))
+            row["overlap"] = max(row["overlap"], deepest_overlap(own))
+    return rows
+
+
+def summarize_doors(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the ratio of the times with its interval, over the starts in which all people leave."""
+    done = [row for row in rows if min(row["out"]) == row["people"]]
+    ratio = summarize_starts([[row["seconds"][1] / row["seconds"][0] for row in done]]) if done else None
     return {
-        "seconds": seconds,
-        "limit": limit,
-        "out": out,
-        "people": people,
-        "outside": max(outside),
-        "overlap": max(overlap),
+        "ratio": ratio["mean"][0] if ratio else None,
+        "interval": [ratio["low"][0], ratio["high"][0]] if ratio else None,
+        "seconds": np.mean([row["seconds"] for row in rows], axis=0).tolist(),
+        "limit": rows[0]["limit"],
+        "out": min(min(row["out"]) for row in rows),
+        "people": rows[0]["people"],
+        "stuck": len(rows) - len(done),
+        "starts": len(rows),
+        "outside": float(np.mean([row["outside"] for row in rows])),
+        "overlap": max(row["overlap"] for row in rows),
     }
 
 
 def judge_doors(result: dict[str, Any]) -> Verdict:
     """Check that half of the doors takes about twice the time."""
-    words, people = [], result["people"]
-    if min(result["out"]) < people:
-        stuck = people - min(result["out"])
-        words.append(f"{stuck} of {people} people do not leave a hall within {result['limit']:g} s")
-        value = f"{min(result['out'])} of {people}"
-        ratio = 0.0
+    words, ratio = [], result["ratio"]
+    if result["stuck"]:
+        words.append(
+            f"{_often(result)} not all of {result['people']} people leave a hall within {result['limit']:g} s"
+            f" (at least {result['out']} do)"
+        )
+    if ratio is None:
+        value = f"{result['stuck']} of {result['starts']} stuck"
     else:
-        ratio = result["seconds"][1] / result["seconds"][0]
-        value = f"{ratio:.2f} ({result['seconds'][0]:.0f}, {result['seconds'][1]:.0f} s)"
+        value = f"{text_of(ratio, result['interval'])}{_stuck(result)}"
         if not LEAST <= ratio <= MOST:
             words.append(f"a hall takes {ratio:.1f} times as long to empty with half of its doors")
     if result["outside"] > 0.0:
@@ -88,12 +104,22 @@ def judge_doors(result: dict[str, Any]) -> Verdict:
     return Verdict(value, not words, "; ".join(words))
 
 
+def _often(result: dict[str, Any]) -> str:
+    return f"in {result['stuck']} of {result['starts']} starts,"
+
+
+def _stuck(result: dict[str, Any]) -> str:
+    return f", {result['stuck']} of {result['starts']} stuck" if result["stuck"] else ""
+
+
 DOORS = Check(
     "rimea-9",
     "RiMEA 9",
     f"{DOOR_PEOPLE} people leave a hall of {HALL:g} x {DEPTH:g} m through four doors of {DOOR:g} m, and then through"
-    f" the two doors of one side, which takes {LEAST} to {MOST} times as long; nobody's centre enters a wall",
+    f" the two doors of one side, which takes {LEAST} to {MOST} times as long in the mean; all people leave in every"
+    " start, and nobody's centre enters a wall",
     run_doors,
+    summarize_doors,
     judge_doors,
 )
 
@@ -104,13 +130,12 @@ QUEUE = 5.0
 """Minimum number of people in a jam."""
 
 
-def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Simulate a crowd that walks from a room through a corridor into a second room and out of it."""
+def run_rooms(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Simulate a crowd that walks from a room through a corridor into a second room and leaves it."""
     people, limit = (30, 25.0) if quick else (ROOM_PEOPLE, LIMIT)
     solids = _room_solids()
-    rng = stream_of("rimea-12", people)
-    place = starts(people, (0.3, 0.3), (8.5, 9.7), rng)
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(solids))
+    place, speed = crowds("rimea-12", people, numbers, (0.3, 0.3), (8.5, 9.7))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(solids))
 
     def goals(now: Floats) -> Floats:
         x = now[..., 0]
@@ -123,14 +148,36 @@ def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 0] > 27.0)
 
-    walk = simulate_open(model, crowd, goals, left, limit, stream_of("rimea-12", "model"), report)
+    rng = stream_of("rimea-12", "model", numbers[0])
+    walk = simulate_open(model, crowd, goals, left, limit, rng, report)
+    rows: list[Row] = []
+    for e in range(len(numbers)):
+        own = one_start(walk, e)
+        rows.append(
+            {
+                "out": int(np.any((own.position[..., 0] > 25.3) & own.present, axis=0).sum()),
+                "people": people,
+                "seconds": float(own.times[-1]),
+                "queues": [_queue(own, 10.0), _queue(own, 25.0)],
+                "outside": inside_solids(own, solids),
+                "overlap": deepest_overlap(own),
+            }
+        )
+    return rows
+
+
+def summarize_rooms(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the mean queues with their intervals."""
+    queues = summarize_starts(np.asarray([row["queues"] for row in rows]).T)
     return {
-        "out": int(np.any((walk.position[..., 0] > 25.3) & walk.present, axis=0).sum()),
-        "people": people,
-        "seconds": float(walk.times[-1]),
-        "queues": [_queue(walk, 10.0), _queue(walk, 25.0)],
-        "outside": inside_solids(walk, solids),
-        "overlap": deepest_overlap(walk),
+        "out": min(row["out"] for row in rows),
+        "people": rows[0]["people"],
+        "stuck": sum(row["out"] < row["people"] for row in rows),
+        "starts": len(rows),
+        "queues": queues["mean"],
+        "interval": list(zip(queues["low"], queues["high"], strict=True)),
+        "outside": float(np.mean([row["outside"] for row in rows])),
+        "overlap": max(row["overlap"] for row in rows),
     }
 
 
@@ -138,17 +185,15 @@ def judge_rooms(result: dict[str, Any]) -> Verdict:
     """Check for a queue in front of the corridor, and none in front of the exit."""
     first, second = result["queues"]
     words = []
-    if result["out"] < result["people"]:
-        words.append(
-            f"{result['people'] - result['out']} of {result['people']} people do not get through two rooms in time"
-        )
+    if result["stuck"]:
+        words.append(f"{_often(result)} not all of {result['people']} people get through two rooms in time")
     if first < QUEUE:
         words.append("no queue forms in front of a corridor 1 m wide")
     if second >= QUEUE:
         words.append(f"a queue of {second:.0f} forms at an exit, although the corridor before it has the same width")
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of people walk through the walls between two rooms")
-    return Verdict(f"{first:.0f} | {second:.0f}", not words, "; ".join(words))
+    return Verdict(f"{first:.0f} | {second:.0f}{_stuck(result)}", not words, "; ".join(words))
 
 
 TWO_ROOMS = Check(
@@ -157,8 +202,9 @@ TWO_ROOMS = Check(
     f"{ROOM_PEOPLE} people walk from a room of 10 x 10 m through a corridor of 5 x 1 m into a second room, and leave it"
     f" through an exit of 1 m. The queue has at least {QUEUE:g} people in front of the corridor and fewer at the exit;"
     f" it is the 95th percentile over time of the number of people within 2 m who are slower than {SLOW} m/s. All"
-    " people leave, and nobody's centre enters a wall",
+    " people leave in every start, and nobody's centre enters a wall",
     run_rooms,
+    summarize_rooms,
     judge_rooms,
 )
 
@@ -166,28 +212,43 @@ CORNER_CROWD = 125
 LONG, SHORT = 40.5, 25.0
 
 
-def run_long_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+def run_long_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
     """Simulate a crowd in a wide corridor with a corner, and in straight ones as long as its outer and inner walls."""
     people, limit = (30, 50.0) if quick else (CORNER_CROWD, 120.0)
-    seconds, out, outside = [], [], []
+    rows: list[Row] = [{"seconds": [], "out": [], "people": people, "outside": 0.0} for _ in numbers]
     for k, name in enumerate(("short", "corner", "long")):
 
         def report_part(part: float, done: int = k) -> None:
             report((done + part) / 3.0)
 
-        walk, gone = _corner(model, name, people, limit, report_part)
-        seconds.append(float(walk.times[-1]))
-        out.append(gone)
-        outside.append(inside_solids(walk, _corner_solids(name)))
-    return {"seconds": seconds, "out": out, "people": people, "outside": max(outside)}
+        walk, arrived = _corner(model, name, people, numbers, limit, report_part)
+        for e, row in enumerate(rows):
+            own = one_start(walk, e)
+            row["seconds"].append(float(own.times[-1]))
+            row["out"].append(int(np.any(arrived(own.position) & own.present, axis=0).sum()))
+            row["outside"] = max(row["outside"], inside_solids(own, _corner_solids(name)))
+    return rows
+
+
+def summarize_long_corner(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the mean times with their intervals, and in how many starts people do not arrive."""
+    found = summarize_starts(np.asarray([row["seconds"] for row in rows]).T)
+    return {
+        "seconds": found["mean"],
+        "interval": list(zip(found["low"], found["high"], strict=True)),
+        "people": rows[0]["people"],
+        "stuck": sum(min(row["out"]) < row["people"] for row in rows),
+        "starts": len(rows),
+        "outside": float(np.mean([row["outside"] for row in rows])),
+    }
 
 
 def judge_long_corner(result: dict[str, Any]) -> Verdict:
     """Check that the time of the corner is between those of the short and the long corridor."""
     short, corner, long = result["seconds"]
     words = []
-    if min(result["out"]) < result["people"]:
-        words.append("not everyone gets through a wide corridor with a corner in time")
+    if result["stuck"]:
+        words.append(f"{_often(result)} not everyone gets through a wide corridor with a corner in time")
     elif not short <= corner <= long:
         words.append(
             f"a crowd needs {corner:.0f} s around a wide corner, but {short:.0f} s and {long:.0f} s in straight"
@@ -195,7 +256,7 @@ def judge_long_corner(result: dict[str, Any]) -> Verdict:
         )
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of people walk through the walls of a wide corner")
-    return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s", not words, "; ".join(words))
+    return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s{_stuck(result)}", not words, "; ".join(words))
 
 
 LONG_CORNER = Check(
@@ -205,6 +266,7 @@ LONG_CORNER = Check(
     f" {SHORT:g} m, the length of its inner wall, and less than in one of {LONG:g} m, the length of its outer wall; the"
     " guideline has twice the lengths and four times the people",
     run_long_corner,
+    summarize_long_corner,
     judge_long_corner,
 )
 
@@ -218,10 +280,11 @@ def _hall_solids() -> list[Solid]:
     return solids
 
 
-def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float, report: Report) -> CrowdTracks:
-    rng = stream_of("rimea-9", people)
-    place = starts(people, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3), rng)
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_hall_solids()))
+def _hall(
+    model: CrowdModel, people: int, sides: tuple[float, ...], numbers: Sequence[int], limit: float, report: Report
+) -> CrowdTracks:
+    place, speed = crowds("rimea-9", people, numbers, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_hall_solids()))
 
     def goals(now: Floats) -> Floats:
         x, y = now[..., 0], now[..., 1]
@@ -237,7 +300,8 @@ def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray((now[..., 1] < -1.5) | (now[..., 1] > DEPTH + 1.5))
 
-    return simulate_open(model, crowd, goals, left, limit, stream_of("rimea-9", "model", len(sides)), report)
+    rng = stream_of("rimea-9", "model", len(sides), numbers[0])
+    return simulate_open(model, crowd, goals, left, limit, rng, report)
 
 
 def _room_solids() -> list[Solid]:
@@ -274,13 +338,15 @@ def _corner_solids(name: str) -> list[Solid]:
     return [(-0.5, -4.0, 0.0, top + 0.5), (10.0, -4.0, 10.5, top + 0.5), (0.0, top, 10.0, top + 0.5)]
 
 
-def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Report) -> tuple[CrowdTracks, int]:
+def _corner(
+    model: CrowdModel, name: str, people: int, numbers: Sequence[int], limit: float, report: Report
+) -> tuple[CrowdTracks, Callable[[Floats], NDArray[np.bool_]]]:
+    """Return the tracks, and the function of positions that says who has arrived."""
     top = {"corner": 30.0, "long": LONG, "short": SHORT}[name]
-    rng = stream_of("rimea-15", people)  # same people at the same positions in all three
-    place = starts(people, (0.3, -3.0), (9.7, -0.3), rng) + np.array([0.0, top])
-    crowd = Scene.of(
-        place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_corner_solids(name))
-    )
+    # same people at the same positions in all three
+    place, speed = crowds("rimea-15", people, numbers, (0.3, -3.0), (9.7, -0.3))
+    place = place + np.array([0.0, top])
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_corner_solids(name)))
     arrived: Callable[[Floats], NDArray[np.bool_]]
 
     if name == "corner":
@@ -301,5 +367,5 @@ def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Rep
         def arrived(now: Floats) -> NDArray[np.bool_]:
             return np.asarray(now[..., 1] < 0.0)
 
-    walk = simulate_open(model, crowd, goals, arrived, limit, stream_of("rimea-15", "model", name), report)
-    return walk, int(np.any(arrived(walk.position) & walk.present, axis=(0, 1)).sum())
+    rng = stream_of("rimea-15", "model", name, numbers[0])
+    return simulate_open(model, crowd, goals, arrived, limit, rng, report), arrived

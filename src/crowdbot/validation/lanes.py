@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,17 +12,26 @@ from crowdbot.measurement import lane_order
 from crowdbot.models import CrowdModel
 
 from .corridor import corridor_crowd
-from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, simulate_periodic, stream_of
-from .statistics import STARTS, summarize_starts, text_of
+from .crowd_motion import deepest_overlap, one_start, simulate_periodic
+from .scenario import (
+    FREE_SPEED,
+    Check,
+    Floats,
+    Report,
+    Row,
+    Verdict,
+    share,
+    stream_of,
+)
+from .statistics import find_steady_window, summarize_starts, text_of
 
 __all__ = ["LANES", "NARROW"]
 
 LENGTH = 12.0
-WIDE, DENSITY, SEEDS = 4.0, 1.0, STARTS
-"""Width [m] and density [1/m2] of the recording bi_corr_400_b_03, and runs of each model."""
+WIDE, DENSITY = 4.0, 1.0
+"""Width [m] and density [1/m2] of the recording bi_corr_400_b_03."""
 NARROW_WIDTH = 2.0
 NARROW_DENSITIES = (0.5, 1.0, 1.5, 2.0)
-NARROW_SEEDS = STARTS
 SECONDS, LAST = 60.0, 20.0
 NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
 ORDER = 0.5
@@ -30,29 +40,46 @@ JAM = 0.1
 """Speeds below this fraction of the free speed are a jam."""
 
 
-def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the order over time, mean over runs."""
-    seconds, last, seeds = (8.0, 4.0, 1) if quick else (SECONDS, LAST, SEEDS)
-    crowd = corridor_crowd([("two-way", DENSITY, k) for k in range(seeds)], LENGTH, WIDE, two_way=True, spread=0.26)
-    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("lanes", "model"), report)
-    wish = crowd.preferred_velocity
-    assert wish is not None
-    side = np.sign(wish[..., 0])
-    every = slice(None, None, 5)
-    order = [[lane_order(y[e], side[e]) for e in range(seeds)] for y in walk.position[every, ..., 1]]
-    times = walk.times[every]
-    late = times >= seconds - last
-    y = walk.position[..., 1]
-    last_order = np.asarray(order)[late].mean(axis=0)
+def run_lanes(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Measure the order over time; starts are environments."""
+    seconds, last = (8.0, 4.0) if quick else (SECONDS, LAST)
+    crowd = corridor_crowd([("two-way", DENSITY, k) for k in numbers], LENGTH, WIDE, two_way=True, spread=0.26)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("lanes", "model", numbers[0]), report)
+    assert crowd.preferred_velocity is not None
+    side = np.sign(crowd.preferred_velocity[..., 0])
     speed = _forward(walk.times, walk.position[..., 0], side, last).mean(axis=1)
+    every = slice(None, None, 5)
+    times, y = walk.times[every], walk.position[..., 1]
+    rows: list[Row] = []
+    for e in range(len(numbers)):
+        order = np.asarray([lane_order(place, side[e]) for place in y[every, e]])
+        window = find_steady_window(times, order)
+        rows.append(
+            {
+                "time": times.tolist(),
+                "order": order.tolist(),
+                "last_order": float(order[times >= seconds - last].mean()),
+                "steady_from": window.begin if window.steady else None,
+                "speed": float(speed[e]),
+                "outside": float(np.mean(np.any((y[:, e] < 0.0) | (y[:, e] > WIDE), axis=0))),
+                "overlap": deepest_overlap(one_start(walk, e), LENGTH),
+            }
+        )
+    return rows
+
+
+def summarize_lanes(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return means over starts, and their intervals for the order of lanes and the speed."""
+    values = {name: [row[name] for row in rows] for name in ("last_order", "speed", "outside", "overlap")}
     return {
-        "time": times.tolist(),
-        "order": np.mean(order, axis=1).tolist(),
-        "last_order": float(last_order.mean()),
-        "speed": float(speed.mean()),
-        "interval": _ends(summarize_starts([last_order, speed])),
-        "outside": float(np.mean(np.any((y < 0.0) | (y > WIDE), axis=0))),
-        "overlap": deepest_overlap(walk, LENGTH),
+        "time": rows[0]["time"],
+        "order": np.mean([row["order"] for row in rows], axis=0).tolist(),
+        "last_order": float(np.mean(values["last_order"])),
+        "speed": float(np.mean(values["speed"])),
+        "interval": _ends(summarize_starts([values["last_order"], values["speed"]])),
+        "steady_from": [row["steady_from"] for row in rows],
+        "outside": float(np.mean(values["outside"])),
+        "overlap": max(values["overlap"]),
     }
 
 
@@ -74,28 +101,45 @@ LANES = Check(
     f"in a corridor 4 m wide with 1 person/m2, the mean lane order of the last {LAST:g} s is at least {ORDER}, and the"
     " mean forward speed is at least half of the free speed",
     run_lanes,
+    summarize_lanes,
     judge_lanes,
 )
 
 
-def run_narrow(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the speed in a narrow corridor, by density and seed."""
+def run_narrow(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Measure the speed in a narrow corridor; densities and starts are environments."""
     seconds, last = (10.0, 4.0) if quick else (NARROW_SECONDS, NARROW_LAST)
-    densities, seeds = ((1.0, 2.0), 1) if quick else (NARROW_DENSITIES, NARROW_SEEDS)
-    runs = [("narrow", density, k) for density in densities for k in range(seeds)]
+    densities = (1.0, 2.0) if quick else NARROW_DENSITIES
+    runs = [("narrow", density, k) for density in densities for k in numbers]
     crowd = corridor_crowd(runs, LENGTH, NARROW_WIDTH, two_way=True, spread=0.26)
-    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("narrow", "model"), report)
-    wish = crowd.preferred_velocity
-    assert wish is not None
-    forward = _forward(walk.times, walk.position[..., 0], np.sign(wish[..., 0]), last)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("narrow", "model", numbers[0]), report)
+    assert crowd.preferred_velocity is not None
+    forward = _forward(walk.times, walk.position[..., 0], np.sign(crowd.preferred_velocity[..., 0]), last)
     here, y = crowd.active, walk.position[..., 1]
-    speed = np.asarray([forward[e, here[e]].mean() for e in range(len(runs))]).reshape(len(densities), seeds)
+    wrong = np.any((y < 0.0) | (y > NARROW_WIDTH), axis=0)
+    rows: list[Row] = []
+    for j in range(len(numbers)):
+        own = [k * len(numbers) + j for k in range(len(densities))]
+        rows.append(
+            {
+                "density": list(densities),
+                "speed": [float(forward[e, here[e]].mean()) for e in own],
+                "outside": float(np.mean(np.concatenate([wrong[e, here[e]] for e in own]))),
+                "overlap": max(deepest_overlap(one_start(walk, e), LENGTH) for e in own),
+            }
+        )
+    return rows
+
+
+def summarize_narrow(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the speeds of all starts by density, and intervals of their means."""
+    speed = np.asarray([row["speed"] for row in rows]).T
     return {
-        "density": list(densities),
+        "density": rows[0]["density"],
         "speeds": speed.tolist(),
         "interval": _ends(summarize_starts(speed)),
-        "outside": float(np.mean(np.any((y < 0.0) | (y > NARROW_WIDTH), axis=0)[here])),
-        "overlap": deepest_overlap(walk, LENGTH),
+        "outside": float(np.mean([row["outside"] for row in rows])),
+        "overlap": max(row["overlap"] for row in rows),
     }
 
 
@@ -122,6 +166,7 @@ NARROW = Check(
     f" mean forward speed below {JAM:.0%} of 1.34 m/s in the last {NARROW_LAST:g} of {NARROW_SECONDS:g} s; people in"
     " experiments do not jam at these densities (Zhang et al. 2012)",
     run_narrow,
+    summarize_narrow,
     judge_narrow,
 )
 

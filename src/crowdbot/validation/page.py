@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-import platform
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from crowdbot.measurement import LANE_BAND
 
@@ -16,32 +13,44 @@ from . import bottleneck, corridor, lanes, single_file
 from .literature import SOURCES, SPECIFIC_FLOW
 from .plots import PLOTS, draw
 from .recording import METHODS
-from .rimea import NOT_APPLICABLE
-from .run import CHECKS, Validation
+from .run import Validation
 from .scenario import RADIUS, STEP
 from .section import METHOD
-from .statistics import STARTS
+from .tables import (
+    ability_table,
+    case_table,
+    deficiencies,
+    jams,
+    model_table,
+    preset_table,
+    replace_incomplete,
+    time_step_table,
+)
 
 __all__ = ["write_page"]
 
+STEADY = (
+    "Steady state: of the mean forward speed of each start, found by the modified CUSUM method (Liao et al. 2016) with"
+    " the last third of the run as reference; a start without one is measured in its last third"
+)
 DEFINITIONS = {
     "single-file": f"People of radius {RADIUS} m, all with a free speed of 1.34 m/s (RiMEA test 4 requires equal"
     f" speeds), walk along a periodic track of {single_file.LENGTH:g} m between walls {single_file.WIDTH} m apart."
-    f" Density: people per metre of track. Speed: mean forward speed over {single_file.MEASURED:g} s, after a warm-up"
-    f" of {single_file.WARM:g} s from rest.",
-    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide, {corridor.SECONDS:g} s,"
-    f" {STARTS} starts for each density; measured every {corridor.EVERY:g} s in the steady state of the mean speed"
-    f" (modified CUSUM method, Liao et al. 2016), in its last third if there is none. {METHOD}, with 95 % bootstrap"
-    " intervals over starts.",
+    f" Density: people per metre of track. Speed: mean forward speed in the steady state of runs of"
+    f" {single_file.SECONDS:g} s from rest, with 95 % bootstrap intervals over starts. {STEADY}",
+    "corridor": f"A periodic track of {corridor.LENGTH:g} m, {corridor.WIDTH:g} m wide, runs of {corridor.SECONDS:g} s"
+    f" at densities of {', '.join(f'{d:g}' for d in corridor.DENSITIES)} people/m2, measured every {corridor.EVERY:g} s"
+    f" in the steady state. {METHOD}, with 95 % bootstrap intervals over starts. {STEADY}",
     "lanes": f"A periodic track of {lanes.LENGTH:g} m, {lanes.WIDE:g} m wide, with 1 person/m2, half of them in each"
-    f" direction; free speeds are 1.34 +- 0.26 m/s; mean over {lanes.SEEDS} initial states. Lane order: for each person"
+    f" direction; free speeds are 1.34 +- 0.26 m/s; mean over starts in the last {lanes.LAST:g} of {lanes.SECONDS:g} s."
+    " Lane order: for each person"
     f" i with m others at a lateral distance below {LANE_BAND} m, phi_i = (like - unlike)^2 / m^2. With the mean of"
     " phi and its expectation for randomly permuted directions, the lane order is (mean - expectation) / (1 -"
     " expectation): 0 for random directions, 1 for perfect lanes.",
-    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, with {lanes.NARROW_SEEDS} initial states per density. Speed:"
+    "narrow": f"As above, {lanes.NARROW_WIDTH:g} m wide, at several densities. Speed:"
     f" mean speed in the walking direction over the last {lanes.NARROW_LAST:g} of {lanes.NARROW_SECONDS:g} s.",
     "bottleneck": f"{bottleneck.PEOPLE} people in a room {2 * bottleneck.HALF:g} m wide walk through an opening that is"
-    f" {bottleneck.LENGTH} m long, {STARTS} starts for each width. The goal of each person is the nearest point of the"
+    f" {bottleneck.LENGTH} m long. The goal of each person is the nearest point of the"
     " opening where a body fits. Flow: (n - 1) / (t_n - t_1) for the n crossings of the middle line of the opening"
     " without the first and last sixth; if somebody does not pass, all crossings count, up to the time limit of"
     f" {bottleneck.SECONDS:g} s. Specific flow: flow / width (in the table: mean over widths).",
@@ -59,14 +68,18 @@ def write_page(done: Validation, out: Path, command: str) -> Path:
     folder = out / "validation"
     folder.mkdir(parents=True, exist_ok=True)
     draw(done, folder)
+    shown = replace_incomplete(done)
     text = "\n".join(
         [
             *_head(done, command),
-            *_table(done),
-            *_deficiencies(done),
-            *_jams(done),
+            *model_table(shown),
+            *ability_table(shown),
+            *deficiencies(shown),
+            *jams(shown),
             *_sections(done),
-            *_rimea(),
+            *case_table(shown),
+            *time_step_table(shown),
+            *preset_table(shown),
             *_foot(done),
         ]
     )
@@ -81,23 +94,22 @@ def _head(done: Validation, command: str) -> list[str]:
     return [
         "# Validation of the crowd models",
         "",
-        "Comparison of the crowd models, with default parameters, with experiments and with the verification tests of"
-        " the RiMEA guideline. Most models were designed for steering, not for dense crowds, and none was fitted"
-        " to these tests. This page is generated by:",
+        "Comparison of the crowd models, with default parameters, with experiments and with verification tests of RiMEA"
+        " and ISO 20414. Most models were designed for steering, not for dense crowds. This page is generated by:",
         "",
         "```",
         command,
         "```",
         "",
         *(["**Quick runs with few people and short times. The verdicts mean little.**", ""] if done.quick else []),
-        f"Bodies are discs of radius {RADIUS} m; the time step is {STEP} s, in substeps of 0.01 s for the models that"
-        " are made for it (collision-free-speed and anticipation-velocity). Values in brackets are 95 % bootstrap"
-        f" intervals over {STARTS} starts; the RiMEA tests have one start. All models start from the same initial"
-        " states, and results are reproducible. The results of each model are in a JSON file beside the plots.",
+        f"Bodies are discs of radius {RADIUS} m. The time step is {STEP} s, in substeps for models that are made for"
+        " shorter ones (table below). Values in brackets are 95 % bootstrap intervals over starts. All models start"
+        " from the same initial states, and results are reproducible. Every start is stored in the JSON file of its"
+        " model beside the plots; the same command computes the starts that are missing or whose code has changed.",
         "",
         "Crowds are chaotic: rounding errors can decide whether a single run jams. Two implementations of ORCA that"
-        " agree to 1e-16 m/s per step had 4 and 5 jams of 12, and 1.8 and 1.5 in RiMEA 9. Differences of this size"
-        " are not significant.",
+        " agree to 1e-16 m/s per step had 4 and 5 jams of 12, and 1.8 and 1.5 in one start of RiMEA 9. This is why"
+        " each point has several starts.",
         "",
         *(
             [
@@ -107,110 +119,6 @@ def _head(done: Validation, command: str) -> list[str]:
             if done.people
             else []
         ),
-    ]
-
-
-def _table(done: Validation) -> list[str]:
-    titles = [check.title for check in CHECKS]
-    lines = [
-        "## Model by test",
-        "",
-        "✓ pass, ✗ fail (criteria below). Overlap: maximum penetration of two bodies in any test, of 0.40 m. Seconds:"
-        " computing time of the row.",
-        "",
-        f"| model | {' | '.join(titles)} | passed | overlap [m] | seconds |",
-        "|---" * (len(titles) + 4) + "|",
-    ]
-    for model, checks in done.outcomes.items():
-        cells = [
-            f"{'✓' if checks[c.name].verdict.passed else '✗'} {_cell(checks[c.name].verdict.value)}" for c in CHECKS
-        ]
-        passed = sum(checks[c.name].verdict.passed for c in CHECKS)
-        overlap = max((one.result.get("overlap", 0.0) for one in checks.values()), default=0.0)
-        seconds = sum(one.seconds for one in checks.values())
-        lines.append(f"| {model} | {' | '.join(cells)} | {passed} of {len(CHECKS)} | {overlap:.2f} | {seconds:.0f} |")
-    if done.people:
-        cells = [_cell(_people(done.people, check.name)) for check in CHECKS]
-        lines.append(f"| *people* | {' | '.join(cells)} | | | |")
-    total = sum(one.seconds for checks in done.outcomes.values() for one in checks.values())
-    lines += ["", f"Total time: {total:.0f} s ({_environment()}).", ""]
-    if done.skipped:
-        lines += ["Not run:", "", *(f"* {name}: {why}." for name, why in done.skipped.items()), ""]
-    lines += ["The criteria:", "", *(f"* **{check.title}**: {check.criterion}." for check in CHECKS), ""]
-    return lines
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "/")
-
-
-def _people(people: dict[str, Any], name: str) -> str:
-    """Return the table cell of recorded people, if measured."""
-    found = people.get(name)
-    if not found:
-        return ""
-    if name in ("single-file", "corridor"):
-        return f"{found['distance']:.2f} m/s"
-    if name == "lanes":
-        return f"{np.mean([run['mean'] for run in found.values()]):.2f}, " + (
-            f"{np.mean([run['speed'] for run in found.values()]):.2f} m/s"
-        )
-    if name == "bottleneck":
-        return f"{np.mean([door['flow'] / door['width'] for door in found]):.2f} /(m s)"
-    return ""
-
-
-def _deficiencies(done: Validation) -> list[str]:
-    lines = ["## Deficiencies of each model", ""]
-    for model, checks in done.outcomes.items():
-        words = [one.verdict.words for one in checks.values() if one.verdict.words]
-        overlap = max((one.result.get("overlap", 0.0) for one in checks.values()), default=0.0)
-        if overlap > 0.1:
-            words.append(f"bodies overlap by {overlap:.2f} m")
-        same = _same(done, model)
-        if same:
-            words.append(f"results are identical to those of {same}, since goals are far away in all tests")
-        lines.append(f"* **{model}**: {'; '.join(words) or 'none found by these tests'}.")
-    return [*lines, ""]
-
-
-def _same(done: Validation, model: str) -> str:
-    """Return the first other model with identical results in all checks, if any."""
-    own = {name: one.result for name, one in done.outcomes[model].items()}
-    others = (
-        m for m, checks in done.outcomes.items() if m != model and own == {n: c.result for n, c in checks.items()}
-    )
-    return next(others, "")
-
-
-def _jams(done: Validation) -> list[str]:
-    def models_with(name: str, wrong: Any) -> str:
-        models = [m for m, c in done.outcomes.items() if "failed" not in c[name].result and wrong(c[name].result)]
-        return ", ".join(models) or "none"
-
-    def jam(result: dict[str, Any]) -> bool:
-        return bool(np.any(np.asarray(result["speeds"]) < lanes.JAM * 1.34))
-
-    def low(result: dict[str, Any]) -> bool:
-        speeds = np.asarray(result["speeds"])[np.asarray(result["density"]) <= 1.0]
-        return bool(np.any(speeds < lanes.JAM * 1.34))
-
-    def clogs(result: dict[str, Any]) -> bool:
-        return bool(np.any(np.asarray(result["passed"]) < result["people"]))
-
-    def careless(result: dict[str, Any]) -> bool:
-        return bool(result["speed"][int(np.argmin(np.abs(np.asarray(result["density"]) - 3.0)))] > 0.7 * 1.34)
-
-    return [
-        "## Jams and fundamental diagrams",
-        "",
-        f"* Jams in a two-way corridor 2 m wide at up to 2 people/m2: {models_with('narrow', jam)}.",
-        f"* Of these, at 1 person/m2 or less: {models_with('narrow', low)}.",
-        f"* A crowd of {bottleneck.PEOPLE} clogs at least one bottleneck: {models_with('bottleneck', clogs)}.",
-        "* No fundamental diagram: a one-way crowd of 3 people/m2 walks at more than 70 % of its free speed, since"
-        " nobody is on a collision course, or forces from the front and the back cancel:"
-        f" {models_with('corridor', careless)}.",
-        "",
     ]
 
 
@@ -246,19 +154,6 @@ def _recording_table(people: dict[str, Any] | None, name: str) -> Iterable[str]:
         yield ""
 
 
-def _rimea() -> list[str]:
-    return [
-        "## RiMEA tests that do not apply",
-        "",
-        "Tests 1, 6, 7, 9, 12 and 15 are run; test 4 corresponds to the two fundamental diagrams. In the guideline,"
-        " tests 9 and 12 document the behavior of a model and have no criterion. Goals are waypoints around corners"
-        " and at doors. The other tests:",
-        "",
-        *(f"* {number}: {why}." for number, why in NOT_APPLICABLE.items()),
-        "",
-    ]
-
-
 def _foot(done: Validation) -> list[str]:
     lines = ["## Sources", "", *(f"* {source}." for source in SOURCES), ""]
     if done.people is None:
@@ -266,14 +161,3 @@ def _foot(done: Validation) -> list[str]:
     elif done.people["missing"]:
         lines += [f"Missing recordings: {', '.join(done.people['missing'])}.", ""]
     return lines
-
-
-def _environment() -> str:
-    from importlib.metadata import version
-
-    import numba
-
-    return (
-        f"{os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__},"
-        f" numba {numba.__version__}, crowdbot {version('crowdbot')}"
-    )

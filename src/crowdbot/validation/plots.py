@@ -12,6 +12,7 @@ import numpy as np
 
 from .literature import BOTTLENECK_FLOWS, SPECIFIC_FLOW, line_speed, weidmann_speed
 from .run import Validation
+from .statistics import summarize_starts
 
 __all__ = ["PLOTS", "draw"]
 
@@ -41,23 +42,23 @@ def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel,
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    rows = -(-len(done.outcomes) // COLUMNS)
-    columns = min(COLUMNS, len(done.outcomes))
+    found = {model: checks[name] for model, checks in done.outcomes.items() if name in checks}
+    rows = max(1, -(-len(found) // COLUMNS))
+    columns = max(1, min(COLUMNS, len(found)))
     figure = Figure(figsize=(0.6 + 2.15 * columns, 1.35 + 1.75 * rows), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     people = (done.people or {}).get(name)
-    for axis, (model, checks) in zip(axes.flat, done.outcomes.items(), strict=False):
-        verdict = checks[name].verdict
-        axis.set_title(model, fontsize=10, color="black" if verdict.passed else BAD)
+    for axis, (model, one) in zip(axes.flat, found.items(), strict=False):
+        axis.set_title(f"{model}, {one.starts} starts", fontsize=8.5, color="black" if one.verdict.passed else BAD)
         axis.grid(alpha=0.25, linewidth=0.6)
         axis.tick_params(labelsize=8)
-        if "failed" not in checks[name].result:
-            panel(axis, checks[name].result, people)
-    for axis in axes.flat[len(done.outcomes) :]:
+        if "failed" not in one.result:
+            panel(axis, one.result, people)
+    for axis in axes.flat[len(found) :]:
         axis.set_visible(False)
     for k in range(columns):  # the last row may be short: labels belong to the lowest panel of each column
-        lowest = axes[(len(done.outcomes) - 1 - k) // columns, k]
+        lowest = axes[max(0, len(found) - 1 - k) // columns, k]
         lowest.tick_params(labelbottom=True)
         lowest.set_xlabel(x, fontsize=9)
     handles, labels = axes[0, 0].get_legend_handles_labels()
@@ -79,6 +80,11 @@ def _save(canvas: Any, file: Path) -> None:
     os.replace(draft, file)
 
 
+def _mean(axis: Any, x: Any, mean: Any, low: Any, high: Any) -> None:
+    axis.fill_between(x, low, high, color=MODEL, alpha=0.3, linewidth=0, label="95 % interval over starts")
+    axis.plot(x, mean, "s-", color=MODEL, markersize=3.5, linewidth=1.2, label="model, mean over starts")
+
+
 def _single_file(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
     if people:
         axis.errorbar(
@@ -87,7 +93,7 @@ def _single_file(axis: Any, result: dict[str, Any], people: dict[str, Any] | Non
         )  # fmt: skip
     density = np.linspace(0.2, 2.7, 100)
     axis.plot(density, line_speed(density), color=CURVE, linewidth=1.8, label="Seyfried et al. 2005")
-    axis.plot(result["density"], result["speed"], "s-", color=MODEL, markersize=3.5, linewidth=1.2, label="model")
+    _mean(axis, result["density"], result["speed"], result["low"], result["high"])
     axis.set(xlim=(0.0, 3.1), ylim=(-0.05, 1.75))
 
 
@@ -101,7 +107,7 @@ def _corridor(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) 
             )  # fmt: skip
     density = np.linspace(0.1, 5.0, 100)
     axis.plot(density, weidmann_speed(density), color=CURVE, linewidth=1.8, label="Weidmann 1993")
-    axis.plot(result["density"], result["speed"], "s-", color=MODEL, markersize=3.5, linewidth=1.2, label="model")
+    _mean(axis, result["density"], result["speed"], result["low"], result["high"])
     axis.set(xlim=(0.0, 5.0), ylim=(-0.05, 1.75))
 
 
@@ -109,13 +115,13 @@ def _lanes(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> 
     for k, run in enumerate((people or {}).values()):
         label = "people (3 recordings), mean over time" if k == 0 else None
         axis.axhline(run["mean"], color=PEOPLE, linewidth=1.0, linestyle="--", label=label)
-    axis.plot(result["time"], result["order"], color=MODEL, linewidth=1.4, label="model, mean over runs")
+    axis.plot(result["time"], result["order"], color=MODEL, linewidth=1.4, label="model, mean over starts")
     axis.set(xlim=(0.0, 60.0), ylim=(-0.15, 1.05))
 
 
 def _narrow(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
     for k, (density, speeds) in enumerate(zip(result["density"], result["speeds"], strict=True)):
-        label = "one run" if k == 0 else None
+        label = "one start" if k == 0 else None
         axis.plot([density] * len(speeds), speeds, "o", color=MODEL, markersize=3.5, label=label, alpha=0.7)
     axis.plot(result["density"], np.mean(result["speeds"], axis=1), color=MODEL, linewidth=1.2, label="mean")
     axis.axhline(0.134, color=BAD, linewidth=1.2, linestyle="--", label="slower is a jam")
@@ -129,8 +135,8 @@ def _bottleneck(axis: Any, result: dict[str, Any], people: list[dict[str, Any]] 
     if people:
         axis.plot([d["width"] for d in people], [d["flow"] for d in people], "o", color=PEOPLE, markersize=4,
                   label="people (4 recordings)")  # fmt: skip
-    axis.plot(result["width"], np.mean(result["flows"], axis=1), "s-", color=MODEL, markersize=3.5, linewidth=1.2,
-              label="model, mean over runs")  # fmt: skip
+    found = summarize_starts(result["flows"])
+    _mean(axis, result["width"], found["mean"], found["low"], found["high"])
     axis.set(xlim=(0.4, 2.6), ylim=(-0.3, 8.0))
 
 

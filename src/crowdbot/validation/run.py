@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import hashlib
-import json
-import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,15 +15,19 @@ from crowdbot.core import CrowdbotError, InputError, builtin_classes, find_class
 from crowdbot.models import CrowdModel
 
 from .bottleneck import BOTTLENECK
+from .components import ASSIGNED_EXITS, COUNTER_FLOW, PREMOVEMENT, SLOW_MEMBER
 from .corridor import CORRIDOR
 from .evacuation import DOORS, LONG_CORNER, TWO_ROOMS
 from .lanes import LANES, NARROW
 from .recording import measure_recordings
 from .rimea import CORNER, CORRIDOR_TIME, FREE_SPEEDS
-from .scenario import Check, Verdict
+from .scenario import Check, Report, Row, Verdict
 from .single_file import SINGLE_FILE
+from .statistics import STARTS
+from .store import ResultFile, round_numbers, write_json
+from .time_steps import TIME_STEPS
 
-__all__ = ["CHECKS", "CheckOutcome", "Validation", "select_models", "validate"]
+__all__ = ["CHECKS", "STUDIES", "CheckOutcome", "Validation", "select_models", "validate", "variant_of"]
 
 CHECKS: tuple[Check, ...] = (
     SINGLE_FILE,
@@ -43,6 +44,12 @@ CHECKS: tuple[Check, ...] = (
 )
 """Checks in the order of the page."""
 
+STUDIES: tuple[Check, ...] = (PREMOVEMENT, ASSIGNED_EXITS, COUNTER_FLOW, SLOW_MEMBER, TIME_STEPS)
+"""Further cases of the guidelines, and the study of the time step; they do not count among the checks."""
+
+BATCH = 5
+"""Starts that are simulated together."""
+
 LEFT_OUT = {
     "cost-model": "skipped by default: its default configuration reproduces orca, in slower NumPy code (add"
     " `--models cost-model` to include it)",
@@ -54,11 +61,12 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class CheckOutcome:
-    """Result of one check for one model: numbers, verdict and computing time [s]."""
+    """Result of one check for one model: numbers, verdict, computing time [s] and number of starts."""
 
     result: dict[str, Any]
     verdict: Verdict
     seconds: float
+    starts: int
 
 
 @dataclass(frozen=True)
@@ -70,20 +78,28 @@ class Validation:
         skipped: models that were not run, with reasons.
         people: measurements of the recordings, or None.
         quick: whether runs were shortened; verdicts are then unreliable.
+        variants: what each model is, see :func:`variant_of`.
     """
 
     outcomes: dict[str, dict[str, CheckOutcome]]
     skipped: dict[str, str]
     people: dict[str, Any] | None
     quick: bool
+    variants: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the output of ``crowdbot validate --json``."""
         return {
             "quick": self.quick,
+            "variants": self.variants,
             "models": {
                 model: {
-                    name: {**one.verdict._asdict(), "seconds": one.seconds, "result": one.result}
+                    name: {
+                        **one.verdict._asdict(),
+                        "starts": one.starts,
+                        "seconds": one.seconds,
+                        "result": one.result,
+                    }
                     for name, one in checks.items()
                 }
                 for model, checks in self.outcomes.items()
@@ -129,104 +145,100 @@ def validate(
     quick: bool = False,
     progress: Progress | None = None,
     skipped: Mapping[str, str] | None = None,
+    starts: int = STARTS,
+    compute: bool = True,
 ) -> Validation:
-    """Run all checks with all models. Stored results of the same code and settings are reused.
+    """Run all checks with all models. Stored starts of the same code and settings are reused.
 
     Args:
         models: models by name on the page.
-        out: output folder with one JSON file per model, written after each check for resuming.
+        out: output folder with one JSON file per model, written after every five starts of a check for resuming.
         data: folder of the recordings (default: published curves only).
         quick: few and short runs, for a test of the installation.
         progress: called with the name of the task and the completed fraction.
         skipped: skipped models with reasons, listed on the page.
+        starts: starts of each check; more stored ones are used, too.
+        compute: whether missing starts are simulated; otherwise the stored ones are returned only.
 
     Raises:
+        InputError: starts are below 1.
         DataError: the folder contains no recordings.
     """
+    if starts < 1:
+        raise InputError(f"a check needs at least 1 start, not {starts}")
     report = progress or (lambda what, share: None)
     out.mkdir(parents=True, exist_ok=True)
     people = None
     if data is not None:
         report("recordings", 0.0)
         people = measure_recordings(data, lambda share: report("recordings", share))
-        _write(out / "people.json", people)
-    key = _key(quick)
-    outcomes = {}
-    for name, model in models.items():
-        outcomes[name] = _check_model(name, model, out / f"{name}.json", key, quick, report)
-    return Validation(outcomes, dict(skipped or {}), people, quick)
+        write_json(out / "people.json", people)
+    files = {name: ResultFile(out / f"{name}.json", model, quick) for name, model in models.items()}
+    rounds = range(BATCH, starts + BATCH, BATCH) if compute else ()
+    for number in rounds:  # all models get their first starts before any gets more
+        for name, model in models.items():
+            up_to = 1 if quick else min(number, starts)
+            _complete(model, files[name], up_to, functools.partial(_part, report, name, up_to / starts))
+        if quick:
+            break
+    outcomes = {name: _outcomes(file) for name, file in files.items()}
+    variants = {name: variant_of(model) for name, model in models.items()}
+    return Validation(outcomes, dict(skipped or {}), people, quick, variants)
 
 
-def _check_model(
-    name: str, model: CrowdModel, file: Path, key: str, quick: bool, report: Progress
-) -> dict[str, CheckOutcome]:
-    settings = f"{key} {model!r}"
-    kept = _read(file)
-    done: dict[str, Any] = kept["checks"] if kept.get("settings") == settings else {}
-    for k, check in enumerate(CHECKS):
-        if check.name not in done:
+def variant_of(model: CrowdModel) -> str:
+    """Return the variant of a model: its texts and switches, or that it has only numbers.
+
+    >>> from crowdbot.models import SocialForce
+    >>> variant_of(SocialForce())
+    'variant gradient'
+    """
+    values = [(one.name, getattr(model, one.name)) for one in dataclasses.fields(model) if one.init]
+    texts = [f"{name.replace('_', ' ')} {value}" for name, value in values if isinstance(value, str)]
+    texts += [name.replace("_", " ") for name, value in values if value is True]
+    texts += [f"no {name.replace('_', ' ')}" for name, value in values if value is False]
+    return ", ".join(texts)
+
+
+def _complete(model: CrowdModel, file: ResultFile, starts: int, report: Report) -> None:
+    """Simulate the missing starts of all checks, in batches, and store them."""
+    checks = (*CHECKS, *STUDIES)
+    for k, check in enumerate(checks):
+        missing = [number for number in range(min(starts, check.most)) if number not in file.rows(check)]
+        for first in range(0, len(missing), BATCH):
+            numbers = missing[first : first + BATCH]
             begin = time.perf_counter()
-            result = _run(check, model, quick, functools.partial(_part, report, name, k))
-            done[check.name] = {"seconds": round(time.perf_counter() - begin, 2), "result": _round(result)}
-            _write(file, {"settings": settings, "checks": done})
-        report(name, (k + 1) / len(CHECKS))
-    outcomes = {}
-    for check in CHECKS:
-        result = done[check.name]["result"]
-        outcomes[check.name] = CheckOutcome(result, _judge(check, result), done[check.name]["seconds"])
-    return outcomes
+            rows = _run(check, model, numbers, file.quick, functools.partial(_share, report, k, len(checks)))
+            file.add(check, dict(zip(numbers, rows, strict=True)), time.perf_counter() - begin)
+        report((k + 1) / len(checks))
 
 
-def _part(report: Progress, name: str, k: int, share: float) -> None:
-    report(name, (k + share) / len(CHECKS))
+def _share(report: Report, k: int, count: int, share: float) -> None:
+    report((k + share) / count)
 
 
-def _run(check: Check, model: CrowdModel, quick: bool, report: Callable[[float], None]) -> dict[str, Any]:
+def _part(report: Progress, name: str, whole: float, share: float) -> None:
+    report(name, whole * share)
+
+
+def _run(check: Check, model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[dict[str, Any]]:
     try:
-        return check.run(model, quick, report)
+        return check.run(model, numbers, quick, report)
     except CrowdbotError as error:
-        return {"failed": str(error)}
+        return [{"failed": str(error)} for _ in numbers]
 
 
-def _judge(check: Check, result: dict[str, Any]) -> Verdict:
-    if "failed" in result:
-        return Verdict("error", False, f"{check.title} ends with an error: {result['failed']}")
-    return check.judge(result)
+def _outcomes(file: ResultFile) -> dict[str, CheckOutcome]:
+    """Return the results of all checks that have stored starts."""
+    found = ((check, list(file.rows(check).values())) for check in (*CHECKS, *STUDIES))
+    return {check.name: _outcome(check, rows, file.seconds(check)) for check, rows in found if rows}
 
 
-def _key(quick: bool) -> str:
-    """Return a hash of all code that affects results: the core, the models, the measurements and the checks."""
-    sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
-    package = Path(__file__).parents[1]
-    excluded = ("__init__", "contact_table", "contacts", "page", "plots", "recording", "run")
-    here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in excluded]
-    others = [path for name in ("core", "models", "measurement") for path in package.glob(f"{name}/*.py")]
-    ranges = package / "trials" / "validation" / "model_ranges.py"  # they give the time steps
-    for path in sorted([*others, *here, ranges]):
-        sum_.update(path.name.encode() + b"\0" + path.read_bytes())
-    return sum_.hexdigest()
-
-
-def _read(file: Path) -> dict[str, Any]:
-    try:
-        kept = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}  # missing or incomplete file: start again
-    return kept if isinstance(kept, dict) and isinstance(kept.get("checks"), dict) else {}
-
-
-def _write(file: Path, value: Any) -> None:
-    draft = file.with_suffix(".part")
-    draft.write_text(json.dumps(_round(value)) + "\n", encoding="utf-8")
-    os.replace(draft, file)
-
-
-def _round(value: Any) -> Any:
-    """Round all numbers to four decimals, for equal results of first and resumed runs."""
-    if isinstance(value, float):
-        return round(value, 4)
-    if isinstance(value, dict):
-        return {key: _round(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_round(item) for item in value]
-    return value
+def _outcome(check: Check, rows: list[Row], seconds: float) -> CheckOutcome:
+    """Return the result and the verdict over all starts."""
+    wrong = [row["failed"] for row in rows if "failed" in row]
+    if wrong:
+        verdict = Verdict("error", False, f"{check.title} ends with an error: {wrong[0]}")
+        return CheckOutcome({"failed": wrong[0]}, verdict, seconds, len(rows))
+    result = round_numbers(check.summarize(rows))
+    return CheckOutcome(result, check.judge(result), seconds, len(rows))

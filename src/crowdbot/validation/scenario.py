@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, stream
+from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.models import CrowdModel
 from crowdbot.trials import model_range
@@ -22,17 +22,16 @@ __all__ = [
     "CrowdTracks",
     "Floats",
     "Report",
+    "Row",
     "Verdict",
     "corridor_walls",
-    "deepest_overlap",
+    "crowds",
     "free_speeds",
     "gate",
     "inside_solids",
     "opening",
     "rings",
     "share",
-    "simulate_open",
-    "simulate_periodic",
     "starts",
     "stream_of",
     "substeps",
@@ -57,6 +56,8 @@ Solid = tuple[float, float, float, float]
 """A solid rectangle x0, y0, x1, y1 [m]."""
 Report = Callable[[float], None]
 """Progress callback: called with the completed fraction, 0 to 1."""
+Row = dict[str, Any]
+"""Numbers of one start."""
 
 
 class Verdict(NamedTuple):
@@ -74,15 +75,20 @@ class Check(NamedTuple):
         name: name on the command line and in the cache.
         title: title of its column and section.
         criterion: criterion of success, one sentence.
-        run: function of model, quick mode and progress callback that returns numbers for JSON.
-        judge: function of these numbers that returns the verdict.
+        run: function of model, numbers of the starts, quick mode and progress callback that returns one row of numbers
+            for JSON for each start.
+        summarize: function of the rows of all starts that returns the result of the check.
+        judge: function of this result that returns the verdict.
+        most: largest number of starts; 1 for a test without chance.
     """
 
     name: str
     title: str
     criterion: str
-    run: Callable[[CrowdModel, bool, Report], dict[str, Any]]
+    run: Callable[[CrowdModel, Sequence[int], bool, Report], list[Row]]
+    summarize: Callable[[Sequence[Row]], dict[str, Any]]
     judge: Callable[[dict[str, Any]], Verdict]
+    most: int = 1_000
 
 
 class CrowdTracks(NamedTuple):
@@ -210,135 +216,10 @@ def starts(count: int, low: Sequence[float], high: Sequence[float], rng: np.rand
     return np.clip(jittered, low, high)
 
 
-def simulate_periodic(
-    model: CrowdModel, crowd: Scene, length: float, seconds: float, rng: np.random.Generator, report: Report
-) -> CrowdTracks:
-    """Simulate a crowd that walks along x on a periodic track of ``length`` [m].
-
-    Each person has a copy one length ahead or behind, whichever is nearer to the track, with the same velocity, heading
-    and memory. Other people avoid copies like any neighbor; the motion of the copies is discarded. Positions are stored
-    every 0.2 s.
-
-    Raises:
-        InputError: a position is not finite.
-    """
-    A, steps, parts = crowd.shape[1], round(seconds / STEP), substeps(model)
-    scene, rounds = _with_copies(crowd), np.zeros(crowd.shape)
-    places = [crowd.position]
-    for k in range(steps):
-        for _ in range(parts):
-            scene = model.step(_update_copies(scene, A, length), STEP / parts, rng)
-        place = scene.position.copy()
-        _check(place[:, :A], crowd.active, float(np.max(scene.time)))
-        turn = np.floor(place[:, :A, 0] / length)
-        place[:, :A, 0] -= length * turn
-        rounds += turn
-        scene = scene.replace(position=place)
-        if (k + 1) % 4 == 0:
-            unrolled = place[:, :A].copy()
-            unrolled[..., 0] += length * rounds
-            places.append(unrolled)
-            report((k + 1) / steps)
-    times = 4.0 * STEP * np.arange(len(places), dtype=np.float64)
-    return CrowdTracks(times, np.stack(places), np.broadcast_to(crowd.active, (len(places), *crowd.shape)))
-
-
-def simulate_open(
-    model: CrowdModel,
-    crowd: Scene,
-    goals: Callable[[Floats], Floats],
-    left: Callable[[Floats], Bools],
-    seconds: float,
-    rng: np.random.Generator,
-    report: Report,
-) -> CrowdTracks:
-    """Simulate a crowd until all people have left or the time limit is reached; positions are stored at every step.
-
-    The preferred velocity of each person points straight to the current goal, with the preferred speed.
-
-    Args:
-        model: crowd model.
-        crowd: initial scene.
-        goals: function of positions ``[E, A, 2]`` [m] that returns the goals of the next step.
-        left: function of positions ``[E, A, 2]`` that returns a mask ``[E, A]`` of people who have left; they are
-            removed.
-        seconds: time limit [s].
-        rng: random generator of the model.
-        report: called with the completed share of the time, or of the people if that is larger.
-
-    Raises:
-        InputError: a position is not finite.
-    """
-    scene, steps, count, parts = crowd, round(seconds / STEP), max(1, int(crowd.active.sum())), substeps(model)
-    places, present = [crowd.position], [crowd.active]
-    for k in range(steps):
-        goal = goals(scene.position)
-        away = goal - scene.position
-        wish = away * (scene.preferred_speed / np.maximum(np.hypot(away[..., 0], away[..., 1]), 1e-9))[..., None]
-        scene = scene.replace(goal=goal, preferred_velocity=wish)
-        for _ in range(parts):
-            scene = model.step(scene, STEP / parts, rng)
-        _check(scene.position, scene.active, float(np.max(scene.time)))
-        places.append(scene.position)
-        present.append(scene.active)
-        scene = scene.replace(active=scene.active & ~left(scene.position))
-        if k % 20 == 0:
-            report(max(k / steps, 1.0 - int(scene.active.sum()) / count))
-        if not scene.active.any():
-            break
-    report(1.0)
-    return CrowdTracks(STEP * np.arange(len(places), dtype=np.float64), np.stack(places), np.stack(present))
-
-
-def deepest_overlap(walk: CrowdTracks, length: float | None = None) -> float:
-    """Return the maximum overlap of two bodies [m], 0 without overlap.
-
-    Args:
-        walk: tracks; they are sampled once per second.
-        length: length of a periodic track [m].
-    """
-    every = max(1, round(1.0 / float(walk.times[1] - walk.times[0])))
-    nearest = 2.0 * RADIUS
-    for place, present in zip(walk.position[::every], walk.present[::every], strict=True):
-        away = place[:, :, None] - place[:, None]
-        if length is not None:
-            away[..., 0] -= length * np.round(away[..., 0] / length)
-        distance = np.hypot(away[..., 0], away[..., 1])
-        pair = present[:, :, None] & present[:, None] & ~np.eye(place.shape[1], dtype=np.bool_)
-        nearest = min(nearest, float(np.min(distance[pair], initial=nearest)))
-    return 2.0 * RADIUS - nearest
-
-
-def _with_copies(crowd: Scene) -> Scene:
-    def repeat(value: Any) -> Any:
-        return np.concatenate([value, value], axis=1)
-
-    names = ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed")
-    flags = ("active", "visible", "external", "group", "preferred_velocity")
-    return crowd.replace(**{name: repeat(getattr(crowd, name)) for name in (*names, *flags)})
-
-
-def _update_copies(scene: Scene, A: int, length: float) -> Scene:
-    """Return the scene with the second half of its agents as copies of the first, one length away."""
-
-    def copy(value: Any) -> Any:
-        return np.concatenate([value[:, :A], value[:, :A]], axis=1)
-
-    place, active = copy(scene.position), copy(scene.active)
-    place[:, A:, 0] += np.where(place[:, A:, 0] < 0.5 * length, length, -length)
-    active[:, A:] &= (place[:, A:, 0] > -SEEN) & (place[:, A:, 0] < length + SEEN)
-    wish = scene.preferred_velocity
-    assert wish is not None
-    return scene.replace(
-        position=place,
-        velocity=copy(scene.velocity),
-        heading=copy(scene.heading),
-        goal=place + 1000.0 * wish,
-        active=active,
-        memory={name: copy(value) for name, value in scene.memory.items()},
-    )
-
-
-def _check(place: Floats, active: Bools, time: float) -> None:
-    if not np.all(np.isfinite(place[active])):
-        raise InputError(f"positions are not finite after {time:.1f} s")
+def crowds(
+    name: str, people: int, numbers: Sequence[int], low: Sequence[float], high: Sequence[float]
+) -> tuple[Floats, Floats]:
+    """Return positions ``[E, people, 2]`` [m] between two corners and free speeds ``[E, people]`` [m/s] of starts."""
+    rngs = [stream_of(name, people, number) for number in numbers]
+    place = np.stack([starts(people, low, high, rng) for rng in rngs])
+    return place, np.stack([free_speeds((people,), rng) for rng in rngs])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,23 +10,24 @@ import numpy as np
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
+from .crowd_motion import deepest_overlap, one_start, simulate_periodic
 from .literature import line_speed
 from .scenario import (
     FREE_SPEED,
     RADIUS,
-    STEP,
     Check,
+    CrowdTracks,
     Floats,
     Report,
+    Row,
     Verdict,
     corridor_walls,
-    deepest_overlap,
     share,
-    simulate_periodic,
     stream_of,
 )
+from .statistics import find_steady_window, summarize_starts
 
-__all__ = ["SINGLE_FILE"]
+__all__ = ["SINGLE_FILE", "file_crowd"]
 
 LENGTH = 20.0
 WIDTH = 0.7
@@ -33,28 +35,62 @@ WIDTH = 0.7
 DENSITIES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25)
 """People per metre of track; at 2.5, bodies touch."""
 QUICK = (0.5, 1.0, 1.5, 2.0)
-WARM, MEASURED = 30.0, 20.0
-"""Warm-up and measurement time [s]."""
+SECONDS = 50.0
+"""Duration of a run [s]."""
 LIMIT = 0.20
 """Allowed root mean square deviation from the published line [m/s]."""
 
 
-def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the mean forward speed at each density; densities are environments."""
-    densities = QUICK if quick else DENSITIES
-    warm, measured = (6.0, 4.0) if quick else (WARM, MEASURED)
-    crowd = _file([round(density * LENGTH) for density in densities])
-    walk = simulate_periodic(model, crowd, LENGTH, warm + measured, stream_of("single-file", "model"), report)
-    x, here = walk.position[..., 0], crowd.active
-    first = round(warm / (4.0 * STEP))
-    moved = (x[-1] - x[first]) / (walk.times[-1] - walk.times[first])
-    lateral = np.abs(walk.position[..., 1] - 0.5 * WIDTH)[:, here]
+def run(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
+    """Measure the mean forward speed in the steady state; densities and starts are environments."""
+    densities, seconds = (QUICK, 10.0) if quick else (DENSITIES, SECONDS)
+    runs = [(round(density * LENGTH), k) for density in densities for k in numbers]
+    crowd = file_crowd(runs)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("single-file", "model", numbers[0]), report)
+    rows: list[Row] = []
+    for j in range(len(numbers)):
+        parts = [_measure(one_start(walk, k * len(numbers) + j)) for k in range(len(densities))]
+        rows.append(
+            {
+                "density": list(densities),
+                "speed": [part["speed"] for part in parts],
+                "steady_from": [part["steady_from"] for part in parts],
+                "overtakings": sum(part["overtakings"] for part in parts),
+                "outside": float(np.mean([part["outside"] for part in parts])),
+                "overlap": max(part["overlap"] for part in parts),
+            }
+        )
+    return rows
+
+
+def _measure(walk: CrowdTracks) -> dict[str, Any]:
+    """Return the values of one density and start in the steady state of the mean forward speed."""
+    place = walk.position[:, 0, walk.present[0, 0]]
+    x = place[..., 0]
+    window = find_steady_window(walk.times[1:], np.diff(x, axis=0).mean(axis=1) / (walk.times[1] - walk.times[0]))
+    first = int(np.searchsorted(walk.times, window.begin - 1e-9))
+    lateral = np.abs(place[..., 1] - 0.5 * WIDTH)
     return {
-        "density": list(densities),
-        "speed": [float(moved[e, here[e]].mean()) for e in range(len(densities))],
-        "overtakings": int(sum(_overtakings(x[0, e, here[e]], x[-1, e, here[e]]) for e in range(len(densities)))),
+        "speed": float((x[-1] - x[first]).mean() / (walk.times[-1] - walk.times[first])),
+        "steady_from": window.begin if window.steady else None,
+        "overtakings": _overtakings(x[0], x[-1]),
         "outside": float(np.mean(np.any(lateral > 0.5 * WIDTH, axis=0))),
         "overlap": deepest_overlap(walk, LENGTH),
+    }
+
+
+def summarize(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the speeds with intervals over starts."""
+    found = summarize_starts(np.asarray([row["speed"] for row in rows]).T)
+    return {
+        "density": rows[0]["density"],
+        "speed": found["mean"],
+        "low": found["low"],
+        "high": found["high"],
+        "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
+        "overtakings": sum(row["overtakings"] for row in rows),
+        "outside": float(np.mean([row["outside"] for row in rows])),
+        "overlap": max(row["overlap"] for row in rows),
     }
 
 
@@ -88,15 +124,17 @@ SINGLE_FILE = Check(
     f"the root mean square deviation of the speeds from 1 / density = 0.36 m + 1.06 s * speed is at most {LIMIT:.2f}"
     " m/s, and nobody overtakes or leaves the track",
     run,
+    summarize,
     judge,
 )
 
 
-def _file(counts: list[int]) -> Scene:
-    E, A = len(counts), max(counts)
+def file_crowd(runs: Sequence[tuple[int, int]]) -> Scene:
+    """Return one environment for each run (people, number of the start)."""
+    E, A = len(runs), max(count for count, _ in runs)
     place, here = np.zeros((E, A, 2)), np.zeros((E, A), dtype=np.bool_)
-    for e, count in enumerate(counts):
-        rng, gap = stream_of("single-file", count), LENGTH / count
+    for e, (count, number) in enumerate(runs):
+        rng, gap = stream_of("single-file", count, number), LENGTH / count
         shake = min(0.3, 0.4 * (gap - 2.0 * RADIUS))
         place[e, :count, 0] = (np.arange(count) + 0.5) * gap + shake * rng.uniform(-1.0, 1.0, count)
         place[e, :count, 1] = 0.5 * WIDTH + rng.uniform(-0.02, 0.02, count)

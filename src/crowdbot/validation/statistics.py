@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crowdbot.core import stream
 from crowdbot.measurement import detect_steady_state, mean_over_starts
 
 from .scenario import Floats
 
-__all__ = ["STARTS", "SteadyWindow", "find_steady_window", "summarize_starts", "text_of"]
+__all__ = ["STARTS", "SteadyWindow", "bin_values", "find_steady_window", "pool_bins", "summarize_starts", "text_of"]
 
 STARTS = 20
 """Independent starts of each point."""
@@ -85,6 +86,56 @@ def summarize_starts(rows: Sequence[Sequence[float]] | Floats) -> dict[str, Any]
         "high": [one.mean if alone else one.high for one, alone in zip(found, single, strict=True)],
         "starts": found[0].starts,
     }
+
+
+def bin_values(density: Floats, speed: Floats, width: float) -> dict[str, list[float]]:
+    """Return the sums of a start that :func:`pool_bins` needs: bin, count, sum and sum of squares of the speed.
+
+    >>> bin_values(np.array([0.2, 0.3, 1.1]), np.array([1.0, 1.2, 0.5]), 0.5)["count"]
+    [2, 1]
+    """
+    number = np.floor(density / width).astype(np.int64)
+    kept = np.unique(number)
+    return {
+        "bin": [int(n) for n in kept],
+        "count": [int(np.sum(number == n)) for n in kept],
+        "sum": [float(speed[number == n].sum()) for n in kept],
+        "squares": [float((speed[number == n] ** 2).sum()) for n in kept],
+    }
+
+
+def pool_bins(starts: Sequence[dict[str, Any]], width: float, least: int, resamples: int = 1000) -> dict[str, Any]:
+    """Return a fundamental diagram over all starts, with 95 % bootstrap intervals of the means over starts.
+
+    Args:
+        starts: results of :func:`bin_values`.
+        width: width of the bins.
+        least: minimum number of values of a bin.
+        resamples: bootstrap samples; each draws whole starts.
+
+    >>> rows = [bin_values(np.array([0.2, 0.3]), np.array([v, v]), 0.5) for v in (1.0, 1.2)]
+    >>> pool_bins(rows, 0.5, 2)["speed"]
+    [1.1]
+    """
+    bins = sorted({n for one in starts for n in one["bin"]})
+    sums = np.zeros((3, len(starts), len(bins)))
+    for e, one in enumerate(starts):
+        for k, n in enumerate(one["bin"]):
+            sums[:, e, bins.index(n)] = one["count"][k], one["sum"][k], one["squares"][k]
+    drawn = stream(0, "pool").integers(0, len(starts), (resamples, len(starts)))
+    found: dict[str, Any] = {name: [] for name in ("density", "speed", "spread", "count", "low", "high")}
+    for k, n in enumerate(bins):
+        count, total, squares = sums[:, :, k].sum(axis=1)
+        if count < least:
+            continue
+        mean = total / count
+        counts, totals = sums[0, :, k][drawn].sum(axis=1), sums[1, :, k][drawn].sum(axis=1)
+        means = totals[counts > 0] / counts[counts > 0]
+        low, high = np.percentile(means, (2.5, 97.5)) if len(starts) > 1 else (mean, mean)
+        values = (n + 0.5) * width, round(mean, 6), max(0.0, squares / count - mean**2) ** 0.5, count, low, high
+        for name, value in zip(found, values, strict=True):
+            found[name].append(int(value) if name == "count" else float(value))
+    return found
 
 
 def text_of(value: float, ends: Sequence[float] | None) -> str:
