@@ -25,6 +25,7 @@ COMMANDS = {
     "repair": "repair the episode file of a killed run",
     "export": "write an episode as a table, Parquet or CSV",
     "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
+    "falsify": "search a trial for failures of its navigator, and estimate how likely they are",
     "experiment": "run trials with participants, instructions and questionnaires",
     "measure": "measure density, speed and flow in recordings, episodes and trials",
     "predict": "score predictors on recordings of people",
