@@ -25,6 +25,7 @@ COMMANDS = {
     "repair": "repair the episode file of a killed run",
     "export": "write an episode as a table, Parquet or CSV",
     "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
+    "falsify": "search a trial for failures of its navigator, and estimate how likely they are",
     "generate": "write labelled sensor data of many runs, with true people",
     "challenge": "run, verify and rank submissions to a competition of navigators",
     "experiment": "run trials with participants, instructions and questionnaires",

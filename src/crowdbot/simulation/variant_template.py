@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.trials import Crowds, Distribution, InitialPeople, Points, RandomizedModel, Trial
+from crowdbot.trials import Crowds, InitialPeople, RandomizedModel, Trial
 from crowdbot.world import World, join_worlds
 
 from .robot_control import RobotControl
 from .world_template import WorldTemplate
 
 __all__ = ["VariantTemplate"]
+
+OWN = ("name", "about", "seed")
+"""Fields of a trial that each variant has for itself."""
+FREE = {
+    "spawners": ("zone", "speed", "radius"),
+    "agents": ("x", "y", "speed", "radius"),
+    "robots": ("x", "y", "heading", "goal"),
+}
+"""Fields of elements in which variants may differ."""
 
 
 class VariantTemplate(WorldTemplate):
@@ -47,7 +57,7 @@ class VariantTemplate(WorldTemplate):
         self.trials = tuple(trials)
         if not self.trials:
             raise InputError("a simulation of variants needs at least one trial")
-        for trial in self.trials[1:]:
+        for trial in {id(trial): trial for trial in self.trials[1:]}.values():
             _check_shape(self.trials[0], trial)
         super().__init__(self.trials[0], posed)
         known = {id(trial): WorldTemplate(trial, posed) for trial in self.trials}
@@ -55,7 +65,11 @@ class VariantTemplate(WorldTemplate):
 
     def of_environments(self, environments: Sequence[int] | NDArray[np.int64]) -> VariantTemplate:
         """Return the template of some environments."""
-        return VariantTemplate([self.trials[int(e)] for e in environments], self.posed)
+        some = copy.copy(self)
+        some._each = [self._each[int(e)] for e in environments]
+        some.trials = tuple(template.trial for template in some._each)
+        some.trial = some.trials[0]
+        return some
 
     def with_environments(self, environments: Sequence[int] | NDArray[np.int64], other: WorldTemplate) -> WorldTemplate:
         """Return the template in which some environments have the variants of another one."""
@@ -90,30 +104,32 @@ class VariantTemplate(WorldTemplate):
 
 def _check_shape(first: Trial, other: Trial) -> None:
     """Raise :class:`InputError` if two variants cannot be environments of one simulation."""
-    one, two = _shared(first), _shared(other)
     for field in dataclasses.fields(Trial):
-        a, b = getattr(one, field.name), getattr(two, field.name)
-        if field.compare and a != b:
+        name = field.name
+        if field.compare and name not in OWN and not _is_alike(getattr(first, name), getattr(other, name), name):
             raise InputError(
-                f"the variants {first.name!r} and {other.name!r} differ in {field.name}; variants in one simulation can"
+                f"the variants {first.name!r} and {other.name!r} differ in {name}; variants in one simulation can"
                 " differ in parameters of the crowd model, starts, speeds and radii of people, and in start and goal"
                 " of robots"
             )
 
 
-def _shared(trial: Trial) -> Trial:
-    """Return a trial with fixed values where variants may differ."""
-    changes: dict[str, Any] = {"name": "variant", "about": "", "seed": 0}
-    crowd = trial.crowd
-    if not isinstance(crowd, Crowds | RandomizedModel):
-        changes["crowd"] = type(crowd)()
-    zone, fixed = Points([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]), Distribution("number", (1.0,))
-    changes["spawners"] = tuple(
-        dataclasses.replace(one, zone=zone, speed=fixed, radius=fixed) for one in trial.spawners
-    )
-    changes["agents"] = tuple(dataclasses.replace(one, x=0.0, y=0.0, speed=1.0, radius=0.25) for one in trial.agents)
-    changes["robots"] = tuple(
-        dataclasses.replace(one, x=0.0, y=0.0, heading=0.0, goal=dataclasses.replace(one.goal, x=1.0, y=1.0))
-        for one in trial.robots
-    )
-    return dataclasses.replace(trial, **changes)
+def _is_alike(one: Any, two: Any, name: str) -> bool:
+    """Return whether two values of a trial are equal, except where variants may differ."""
+    if one is two:
+        return True
+    if name == "crowd" and not isinstance(one, Crowds | RandomizedModel):
+        return type(one) is type(two)
+    if name not in FREE:
+        return bool(one == two)
+    return len(one) == len(two) and all(_is_same_but(a, b, FREE[name]) for a, b in zip(one, two, strict=True))
+
+
+def _is_same_but(one: Any, two: Any, free: Collection[str]) -> bool:
+    """Return whether two elements are equal except for some fields; of goals, the tolerance must be equal."""
+    if one is two:
+        return True
+    names = [field.name for field in dataclasses.fields(one) if field.compare and field.name not in free]
+    if any(getattr(one, name) != getattr(two, name) for name in names):
+        return False
+    return "goal" not in free or bool(one.goal.tolerance == two.goal.tolerance)

@@ -1,0 +1,108 @@
+"""CrossEntropy: adaptive importance sampling."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from crowdbot.core import InputError
+
+from .estimate import importance_estimate
+from .proposal import Proposal, fit_proposal
+from .runner import MOST_SEEDS, SampleRunner
+from .sampling import Sampling, SamplingResult
+
+__all__ = ["CrossEntropy"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CrossEntropy(Sampling):
+    """Adaptive importance sampling with the multilevel cross-entropy method.
+
+    Generations of runs move a :class:`Proposal` towards the failures: it is fitted to the runs whose robustness is
+    below a quantile, or to the failures as soon as there are enough, with the weights of all generations so far
+    (balance heuristic). Then the proposal is fixed, and the rest of the budget estimates the probability. These runs do
+    not depend on how the proposal was found, so the estimate has no bias; a bad proposal makes its interval wide.
+
+    Fields:
+        explore: largest share of the budget for finding the proposal.
+        generation: share of the budget of one generation.
+        quantile: share of runs in a generation to which the proposal moves.
+        defensive: share of the plain distribution in the proposal; weights are at most its inverse.
+        enough: number of failures after which the proposal is fitted to failures only.
+
+    Source: Rubinstein & Kroese 2004, The cross-entropy method, doi:10.1007/978-1-4757-4321-0; mixtures: Kurtz & Song
+    2013, doi:10.1016/j.strusafe.2013.01.006; defensive mixtures: Hesterberg 1995, doi:10.1080/00401706.1995.10484303.
+
+    >>> CrossEntropy(explore=0.5).explore
+    0.5
+    """
+
+    name: ClassVar[str] = "cross-entropy"
+    explore: float = 0.5
+    generation: float = 0.1
+    quantile: float = 0.1
+    defensive: float = 0.1
+    enough: int = 50
+
+    def __post_init__(self) -> None:
+        for name in ("explore", "generation", "quantile", "defensive"):
+            if not 0.0 < getattr(self, name) < 1.0:
+                raise InputError(f"cross-entropy: {name} = {getattr(self, name)} must be above 0 and below 1")
+        if self.enough < 1:
+            raise InputError(f"cross-entropy: enough = {self.enough} failures must be at least 1")
+
+    def search(self, runner: SampleRunner, rng: np.random.Generator) -> SamplingResult:
+        """Find a proposal, then estimate with it."""
+        used = [Proposal.standard(runner.dimensions)]
+        levels: list[float] = []
+        size = max(1, round(self.generation * runner.budget))
+        while len(runner.samples) + size <= self.explore * runner.budget:
+            self._draw(runner, rng, used[-1], size)
+            points, robustness = _arrays(runner)
+            log_mix = special.logsumexp([one.log_ratio(points) for one in used], axis=0) - math.log(len(used))
+            new = robustness[-size:]
+            fails = int(np.sum(robustness <= 0.0))
+            level = 0.0 if fails >= self.enough else max(0.0, float(np.quantile(new, self.quantile)))
+            level = level if math.isfinite(level) else float(np.min(new))
+            levels.append(level)
+            elite = robustness <= level
+            if not (elite.any() and math.isfinite(level)):
+                used.append(Proposal.standard(runner.dimensions))
+                continue
+            used.append(fit_proposal(points[elite], np.exp(-log_mix[elite]), rng, self.defensive))
+            if fails >= self.enough and len(levels) > 2 and levels[-2] == 0.0 and levels[-3] == 0.0:
+                break
+        explored = len(runner.samples)
+        if runner.remaining:
+            self._draw(runner, rng, used[-1], runner.remaining)
+        points, robustness = _arrays(runner)
+        weights = np.exp(-used[-1].log_ratio(points))
+        weights[:explored] = 0.0
+        valid = np.array([sample.valid for sample in runner.samples])
+        mass = float(np.sum(weights[valid])) / max(1.0, float(np.sum(weights)))
+        fails = robustness[explored:] <= 0.0
+        estimate = importance_estimate(fails, weights[explored:], 1.0 / used[-1].defensive)
+        if not valid[explored:].all() and mass > 0.0:
+            estimate = estimate._replace(
+                **{name: min(1.0, getattr(estimate, name) / mass) for name in ("value", "low", "high")}
+            )
+        return SamplingResult(estimate, weights, tuple(levels))
+
+    @staticmethod
+    def _draw(runner: SampleRunner, rng: np.random.Generator, proposal: Proposal, count: int) -> None:
+        runner.run(proposal.draw(rng, count), rng.integers(0, MOST_SEEDS, count))
+
+
+def _arrays(runner: SampleRunner) -> tuple[Floats, Floats]:
+    """Return the points ``[N, D]`` and the robustness ``[N]`` of all samples."""
+    points = np.array([sample.point for sample in runner.samples], dtype=np.float64)
+    robustness = np.array([sample.robustness for sample in runner.samples])
+    return points.reshape(len(robustness), runner.dimensions), robustness
