@@ -51,7 +51,14 @@ def evaluate(
     ['0 [0, 0.561]', '0 [0, 0.561]']
     """
     jobs = [
-        RunJob(k, cell.xml, cell.variant.folder, tuple(map(int, plan.seeds[begin : begin + CHUNK])), plan.trust)
+        RunJob(
+            k,
+            cell.xml,
+            cell.variant.folder,
+            tuple(map(int, plan.seeds[begin : begin + CHUNK])),
+            plan.trust,
+            plan.families,
+        )
         for k, cell in enumerate(plan.cells)
         for begin in range(0, len(plan.seeds), CHUNK)
     ]
@@ -78,7 +85,7 @@ def evaluate(
 def _key(job: RunJob) -> str:
     """Return a name for the result of a job, which changes with everything that the result depends on."""
     found = hashlib.blake2b(digest_size=12)
-    for part in (source_digest(), job.xml, str(job.seeds)):
+    for part in (source_digest(), job.xml, str(job.seeds), str(job.families)):
         found.update(part.encode() + b"\0")
     folder = job.folder or Path.cwd()
     for name in code_references({"trial": job.xml}, folder):
