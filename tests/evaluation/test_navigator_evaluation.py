@@ -16,6 +16,7 @@ from crowdbot.evaluation import (
     EvaluationPlan,
     EvaluationResult,
     RunRow,
+    episode_metrics,
     evaluate,
     load_evaluation,
     pareto_front,
@@ -60,9 +61,9 @@ def test_each_row_is_that_of_a_single_run(trial: Trial, result: EvaluationResult
         for row in cell.runs:
             episode = simulate(variant, row.seed)
             assert (row.outcome, row.digest) == (episode.outcome, episode.digest)
-            assert {k: v for k, v in row.metrics.items() if k != "error"} == pytest.approx(
-                dict(episode.metrics), nan_ok=True
-            )
+            wanted = dict(episode.metrics) | episode_metrics(episode) | {"error": 0.0}
+            assert dict(row.metrics) == pytest.approx(wanted, nan_ok=True)
+            assert set(episode.metrics) < set(wanted)
     assert result.cells[0].hash != result.cells[1].hash
     assert result.cells[0].protocol["visible"] is False
     assert result.cells[0].protocol["senses"] == ["Lidar2D"]

@@ -1,6 +1,7 @@
 """Evaluation of navigators: many trials, robots and seeds, with intervals, comparisons and requirements."""
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
+from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
@@ -15,6 +16,7 @@ from .statistic import Statistic, parse_statistic
 from .worst_run import WorstRun, worst_runs
 
 __all__ = [
+    "PAIRED_FAMILIES",
     "CellResult",
     "Estimate",
     "EvaluationCell",
@@ -29,7 +31,10 @@ __all__ = [
     "WorstRun",
     "bootstrap_interval",
     "correct_p_values",
+    "episode_log",
+    "episode_metrics",
     "evaluate",
+    "families_of",
     "junit_xml",
     "load_evaluation",
     "own_method",

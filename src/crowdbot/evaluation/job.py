@@ -12,7 +12,9 @@ from typing import Any
 
 from crowdbot.core import CrowdbotError, MissingExtra
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
-from crowdbot.trials import parse_trial
+from crowdbot.trials import Trial, parse_trial
+
+from .episode_metrics import episode_metrics, paired_variants
 
 __all__ = ["RunJob", "RunRow", "read_rows", "run_job", "write_rows"]
 
@@ -27,6 +29,7 @@ class RunJob:
         folder: folder of the trial, or None.
         seeds: seeds to run.
         trust: whether code from outside the folder may be loaded.
+        families: families of metrics to compute from the logs.
     """
 
     cell: int
@@ -34,6 +37,7 @@ class RunJob:
     folder: Path | None
     seeds: tuple[int, ...]
     trust: bool
+    families: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,18 +76,29 @@ def run_job(job: RunJob) -> list[RunRow]:
     trial = parse_trial(job.xml, folder=job.folder, trust=job.trust, quiet=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RunFailureWarning)
-        try:
-            episodes: Sequence[Episode | str] = simulate_seeds(trial, job.seeds)
-        except MissingExtra:
-            raise
-        except CrowdbotError:
-            episodes = [_one(trial, seed) for seed in job.seeds]
+        episodes = _episodes(trial, job.seeds)
+        others = {name: _episodes(one, job.seeds) for name, one in paired_variants(trial, job.families).items()}
+    rows = []
+    for k, (seed, episode) in enumerate(zip(job.seeds, episodes, strict=True)):
+        runs = {name: run for name, found in others.items() if isinstance(run := found[k], Episode)}
+        rows.append(_row(seed, episode, job.families, runs))
+    return rows
+
+
+def _episodes(trial: Trial, seeds: Sequence[int]) -> Sequence[Episode | str]:
+    """Return an episode for each seed, or why it is impossible."""
+    try:
+        episodes: Sequence[Episode | str] = simulate_seeds(trial, seeds)
+    except MissingExtra:
+        raise
+    except CrowdbotError:
+        episodes = [_one(trial, seed) for seed in seeds]
     if any(isinstance(one, Episode) and one.outcome == "interrupted" for one in episodes):
         raise KeyboardInterrupt
-    return [_row(seed, one) for seed, one in zip(job.seeds, episodes, strict=True)]
+    return episodes
 
 
-def _one(trial: Any, seed: int) -> Episode | str:
+def _one(trial: Trial, seed: int) -> Episode | str:
     try:
         return simulate_seeds(trial, [seed])[0]
     except MissingExtra:
@@ -92,11 +107,13 @@ def _one(trial: Any, seed: int) -> Episode | str:
         return " ".join(str(error).split())
 
 
-def _row(seed: int, episode: Episode | str) -> RunRow:
+def _row(seed: int, episode: Episode | str, families: Sequence[str], paired: dict[str, Episode]) -> RunRow:
     if isinstance(episode, str):
         return RunRow(seed, "invalid", message=episode)
     failed = episode.outcome == "error"
     metrics = {name: float(value) for name, value in episode.metrics.items() if "." not in name}
+    if families and len(episode.times):
+        metrics |= episode_metrics(episode, families, paired)
     if failed:
         metrics |= {"success": 0.0}
     message = "" if episode.failure is None else str(episode.failure)

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.metrics import LOG_FAMILIES
 from crowdbot.trials import Trial, expand_sweeps, load_trial, trial_xml
 
+from .episode_metrics import check_families
 from .method import Method, own_method
 
 __all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
@@ -82,9 +84,12 @@ class EvaluationPlan:
         robots: types of robots; an empty name keeps the robot of the trial (default).
         seeds: seeds of the runs, the same for all navigators.
         trust: whether code from outside the folders of the trials may be loaded.
+        families: families of metrics to compute from the logs, see :func:`crowdbot.metrics.metric_families` (default:
+        all
+            that need no paired run).
 
     Raises:
-        InputError: a list is empty, a name or a seed is there twice, or there are too many cells.
+        InputError: a list is empty, a name or a seed is there twice, there are too many cells, or a family is unknown.
         TrialError: a navigator or robot is not possible in a trial.
 
     >>> from crowdbot.evaluation import EvaluationPlan, parse_methods
@@ -99,9 +104,11 @@ class EvaluationPlan:
     robots: Sequence[str] = ("",)
     seeds: Sequence[int] = range(20)
     trust: bool = True
+    families: tuple[str, ...] = tuple(LOG_FAMILIES)
     cells: tuple[EvaluationCell, ...] = dataclasses.field(init=False)
 
     def __post_init__(self) -> None:
+        check_families(self.families)
         lists = {"trials": self.trials, "navigators": self.methods, "robots": self.robots, "seeds": self.seeds}
         for name, values in lists.items():
             if not len(values):

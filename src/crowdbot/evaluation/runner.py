@@ -50,12 +50,19 @@ def evaluate(
     ['0 [0, 0.561]', '0 [0, 0.561]']
     """
     jobs = [
-        RunJob(k, cell.xml, cell.variant.folder, tuple(map(int, plan.seeds[begin : begin + CHUNK])), plan.trust)
+        RunJob(
+            k,
+            cell.xml,
+            cell.variant.folder,
+            tuple(map(int, plan.seeds[begin : begin + CHUNK])),
+            plan.trust,
+            plan.families,
+        )
         for k, cell in enumerate(plan.cells)
         for begin in range(0, len(plan.seeds), CHUNK)
     ]
     files = (
-        [] if folder is None else [folder / f"{code_digest(job.xml, job.folder, str(job.seeds))}.json" for job in jobs]
+        [] if folder is None else [folder / f"{code_digest(job.xml, job.folder, str(job.seeds), str(job.families))}.json" for job in jobs]
     )
     rows: dict[int, list[RunRow]] = {}
     for number, found in run_saved_jobs(run_job, jobs, files, write_rows, read_rows, workers, cluster):

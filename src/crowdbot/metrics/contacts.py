@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .proximity import JUMP, clearance, swept_clearance
 
-__all__ = ["ContactEvent", "cause_of", "contact_events"]
+__all__ = ["ContactEvent", "cause_of", "contact_events", "contact_stretches"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -80,7 +80,7 @@ def contact_events(
     gap = clearance(position, radius, active, robot)
     found: list[ContactEvent] = []
     for person in np.flatnonzero(np.any(swept < 0.0, axis=0)):
-        for first, last in _stretches(times, swept[:, person], gap[:, person]):
+        for first, last in contact_stretches(times, swept[:, person], gap[:, person]):
             deepest = -float(np.min(swept[first : last + 1, person]))
             begin, normal, own, other = _first_touch(
                 times, position, velocity, radius, active, robot, int(person), first
@@ -91,8 +91,13 @@ def contact_events(
     return tuple(sorted(found, key=lambda event: (event.begin, event.person)))
 
 
-def _stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[int, int]]:
-    """Return first and last sample of each contact of one person."""
+def contact_stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[int, int]]:
+    """Return first and last sample of each contact, from clearances ``[T]`` since the last sample and at the sample
+    [m].
+
+    >>> contact_stretches(np.arange(3.0), np.array([0.1, -0.1, 0.2]), np.array([0.1, 0.1, 0.2]))
+    [(1, 1)]
+    """
     found: list[tuple[int, int]] = []
     first = last = -1
     free_since = math.inf

@@ -11,6 +11,7 @@ from crowdbot.core import InputError
 
 from .agent_states import AgentStates
 from .incremental import NavigationMetrics, NavigationOutcome
+from .social.metric import metric_families
 
 __all__ = ["NAVIGATION_METRICS", "navigation_metrics", "outcome"]
 
@@ -18,38 +19,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 NAVIGATION_METRICS: dict[str, tuple[str, str]] = {
-    "success": ("1", "the goal is reached in time and before any contact"),
-    "collision": ("1", "a person or a wall is touched before the goal is reached (swept between samples)"),
-    "timeout": ("1", "neither success nor collision"),
-    "duration": ("s", "time from the first sample to the goal, or to the end of the log"),
-    "time_to_goal": ("s", "duration if the outcome is success, otherwise NaN"),
-    "goal_progress": ("1", "1 - final distance to the goal / initial distance to the goal"),
-    "path_length": ("m", "sum of |p_k+1 - p_k|"),
-    "path_efficiency": ("1", "distance from start to end / path length, in (0, 1]"),
-    "min_clearance": ("m", "minimum of |p_i - p| - r_i - r over people and time (swept); negative if they overlap"),
-    "min_clearance_time": ("s", "end of the time step with min_clearance"),
-    "mean_nearest_distance": ("m", "mean clearance to the nearest person"),
-    "min_wall_clearance": ("m", "minimum distance to a wall minus the radius of the robot (swept)"),
-    "personal_space_compliance": ("1", "share of samples with a clearance of at least 0.5 m"),
-    "intimate_share": ("1", "share of samples with a clearance to the nearest person below 0.45 m"),
-    "personal_share": ("1", "share of samples with a clearance to the nearest person of 0.45 to 1.2 m"),
-    "social_share": ("1", "share of samples with a clearance to the nearest person of 1.2 to 3.6 m"),
-    "contacts": ("1", "number of contacts with people; a contact ends after 0.5 s at 0.05 m or more"),
-    "robot_caused_contacts": ("1", "contacts in which the robot approaches faster, by more than 0.05 m/s"),
-    "person_caused_contacts": ("1", "contacts in which the person approaches faster, or the robot stands"),
-    "contact_time": ("s", "total duration of the contacts"),
-    "max_penetration": ("m", "maximum overlap, 0 without contact"),
-    "max_impact_speed": ("m/s", "maximum closing speed along the normal at first touch, 0 without contact"),
-    "min_ttc": ("s", "minimum time to collision over samples and people, at constant velocities"),
-    "ttc_below_1s": ("1", "share of samples with a time to collision below 1 s"),
-    "ttc_below_3s": ("1", "share of samples with a time to collision below 3 s"),
-    "stalled_time": ("s", "total time with a speed below 0.05 m/s"),
-    "longest_stall": ("s", "longest uninterrupted time with a speed below 0.05 m/s"),
-    "mean_jerk": ("m/s3", "mean norm of the second difference of the velocity over 0.1 s (or a longer time step)"),
-    "max_jerk": ("m/s3", "maximum norm of the same difference"),
-    "heading_change": ("rad", "sum of |wrap(h_k+1 - h_k)|"),
-    "local_density": ("1/m2", "mean number of people within 2.5 m of the robot / (pi 2.5^2)"),
-    "max_local_density": ("1/m2", "maximum number of people within 2.5 m of the robot / (pi 2.5^2)"),
+    row.name: (row.unit, row.formula) for row in metric_families()["navigation"]
 }
 """Unit and definition of each key of :func:`navigation_metrics`, in order."""
 

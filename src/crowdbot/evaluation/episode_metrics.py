@@ -1,0 +1,170 @@
+"""Metrics of logs for simulated episodes, and the paired runs that some of them need."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.metrics import (
+    LOG_FAMILIES,
+    AgentLog,
+    BodyRegion,
+    RobotLog,
+    crowd_effect,
+    empty_scene_ratios,
+    impact_region_metrics,
+    log_metrics,
+    metric_table,
+)
+from crowdbot.navigation import PathPlanner
+from crowdbot.simulation import Episode
+from crowdbot.trials import Trial
+from crowdbot.world import BODY_REGION_LIMITS
+
+from .paired_run import empty_variant, ghost_variant, shifted_variant
+
+__all__ = [
+    "PAIRED_FAMILIES",
+    "check_families",
+    "episode_log",
+    "episode_metrics",
+    "families_of",
+    "paired_variants",
+    "shortest_path",
+]
+
+Floats = NDArray[np.float64]
+PAIRED_FAMILIES = ("empty-scene", "crowd-disturbance")
+"""Families of metrics that need further runs with the same seed."""
+TOUCH = re.compile(r"collision|^severity|^contact_")
+"""Metrics of contacts, which a ghost does not have."""
+REGIONS = {name: BodyRegion(*limits) for name, limits in BODY_REGION_LIMITS.items()}
+
+
+def episode_log(episode: Episode) -> RobotLog:
+    """Return the log of the first robot of an episode.
+
+    >>> from crowdbot.simulation import simulate
+    >>> from crowdbot.trials import load_trial
+    >>> episode_log(simulate(load_trial("frontal", duration=2.0), 0)).path.round(1).tolist()
+    [[0.0, 0.0], [9.0, 0.0]]
+    """
+    trial, robot = episode.trial, episode.trial.robots[0]
+    ghosts = [own for own, spec in zip(episode.robots, trial.robots, strict=True) if spec.ghost]
+    goal = np.asarray(robot.goal.position, dtype=np.float64)
+    own = episode.robots[0]
+    start = episode.position[np.argmax(episode.active[:, own]), own]
+    return RobotLog.of(
+        _agent_log(episode),
+        own,
+        goal,
+        robot.goal.tolerance,
+        others=episode.robots[1:],
+        ignore=[ghost for ghost in ghosts if ghost != own],
+        outcome=episode.outcome if len(trial.robots) == 1 else None,
+        walls=trial.stage.as_walls().segments(),
+        path=shortest_path(trial, start, goal),
+        max_speed=float(getattr(robot.drive, "max_speed", math.nan)),
+        mass=float(robot.mass),
+        height=float(robot.height),
+        regions=REGIONS,
+    )
+
+
+def shortest_path(trial: Trial, start: Floats, goal: Floats) -> Floats | None:
+    """Return the shortest path ``[K, 2]`` [m] of the first robot around walls; None if there is none."""
+    try:
+        planner = PathPlanner.for_stage(trial.stage.as_walls(), trial.robots[0].radius)
+        return np.concatenate([start[None], planner.waypoints(start, goal)])
+    except InputError:
+        return None
+
+
+def episode_metrics(
+    episode: Episode, families: Sequence[str] | None = None, paired: dict[str, Episode] | None = None
+) -> dict[str, float]:
+    """Return the metrics of the first robot of an episode, from its log.
+
+    Args:
+        episode: the episode.
+        families: names of families (default: all that need one run).
+        paired: further runs with the same seed, by the names of :func:`paired_variants`.
+
+    Raises:
+        InputError: there is no such family.
+
+    >>> from crowdbot.simulation import simulate
+    >>> from crowdbot.trials import load_trial
+    >>> episode_metrics(simulate(load_trial("frontal", duration=2.0), 0), ["task"])["person_collision"]
+    0.0
+    """
+    names = [*LOG_FAMILIES] if families is None else list(families)
+    log = episode_log(episode)
+    found = log_metrics(log, [name for name in names if name not in PAIRED_FAMILIES])
+    if episode.trial.robots[0].ghost:
+        found = {name: value for name, value in found.items() if not TOUCH.search(name)}
+    if episode.trial.world == "physics" and "severity" in names:
+        own = [
+            one
+            for one in episode.collisions
+            if tuple(one.first) == ("robot", episode.robots[0]) and one.second.kind == "person"
+        ]
+        found |= impact_region_metrics(own, REGIONS, float(episode.trial.robots[0].mass))
+    others = paired or {}
+    if "empty" in others:
+        found |= empty_scene_ratios(log, episode_log(others["empty"]))
+    if "ghost" in others:
+        shifted = others.get("shifted")
+        found |= crowd_effect(
+            _agent_log(episode),
+            _agent_log(others["ghost"]),
+            episode.robots[0],
+            None if shifted is None else _agent_log(shifted),
+        )
+    return found
+
+
+def paired_variants(trial: Trial, families: Sequence[str]) -> dict[str, Trial]:
+    """Return the trials of further runs that families of metrics need: ``empty``, ``ghost``, ``shifted``."""
+    found = {}
+    if "empty-scene" in families:
+        found["empty"] = empty_variant(trial)
+    if "crowd-disturbance" in families:
+        found |= {"ghost": ghost_variant(trial), "shifted": shifted_variant(trial)}
+    return found
+
+
+def families_of(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the families with paired runs that statistics need.
+
+    Args:
+        names: names of metrics, such as ``crowd_disturbance``, or of families.
+
+    >>> families_of(["success", "crowd_disturbance"])
+    ('crowd-disturbance',)
+    """
+    table = metric_table()
+    found = {table[name].family if name in table else name for name in names}
+    return tuple(family for family in PAIRED_FAMILIES if family in found)
+
+
+def check_families(names: Sequence[str]) -> None:
+    """Check names of families.
+
+    Raises:
+        InputError: there is no such family.
+    """
+    known = [*LOG_FAMILIES, *PAIRED_FAMILIES]
+    for name in names:
+        if name not in known:
+            raise InputError(f"no family of metrics {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}")
+
+
+def _agent_log(episode: Episode) -> AgentLog:
+    radius = np.broadcast_to(episode.radius, episode.active.shape)
+    return AgentLog(episode.times, episode.position, episode.velocity, episode.heading, radius, episode.active)

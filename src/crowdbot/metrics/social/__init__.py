@@ -1,0 +1,27 @@
+"""Metrics of a robot among people from a log alone, one file for each family; see :func:`log_metrics`."""
+
+from __future__ import annotations
+
+from .body_region import BodyRegion
+from .crowd_effect import crowd_effect, empty_scene_ratios
+from .group_intrusion import detect_groups
+from .log_metrics import LOG_FAMILIES, log_metrics
+from .metric import Metric, metric_families, metric_page, metric_table
+from .robot_log import RobotLog
+from .severity import head_injury_criterion, impact_region_metrics
+
+__all__ = [
+    "LOG_FAMILIES",
+    "BodyRegion",
+    "Metric",
+    "RobotLog",
+    "crowd_effect",
+    "detect_groups",
+    "empty_scene_ratios",
+    "head_injury_criterion",
+    "impact_region_metrics",
+    "log_metrics",
+    "metric_families",
+    "metric_page",
+    "metric_table",
+]
