@@ -150,8 +150,3 @@ def test_a_selected_simulation_has_doors_of_its_own() -> None:
     assert simulation.world.doors.share.tolist() == [0.0]  # type: ignore[attr-defined]
     assert other.world.doors.share[0] > 0.5  # type: ignore[attr-defined]
     assert np.array_equal(_run(simulation, 2.0)[-1], other.world.scene.position[0, 0])
-
-
-def test_several_planar_environments_with_doors_are_refused_in_a_sentence() -> None:
-    with pytest.raises(InputError, match="one environment"):
-        Simulation(_trial('opening="approach"'), [0, 1])

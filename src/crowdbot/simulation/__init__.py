@@ -1,5 +1,6 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
+from .door_orders import DoorOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
@@ -48,6 +49,7 @@ __all__ = [
     "BatchReadings",
     "BatchSink",
     "DecisionOrder",
+    "DoorOrder",
     "Episode",
     "EpisodeDigest",
     "EpisodeLog",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.navigation import PathPlanner
-from crowdbot.world import Doors, World, add_rings
+from crowdbot.world import Doors, World, add_rings, worlds_of
 
 __all__ = ["next_waypoints"]
 
@@ -26,14 +26,12 @@ def next_waypoints(
     Args:
         planner: planner among walls without doors.
         world: the world.
-        environments: ``[N]`` indices of the environments.
+        environments: ``[N]`` indices of the environments; with doors, N = 1.
         place, goal: ``[N, 2]`` [m].
         path: ``[N, 9]`` states of the paths.
     """
-    holder: Any = world
-    doors: Doors | None = getattr(holder, "doors", None)
-    if hasattr(holder, "worlds"):
-        doors = holder.worlds[int(environments[0])].doors
+    worlds = worlds_of(world)
+    doors: Doors | None = worlds[int(environments[0]) if len(worlds) > 1 else 0].doors
     if doors is None:
         return planner.next_waypoints(place, goal, path), goal
     lines = doors.path_lines()

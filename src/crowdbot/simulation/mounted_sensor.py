@@ -318,7 +318,7 @@ def mounted_sensors(
             robot.schedule(mount, world.clock),
             RandomStreams(seeds, "sensor", robot.name, mount.name),
             space,
-            own and not space and not sensor.renders and not world.walls_fixed,
+            own and not space and not sensor.renders and not world.has_own_walls,
             None,
             wheels=wheel_geometry(robot.body) if sensor.encoders else None,
         )

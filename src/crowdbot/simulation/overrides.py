@@ -72,7 +72,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         ghosts=[control.agent for control, robot in pairs if robot.ghost],
         **_router(old, trial),
     )
-    order_doors(world, trial.stage.doors)
+    order_doors(world, old.stage.doors, trial.stage.doors)
     simulation.trial = trial
     if seed is not None:
         simulation.seeds = environment_seeds(seed, simulation.count)

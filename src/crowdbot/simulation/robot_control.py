@@ -210,7 +210,7 @@ class RobotControl:
             if visible is not None:
                 seen |= visible
         twist = np.stack([twists.forward, twists.turn, twists.left], axis=-1)
-        if world.walls_fixed and len(world.slots) > 1:
+        if world.has_own_walls and len(world.slots) > 1:
             scene = around.flat_of(int(environments[0]))
             slots = scene.shape[1]
             ids, seen, twist = ids[environments, :slots], seen[environments, :slots], twist[environments]
@@ -245,7 +245,7 @@ class RobotControl:
         if isinstance(self.robot.navigator, ExternalNavigator):
             self._wait_for_orders(self.robot.navigator, around, environments)
             return {}
-        if around.world.walls_fixed and len(environments) > 1:
+        if around.world.has_own_walls and len(environments) > 1:
             found: dict[int, Exception] = {}
             for e in environments:
                 found |= self.decide(around, np.array([e]))
@@ -300,7 +300,7 @@ class RobotControl:
         if self.planner is None and self.robot.tracks is None:
             return
         due = environments[world.clock.schedule(self.robot.control_period).is_due(ticks)]
-        for part in np.split(due, len(due)) if world.walls_fixed and len(due) > 1 else [due]:
+        for part in np.split(due, len(due)) if world.has_own_walls and len(due) > 1 else [due]:
             if len(part):
                 self._remember(part, self._observe(around, part)[1])
 

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
     from .doors.doors import Doors
     from .doors.leaf import DoorLeaf
+    from .doors.motion import show_doors
     from .environments import join_worlds, put_environments, select_environments, step_environments
     from .ground.ground import Ground
     from .ground.part import GroundPart
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
     from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
+    from .world_batch import worlds_of
 
 _LAZY = {
     "AckermannDrive": "robots.drives.ackermann",
@@ -181,6 +183,7 @@ _LAZY = {
     "roll_pitch_yaw": "urdf.transforms",
     "scene_bodies": "physics.colliders",
     "select_environments": "environments",
+    "show_doors": "doors.motion",
     "simulated_body": "robots.wheel_encoders",
     "slot_of": "live_changes",
     "step_environments": "environments",
@@ -189,6 +192,7 @@ _LAZY = {
     "wheel_geometry": "robots.wheel_encoders",
     "wheel_rotation": "robots.wheel_encoders",
     "widen": "planar_live_changes",
+    "worlds_of": "world_batch",
 }
 
 __all__ = [
@@ -290,6 +294,7 @@ __all__ = [
     "roll_pitch_yaw",
     "scene_bodies",
     "select_environments",
+    "show_doors",
     "simulated_body",
     "slot_of",
     "step_environments",
@@ -298,6 +303,7 @@ __all__ = [
     "wheel_geometry",
     "wheel_rotation",
     "widen",
+    "worlds_of",
 ]
 
 

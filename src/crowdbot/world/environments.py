@@ -12,9 +12,11 @@ from crowdbot.core import MissingExtra, Twist
 from crowdbot.world.robots.drives.drive import Twists
 
 from . import planar_environments as planar
+from .doors.batch import PlanarBatch, copy_planar
 from .environment_time import EnvironmentTime
 from .planar_live_changes import match_robots
 from .world import World
+from .world_batch import WorldBatch, worlds_of
 
 __all__ = ["join_worlds", "put_environments", "select_environments", "step_environments"]
 
@@ -36,9 +38,11 @@ def join_worlds(worlds: Sequence[World]) -> World:
     if len(worlds) == 1:
         return worlds[0]
     if worlds[0].walls_fixed:
-        from .physics.batch import PhysicsBatch, physics_worlds
+        from .physics.batch import PhysicsBatch
 
-        return PhysicsBatch([one for world in worlds for one in physics_worlds(world)], worlds[0].clock)
+        return PhysicsBatch([one for world in worlds for one in worlds_of(world)], worlds[0].clock)
+    if worlds[0].has_own_walls:
+        return PlanarBatch([one for world in worlds for one in worlds_of(world)], worlds[0].clock)
     parts: Any = worlds
     return planar.join_worlds(parts)
 
@@ -46,24 +50,23 @@ def join_worlds(worlds: Sequence[World]) -> World:
 def select_environments(world: World, environments: Sequence[int] | Ints) -> World:
     """Return an independent world with some environments, which may be repeated, on a free clock."""
     anything: Any = world
-    if not world.walls_fixed:
+    if not world.has_own_walls:
         return planar.select_environments(anything, environments)
-    if len(world.slots) > 1:
-        selected: World = anything.select(environments)
-        return selected
-    copies = [anything.copy() for _ in environments]
+    if isinstance(world, WorldBatch):
+        return world.select(environments)
+    copies = [anything.copy() if world.walls_fixed else copy_planar(anything) for _ in environments]
     return join_worlds(copies)
 
 
 def put_environments(world: World, environments: Sequence[int] | Ints, other: World) -> World:
     """Return the world with some environments replaced by those of another, which must not be used any more."""
     anything: Any = world
-    if not world.walls_fixed:
+    if isinstance(world, WorldBatch):
+        world.put(environments, other)
+    elif not world.walls_fixed:
         new: Any = other
         match_robots(world, other)
         planar.put_environments(anything, environments, new)
-    elif len(world.slots) > 1:
-        anything.put(environments, other)
     else:
         clock = world.clock
         other.environment_time = EnvironmentTime(clock, clock.tick - other.ticks, other.environment_time.begin)
@@ -80,8 +83,8 @@ def step_environments(world: World, commands: Mapping[int, Twist | Twists]) -> t
         MissingExtra: a package is not installed.
     """
     anything: Any = world
-    if world.walls_fixed and len(world.slots) > 1:
-        return world, anything.try_step(commands)
+    if isinstance(world, WorldBatch):
+        return world, world.try_step(commands)
     undo = planar.undo_point(anything) if len(world.slots) > 1 else None
     try:
         world.step(commands)

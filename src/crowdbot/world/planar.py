@@ -239,6 +239,11 @@ class PlanarWorld(PlanarLiveChanges):
             self._rngs = RandomStreams(self._traffic.seeds.tolist(), "crowd")
 
     @property
+    def has_own_walls(self) -> bool:
+        """Whether its walls change on their own, by doors; see :class:`World`."""
+        return self.walls_fixed or self.doors is not None
+
+    @property
     def waiting_count(self) -> NDArray[np.int64]:
         """Number of people waiting to enter, ``[E]``."""
         return self._traffic.waiting_count

@@ -26,6 +26,7 @@ __all__ = [
     "check_robot_place",
     "chosen_environments",
     "keep_added_robots",
+    "live_prop_names",
     "match_robots",
     "new_prop_name",
     "prop_number",
@@ -233,6 +234,16 @@ class PlanarLiveChanges(World):
         """Remove a robot; see :meth:`World.remove_robot`."""
         remove_robot_at(self, agent, robot_environments(self, agent, environments))
 
+    def place_robot(
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, present: bool
+    ) -> None:
+        """Make an agent a robot of a world with one environment, which is present or absent."""
+        world: Any = self
+        put_robot_at(world, agent, robot, place, ghost, [0] if present else [])
+        for bodies in world._bodies or ():
+            bodies.robots = {**bodies.robots, agent: robot}
+            bodies.forget_renderer()
+
     def embody_person(self, agent: int, environment: int) -> None:
         """Give a new person a body, in a world with bodies."""
         world: Any = self
@@ -270,6 +281,12 @@ class PlanarLiveChanges(World):
         left = without_last([*names[:number], "", *names[number + 1 :]])
         world._prop_outlines = (left, outlines[: len(left)])
         _replace_walls(world, walls)
+
+
+def live_prop_names(world: Any) -> list[str]:
+    """Return the names of the props of a planar or physics world by number; that of a removed one is empty."""
+    names: list[str] = world._prop_names if world.walls_fixed else _props(world)[0]
+    return names
 
 
 def _props(world: Any) -> tuple[list[str], list[Any]]:

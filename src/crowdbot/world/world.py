@@ -102,6 +102,11 @@ class World(ABC):
         return np.asarray(self.ticks * self.clock.step_ns / 1e9)
 
     @property
+    def has_own_walls(self) -> bool:
+        """Whether each environment has walls of its own, so that :meth:`plane_scene` needs the number of one."""
+        return self.walls_fixed
+
+    @property
     @abstractmethod
     def waiting_count(self) -> NDArray[np.int64]:
         """Number of people waiting to enter, ``[E]``."""

@@ -42,6 +42,7 @@ HOLDERS = {
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
     ),
     "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
+    "crowdbot.world.doors.batch.PlanarBatch": "dt _stacked",
     "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader links model",
     "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
     AVATARS: "agents names sources delay robots _latest",
@@ -55,7 +56,7 @@ HOLDERS = {
     "crowdbot.world.physics.people_bodies.PeopleBodies": "_model _data step geoms bodies _place _speed _hold",
     "crowdbot.world.physics.people_motion.PeopleMotion": "agents people row gait radius ground",
     "crowdbot.world.physics.kinematic_bodies.KinematicBodies": "robots stage walls _renderer doors",
-    "crowdbot.world.doors.doors.Doors": "leaves pushed _walls _routers",
+    "crowdbot.world.doors.doors.Doors": "leaves pushed _walls _routers _base",
     "crowdbot.world.physics.contact_events.BodyContactTracker": "_step _window _mass_of _limb_mass_of _heading_of",
 }
 """Classes of objects that exist in a new simulation of the trial, with their constant fields."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import InputError, RandomStreams, Scene
+from crowdbot.world import show_doors
 
 from .engine_state import has_engine, read_engine, update_engine, write_engine
 from .state_fields import AVATARS, ENVIRONMENT_TIME, holder_fields, is_holder, qualified, value_class
@@ -57,6 +58,8 @@ def restore_state(simulation: Simulation, state: Mapping[str, Any]) -> None:
             raise StateError(f"the state has a value {unknown[0]!r}, which this trial does not have")
         for _, world in part_worlds(simulation.world):
             update_engine(world)
+            if world.doors is not None:
+                show_doors(world, new_paths=False)
             _check_scene(world.scene)
             _check_scene(world._previous)
     except StateError:

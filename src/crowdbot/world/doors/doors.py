@@ -67,6 +67,7 @@ class Doors:
         self.pushed = pushed
         self.blocked = self._blocked()
         self._walls: tuple[Walls, Walls] | None = None
+        self._base: Router | None = None
         self._routers: dict[Any, Router] = {}
 
     def copy(self) -> Doors:
@@ -141,7 +142,9 @@ class Doors:
 
         Somebody whose goal is behind a closed door walks to the reachable point nearest to it.
         """
-        key = (id(base.walls), tuple(self.blocked), tuple(self.side.tolist()))
+        if self._base is not base:
+            self._base, self._routers = base, {}
+        key = (tuple(self.blocked), tuple(self.side.tolist()))
         if key not in self._routers:
             walls = add_rings(base.walls, self.path_lines())
             self._routers[key] = Router.of(walls, base.radius, "nearest" if any(self.blocked) else base.unreachable)

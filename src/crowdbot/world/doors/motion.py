@@ -17,7 +17,8 @@ Floats = NDArray[np.float64]
 
 
 ONE_ENVIRONMENT = (
-    "a planar world with doors has one environment, since its walls are those of all; run the seeds one by one"
+    "a planar world with doors has one environment, since its walls are those of all; join several worlds with"
+    " join_worlds"
 )
 
 

@@ -10,37 +10,23 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls
-from crowdbot.world.crowd.environment_rows import concatenate_arrays, pad_ids, stack_scenes, take_arrays, trim_scene
-from crowdbot.world.environment_time import EnvironmentTime
-from crowdbot.world.planar_live_changes import (
-    check_robot_place,
-    chosen_environments,
-    match_robots,
-    new_prop_name,
-    robot_environments,
-)
-from crowdbot.world.robots.drives.drive import Twists
-from crowdbot.world.robots.mount import MountPlacement
-from crowdbot.world.world import Contact, World
+from crowdbot.core import Clock, InputError
+from crowdbot.world.world_batch import WorldBatch
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
-    from crowdbot.world.crowd.source import PeopleSource
-    from crowdbot.world.rendering.renderer import Renderer
     from crowdbot.world.robots.robot import Robot
 
-    from .contact_events import BodyContactEvent, ContactForce
-    from .stage import PhysicsStage, PropBody
+    from .stage import PhysicsStage
     from .world import PhysicsWorld
 
-__all__ = ["PhysicsBatch", "physics_worlds"]
+__all__ = ["PhysicsBatch"]
 
 T = TypeVar("T")
 Ints = NDArray[np.int64]
 
 
-class PhysicsBatch(World):
+class PhysicsBatch(WorldBatch):
     """Environments with rigid bodies: one :class:`PhysicsWorld` each, on a common clock.
 
     Args:
@@ -55,220 +41,23 @@ class PhysicsBatch(World):
     walls_fixed = True
 
     def __init__(self, worlds: Sequence[PhysicsWorld], clock: Clock | None = None) -> None:
-        first = worlds[0]
         for world in worlds[1:]:
-            if not np.array_equal(world.scene.walls.segments(), first.scene.walls.segments()):
+            if not np.array_equal(world.scene.walls.segments(), worlds[0].scene.walls.segments()):
                 raise InputError("environments of the physics world need the same stage; run variants of it one by one")
-        self.worlds, self.dt = list(worlds), first.dt
-        times = [world.environment_time for world in worlds]
-        self.environment_time = times[0].join(times[1:])
-        if clock is not None:
-            self.environment_time = EnvironmentTime(
-                clock, clock.tick - self.environment_time.ticks, self.environment_time.begin
-            )
-        for world in self.worlds:
-            world.environment_time = world.environment_time.select([0])
-        self._stacked: tuple[list[Scene], Scene] | None = None
+        super().__init__(worlds, clock)
 
-    @property
-    def scene(self) -> Scene:
-        """Scenes of all environments; setting it changes each of them."""
-        scenes = [world.scene for world in self.worlds]
-        if self._stacked is None or any(one is not two for one, two in zip(self._stacked[0], scenes, strict=True)):
-            self._stacked = (scenes, stack_scenes(scenes))
-        return self._stacked[1]
-
-    @scene.setter
-    def scene(self, scene: Scene) -> None:
-        """Change the scene of each environment."""
-        for e, world in enumerate(self.worlds):
-            one = trim_scene(scene.environments([e]), world.scene.shape[1])
-            world.scene = one.replace(walls=world.scene.walls, time=world.scene.time)
-
-    @property
-    def ids(self) -> Ints:  # type: ignore[override]
-        """Identities ``[E, A]``; further slots of shorter environments have unique negative ones."""
-        agents = int(self.slots.max())
-        return np.concatenate([pad_ids(world.ids, agents) for world in self.worlds])
-
-    @property
-    def slots(self) -> Ints:  # type: ignore[override]
-        """Number of agents of each environment, ``[E]``."""
-        return np.array([world.scene.shape[1] for world in self.worlds], dtype=np.int64)
-
-    @property
-    def twists(self) -> dict[int, Twists]:  # type: ignore[override]
-        """Current twist of each robot."""
-        return {
-            robot: concatenate_arrays([world.twists[robot] for world in self.worlds]) for robot in self.worlds[0].twists
-        }
-
-    @property
-    def contacts(self) -> tuple[Contact, ...]:  # type: ignore[override]
-        """Contacts between robots and other agents in the last step."""
-        return tuple(one._replace(environment=e) for e, world in enumerate(self.worlds) for one in world.contacts)
-
-    @property
-    def waiting_count(self) -> Ints:
-        """Number of people waiting to enter, ``[E]``."""
-        return np.concatenate([world.waiting_count for world in self.worlds])
-
-    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Advance by one time step; see :class:`World`."""
-        errors = self.try_step(commands)
-        for error in errors.values():
-            raise error
-        return self.scene
-
-    def try_step(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Exception]:
-        """Advance by one time step and return the exceptions by environment, which lose their agents."""
-        wide = {robot: Twists.of(command, len(self.worlds)) for robot, command in commands.items()}
-        self.clock.advance()
-
-        def advance(e: int) -> Exception | None:
-            index = np.array([e])
-            try:
-                self.worlds[e].step({robot: take_arrays(one, index) for robot, one in wide.items()})
-            except Exception as error:  # told to the caller
-                return error
-            return None
-
-        found = self._in_threads(advance)
-        errors = {e: error for e, error in enumerate(found) if error is not None}
-        for error in errors.values():
-            if isinstance(error, MissingExtra):
-                raise error
-        for e in errors:
-            scene = self.worlds[e].scene
-            self.worlds[e].scene = scene.replace(active=np.zeros_like(scene.active))
-        return errors
-
-    def _in_threads(self, work: Callable[[int], T]) -> list[T]:
+    def _each(self, work: Callable[[int], T]) -> list[T]:
         count = len(self.worlds)
         with ThreadPoolExecutor(min(count, os.cpu_count() or 1)) as pool:
             return list(pool.map(work, range(count)))
 
     def select(self, environments: Sequence[int] | Ints) -> PhysicsWorld | PhysicsBatch:
         """Return an independent world with some environments."""
-        worlds = [self.worlds[int(e)].copy() for e in environments]
+        worlds: list[PhysicsWorld] = [self.worlds[int(e)].copy() for e in environments]
         return worlds[0] if len(worlds) == 1 else PhysicsBatch(worlds)
-
-    def put(self, environments: Sequence[int] | Ints, other: World) -> None:
-        """Replace some environments by those of another world, which must not be used any more."""
-        for world in physics_worlds(other):
-            match_robots(self.worlds[0], world)
-        for one in self.worlds:
-            match_robots(one, physics_worlds(other)[0])
-        for k, (e, world) in enumerate(zip(environments, physics_worlds(other), strict=True)):
-            self.environment_time.put([e], other.environment_time.select([k]))
-            self.worlds[int(e)] = world
-            world.environment_time = world.environment_time.select([0])
-
-    def add_robot(
-        self,
-        robot: Robot,
-        x: float,
-        y: float,
-        heading: float = 0.0,
-        *,
-        ghost: bool = False,
-        environments: Sequence[int] | None = None,
-    ) -> int:
-        """Add a robot, at rest on the floor; see :class:`World`."""
-        check_robot_place(robot, x, y, heading)
-        chosen, agent = chosen_environments(len(self.worlds), environments), int(self.slots.max())
-        for e in sorted(range(len(self.worlds)), key=lambda e: e not in chosen):  # an error changes nothing
-            self.worlds[e].place_robot(agent, robot, (x, y, heading), ghost, e in chosen)
-        return agent
-
-    def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        """Remove a robot and its body; see :class:`World`."""
-        for e in robot_environments(self, agent, environments):
-            self.worlds[e].remove_robot(agent)
-
-    def add_prop(self, prop: PropBody, name: str = "") -> str:
-        """Add a prop in all environments; see :class:`World`."""
-        name = name or new_prop_name(max((world._prop_names for world in self.worlds), key=len), "")
-        for world in self.worlds:
-            new_prop_name(world._prop_names, name)
-        for world in self.worlds:
-            world.add_prop(prop, name)
-        return name
-
-    def remove_prop(self, name: str) -> None:
-        """Remove a prop in all environments that have it; see :class:`World`."""
-        holders = [world for world in self.worlds if name in world._prop_names]
-        for world in holders or self.worlds:
-            world.remove_prop(name)
-
-    def pose(self, robot: int) -> Pose:
-        """Return the pose of a robot in every environment."""
-        poses = [world.pose(robot) for world in self.worlds]
-        return Pose(np.concatenate([p.position for p in poses]), np.concatenate([p.heading for p in poses]))
-
-    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
-        """Return the pose of a sensor in every environment; see :class:`World`."""
-        poses: list[Any] = [world.sensor_pose(robot, mount, spatial) for world in self.worlds]
-        place = np.concatenate([pose.position for pose in poses])
-        if isinstance(poses[0], Pose):
-            return Pose(place, np.concatenate([pose.heading for pose in poses]))
-        return SpatialPose(place, np.concatenate([pose.rotation for pose in poses]))
-
-    def wall_clearance(self, robot: int) -> NDArray[np.float64]:
-        """Return the clearance to fixed objects ``[E]`` [m]; see :class:`World`."""
-        return np.concatenate([world.wall_clearance(robot) for world in self.worlds])
-
-    def plane_scene(self, environment: int | None = None) -> Scene:
-        """Return the scene of one environment in the plane; see :class:`World`."""
-        if environment is None:
-            raise InputError("the outlines of props differ between environments: ask for one of them")
-        return self.worlds[environment].plane_scene()
-
-    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
-        """Return the scene of one environment with bodies; see :class:`World`."""
-        return self.worlds[environment].body_scene(skins)
-
-    def environment_scene(self, environment: int) -> Scene:
-        """Return the scene of one environment."""
-        return self.worlds[environment].scene
-
-    def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer of one environment."""
-        return self.worlds[environment].environment_renderer(0)
-
-    @property
-    def renderer(self) -> Renderer:
-        """Renderer of the first environment."""
-        return self.worlds[0].renderer
-
-    def forces_of(self, environment: int) -> tuple[ContactForce, ...]:
-        """Return the contact forces of the last step in one environment."""
-        return self.worlds[environment].forces
-
-    def contact_events_of(self, environment: int) -> tuple[BodyContactEvent, ...]:
-        """Return the contact events of one environment so far."""
-        return self.worlds[environment].contact_events
 
     def embody(self, robots: Mapping[int, Robot], stage: PhysicsStage, people: People, **options: Any) -> None:
         """Do nothing: the worlds have bodies."""
 
-    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace the descriptions of robots in all environments."""
-        for world in self.worlds:
-            world.change_bodies(robots, stage, walls)
-
     def pose_people(self) -> None:
         """Do nothing: a step moves the bodies of people."""
-
-    def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: Any = None, **how: Any) -> None:
-        """Change parameters of all environments; see :meth:`PlanarWorld.reconfigure`."""
-        for e, world in enumerate(self.worlds):
-            one = trim_scene(scene.environments([e]), world.scene.shape[1]).replace(walls=world.scene.walls)
-            own = None if seed is None else (seed + e if isinstance(seed, int) else seed[e])
-            world.reconfigure(one, sources, own, **how)
-
-
-def physics_worlds(world: World) -> list[PhysicsWorld]:
-    """Return the worlds of a batch, or the only one."""
-    found: Any = world
-    return found.worlds if isinstance(world, PhysicsBatch) else [found]
