@@ -17,7 +17,9 @@ STEP = 0.005
 
 def book() -> BodyContactTracker:
     """Return a book of a robot of 50 kg and a person of 70 kg with limbs of 4 kg who looks at it, along -x."""
-    return BodyContactTracker(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
+    return BodyContactTracker(
+        STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb, point, normal: 4.0, lambda agent: np.pi
+    )
 
 
 def contact(force, normal=(1.0, 0.0, 0.0), limb="shank_l", robot=(0.0, 0.0, 0.0), person=(0.0, 0.0, 0.0), swing=None):

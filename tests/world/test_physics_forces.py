@@ -19,7 +19,8 @@ from crowdbot.world import (
     two_body_force,
 )
 from crowdbot.world.physics.body_region_limits import reduced_mass, softness
-from crowdbot.world.physics.people_bodies import GIVEN, REACTION
+from crowdbot.world.physics.people_bodies import GIVEN
+from crowdbot.world.physics.recovery import REACTION
 from crowdbot.world.urdf import Box, LinkShape
 from samples import sample
 

@@ -3,6 +3,7 @@
 from .activities import ACTIVITIES
 from .body_pose import BodyPose
 from .body_reach import reach_poses
+from .effective_mass import limb_chain, striking_mass
 from .feet import Gaits
 from .gait import Gait, posing_and_skinning
 from .limbs import LIMBS, REGIONS, Limb, mass_shares
@@ -35,6 +36,7 @@ __all__ = [
     "Posture",
     "Seat",
     "ankle_positions",
+    "limb_chain",
     "mass_shares",
     "names",
     "outfit",
@@ -44,4 +46,5 @@ __all__ = [
     "reach_poses",
     "read_pose_file",
     "stand_on_ground",
+    "striking_mass",
 ]

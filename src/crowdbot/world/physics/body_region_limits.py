@@ -156,12 +156,12 @@ def softness(region: str, person: float, mass: float, dt: float, moved: float | 
     whole = reduced_mass(person, mass)
     moved = whole if moved is None else moved
     wanted = tissue.stiffness * reduced_mass(mass, min(tissue.mass, person)) / moved**2
-    frequency = min(math.sqrt(wanted) / _peak(DAMPING), math.pi / (SHORTEST * dt))
+    frequency = min(math.sqrt(wanted) / peak_share(DAMPING), math.pi / (SHORTEST * dt))
     share = moved / whole  # the solver takes the reduced mass of both bodies
     return frequency**2 * share, 2.0 * DAMPING * frequency * share
 
 
-def _peak(damping: float) -> float:
+def peak_share(damping: float) -> float:
     """Return the ratio of peak forces of a damped to an undamped spring in an impact."""
     root = math.sqrt(1.0 - damping**2)
     angle = math.atan2(root * (1.0 - 4.0 * damping**2), damping * (3.0 - 4.0 * damping**2))

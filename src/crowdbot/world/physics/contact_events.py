@@ -147,12 +147,14 @@ class BodyContactTracker:
     Args:
         step: time step of the engine [s].
         mass_of: returns the mass of a body [kg], infinite for a fixed one.
-        limb_mass_of: returns the mass of a limb of a person [kg], including the limbs attached to it.
+        limb_mass_of: returns the mass [kg] that a limb of a person has in an impact at a point ``[3]`` [m] along a
+            normal ``[3]``.
         heading_of: returns the heading of a person [rad].
     """
 
     def __init__(
-        self, step: float, mass_of: Callable[[ContactBody], float], limb_mass_of: Callable[[int, str], float],
+        self, step: float, mass_of: Callable[[ContactBody], float],
+        limb_mass_of: Callable[[int, str, Floats, Floats], float],
         heading_of: Callable[[int], float],
     ) -> None:  # fmt: skip
         self._step, self._mass_of, self._limb_mass_of, self._heading_of = step, mass_of, limb_mass_of, heading_of
@@ -232,10 +234,10 @@ class BodyContactTracker:
         swing = float(contact.swing @ contact.normal) * (1.0 if first else -1.0)
         surface = _closing(contact)
         body = min(surface, max(0.0, surface - swing))  # a swinging limb moves its own mass, not that of the body
-        force = max(
-            two_body_force(body, mass, region, self._mass_of(person)),
-            two_body_force(surface, mass, region, self._limb_mass_of(person.number, limb)),
-        )
+        force = two_body_force(body, mass, region, self._mass_of(person))
+        if surface > body:
+            own = self._limb_mass_of(person.number, limb, contact.point, contact.normal)
+            force = max(force, two_body_force(surface, mass, region, own))
         force *= _size(_borne(-towards))
         if force > running.hardest[0]:
             running.hardest = (force, limb, region)

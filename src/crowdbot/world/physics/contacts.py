@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .body_region_limits import DAMPING, peak_share
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
 from .rider import RIDER
@@ -17,6 +19,8 @@ __all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact", "GeomTable"
 Floats = NDArray[np.float64]
 KINDS = ("robot", "person", "prop", "wall")
 NOTHING, ROBOT, PROP, PERSON, WALL = 0, 1, 2, 3, 4
+SLOW = 0.05
+"""Smallest closing speed [m/s] for the depth of a contact between a led person and a led robot."""
 WORDS = {ROBOT: "robot", PROP: "prop", PERSON: "person", WALL: "wall"}
 
 
@@ -100,6 +104,9 @@ class ContactReader:
         geoms: bodies and parts of the geoms.
         agent_of: returns the agent of a body slot.
         swing: velocities of the limb ends ``[S, L, 6]`` [m/s] relative to their bodies.
+
+    Attributes:
+        led: agents that contacts do not move: their motion comes from outside.
     """
 
     def __init__(
@@ -110,8 +117,14 @@ class ContactReader:
         self._agent_of, self._swing = agent_of, swing
         self.geoms = geoms
         self._kind, self._number, self._part = geoms
+        self.led: frozenset[int] = frozenset()
         self._found: list[_ContactPoint] = []
         self._sizes: Floats = np.zeros((0, len(LIMB_NAMES), 3))
+
+    @property
+    def touching(self) -> bool:
+        """Whether bodies other than the floor touched in the last engine step."""
+        return bool(self._found)
 
     def use(self, model: Any, sizes: Floats) -> None:
         """Use a model in the following engine steps; ``sizes`` ``[S, L, 3]`` [m] are those of the limbs."""
@@ -137,6 +150,8 @@ class ContactReader:
             second = self._velocity(other, point) + (swing if self._kind[other] == PERSON else 0.0)
             self._found.append(_ContactPoint(int(index), one, first, second, swing, other))
         self._share()
+        if self.led:
+            self._limit_depth()
 
     def _share(self) -> None:
         """Divide the stiffness of a limb by its number of contact points, which are separate springs in the engine."""
@@ -150,6 +165,32 @@ class ContactReader:
                 rows = slice(contact.efc_address, contact.efc_address + contact.dim)
                 self._data.efc_R[rows] *= len(indices)
                 self._data.efc_D[rows] /= len(indices)
+
+    def _limit_depth(self) -> None:
+        """Limit the depth that counts between a led person and a led robot to that of an impact at their speed.
+
+        Neither yields, so that the depth would grow with their paths, and the force to values that nobody has.
+        """
+        data = self._data
+        for found in self._found:
+            if self._agent(found.one) not in self.led or self._agent(found.other) not in self.led:
+                continue
+            contact = data.contact[found.row]
+            limb = found.one if self._kind[found.one] == PERSON else found.other
+            way = np.array(contact.frame[:3]) * (1.0 if contact.geom[0] == found.one else -1.0)
+            sign = 1.0 if limb == found.one else -1.0
+            closing = max(float((found.first - found.second - sign * found.swing) @ way), SLOW)
+            row = int(contact.efc_address)
+            deepest = closing * peak_share(DAMPING) / math.sqrt(-float(self._model.geom_solref[limb, 0]))
+            excess = -float(data.efc_pos[row]) - deepest
+            if excess > 0.0:
+                stiffness, _, impedance, _ = data.efc_KBIP[row]
+                data.efc_aref[row] -= stiffness * impedance * excess
+
+    def _agent(self, geom: int) -> int:
+        """Return the agent of a person or robot, -1 for others."""
+        kind, number = int(self._kind[geom]), self._number[geom]
+        return self._agent_of(number) if kind == PERSON else number if kind == ROBOT else -1
 
     def read(self) -> tuple[EngineContact, ...]:
         """Return the contacts after the second half of the step; points between the same parts are merged."""

@@ -7,6 +7,7 @@ returns to the path of the crowd model with limited force.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -15,23 +16,22 @@ from numpy.typing import NDArray
 
 from .body_region_limits import region_of, softness
 from .contacts import EngineContact
+from .limb_poses import capsule_poses, chain_rows, guard_limbs
 from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
+from .recovery import BRACE, REACTION, recovery_force
 
-__all__ = ["BRACE", "REACTION", "PeopleBodies"]
+__all__ = ["PeopleBodies"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-BRACE = 100.0
-"""Largest force [N] with which a person resists a push (assumed: one eighth of the weight of an adult)."""
-REACTION = 0.1
-"""Delay [s] between the first contact and resistance, and time constant of the velocity correction, which
-:data:`BRACE` limits (assumed)."""
 HOLD = 0.05
 """Time [s] after a contact for which limbs keep their pose relative to the body."""
 RETURN = 1.5
 """Speed [m/s] at which they then return to the gait."""
+GUARD, GUARDED = 0.2, 1.5
+"""Speed [m/s] at which they return towards what they touched, for ``GUARDED`` [s] (assumed: people do not kick it)."""
 QUICK = 5.0
 """Largest speed [m/s] of a limb relative to the body (assumed: swinging feet reach 4 to 5 m/s over the floor). Without
 it, a sudden change of direction by the crowd model would swing a foot at twice that speed."""
@@ -41,7 +41,6 @@ points upwards. Bodies cannot rise and would otherwise press the limb down."""
 GIVE, GIVEN = 1.0, 0.3
 """Largest speed [m/s] and distance [m] by which an arm or leg yields relative to the body when the mean force over
 about :data:`REACTION` exceeds :data:`BRACE`. Single impacts do not move it."""
-CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
@@ -120,7 +119,8 @@ class PeopleBodies:
         self.led: Ints = np.zeros(0, dtype=np.int64)
         self._begin, self._duration = np.zeros((0, 2)), 0.0
         self._off = np.zeros((slots, 2))
-        self._mass = np.full(slots, 70.0)
+        self._mass, self._center = np.full(slots, 70.0), np.ones(slots)
+        self._toward, self._wary = np.zeros((slots, 2)), np.zeros(slots, dtype=np.int64)
         self.bind(model, data)
         self.shapes = BodyShapes.of(model, self.geoms.ravel(), self.bodies) if shapes is None else shapes.copy()
         self._way = np.zeros((slots, 2))
@@ -172,12 +172,15 @@ class PeopleBodies:
         for array, before in zip(self.shapes, kept["shapes"], strict=True):
             array[:old] = before
 
-    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools, firm: Bools) -> int:
+    def take(
+        self, wanted: Ints, mass: Floats, radius: Floats, center: Floats, other: Floats, ahead: Bools, firm: Bools
+    ) -> int:  # fmt: skip
         """Assign bodies to people and return the number of people without a free body.
 
         Args:
             wanted: agents, by decreasing priority.
             mass, radius: masses ``[W]`` [kg] and limb radii ``[W, L]`` [m].
+            center: heights of the centre of mass ``[W]`` [m].
             other: mass of the nearest mover ``[W]`` [kg].
             ahead: whether it is ahead of the person ``[W]``.
             firm: whether contacts cannot move it ``[W]``.
@@ -193,6 +196,7 @@ class PeopleBodies:
         for slot in np.flatnonzero(self.agent >= 0):
             k = rank[int(self.agent[slot])]
             self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]), bool(firm[k]))
+            self._center[slot] = center[k]
         return max(0, len(wanted) - len(self.agent))
 
     def agent_of(self, slot: int) -> int:
@@ -202,6 +206,14 @@ class PeopleBodies:
     def swing_of(self) -> Floats:
         """Return the velocities of the limb ends ``[S, L, 6]`` [m/s] relative to their bodies."""
         return self.swing
+
+    def limb_ends(self, agent: int) -> Floats | None:
+        """Return both ends of the limbs of an agent ``[L, 6]`` [m] in the engine; None without a body."""
+        slots = np.flatnonzero(self.agent == agent)
+        if not len(slots):
+            return None
+        x, y = self._data.qpos[self._place[slots[0]] + np.arange(2)].tolist()
+        return np.asarray(self._limbs_now[slots[0]] + (x, y, 0.0, x, y, 0.0))
 
     def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
         """Set the targets of all bodies for the next step of the world.
@@ -242,7 +254,7 @@ class PeopleBodies:
 
     def register_contacts(self, contacts: Iterable[EngineContact]) -> None:
         """Record people pushed in the last engine step, and let pressed limbs yield."""
-        self._touched = np.maximum(self._touched - 1, 0)
+        self._touched, self._wary = np.maximum(self._touched - 1, 0), np.maximum(self._wary - 1, 0)
         fresh = self.step / REACTION
         self._load *= 1.0 - fresh
         for contact in contacts:
@@ -253,6 +265,7 @@ class PeopleBodies:
                 if party.kind == "person" and party.number in self.agent:  # riders are parts of robots
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
+                    self._beware(slot, -sign * contact.normal)
                     row = LIMB_NAMES.index(limb)
                     self._load[slot, row] += fresh * sign * contact.force
                     self._lift(slot, limb, sign * float(contact.normal[2]), contact.depth)
@@ -272,9 +285,15 @@ class PeopleBodies:
             self._data.qpos[self._place[slot] + np.arange(2)] = place
             self._data.qvel[self._speed[slot] + np.arange(2)] = self._way[slot]
 
+    def _beware(self, slot: int, towards: Floats) -> None:
+        """Remember the direction of what a person touched."""
+        size = math.hypot(towards[0], towards[1])
+        if size > TREAD:
+            self._toward[slot], self._wary[slot] = towards[:2] / size, round(GUARDED / self.step)
+
     def _lift(self, slot: int, limb: str, upwards: float, depth: float) -> None:
         """Raise the arm or leg of a limb off the object below it."""
-        rows = _chain(limb)
+        rows = chain_rows(limb)
         if upwards < TREAD or not rows:
             return
         up = min(depth / upwards, QUICK * self.step)
@@ -285,7 +304,7 @@ class PeopleBodies:
     def _give_way(self, slot: int, limb: str, force: Floats) -> None:
         """Move the arm or leg of a limb in the direction of the force if the force is too large to resist."""
         size = float(np.sqrt(force @ force))
-        rows = _chain(limb)
+        rows = chain_rows(limb)
         if size <= BRACE or not rows:
             return
         shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
@@ -316,10 +335,8 @@ class PeopleBodies:
 
     def _braced(self, here: Ints) -> Floats:
         error = self._way[here] - self._velocity(here)
-        force = self._mass[here, None] * error / REACTION
-        size = np.sqrt(np.sum(force * force, axis=1, keepdims=True))
-        force *= np.minimum(1.0, BRACE / np.maximum(size, 1e-12))
-        return np.where((self._since[here] >= REACTION / self.step)[:, None], force, 0.0)
+        since = np.asarray(self._since[here] * self.step, dtype=np.float64)
+        return recovery_force(error, self._mass[here], self._center[here], since, self._touched[here] == 0)
 
     def _park(self, slots: Ints) -> None:
         """Move unused bodies out of the way."""
@@ -327,6 +344,7 @@ class PeopleBodies:
         self._off[slots], self._load[slots] = 0.0, 0.0
         self._touched[slots], self._since[slots] = 0, 0
         self.pushed[slots], self._late[slots], self._fresh[slots] = False, False, True
+        self._wary[slots] = 0
         if not len(slots):
             return
         self.shapes.position[slots] = (0.0, 0.0, PARKED)
@@ -359,9 +377,12 @@ class PeopleBodies:
         share = np.minimum(1.0, fastest * self.step / np.maximum(length, 1e-12))
         share[held] = 0.0
         share[self._fresh[here]] = 1.0
-        late &= held | np.any(share < 1.0, axis=1)
-        behind = (late[:, None] | (share < 1.0))[..., None]
         moved = share[..., None] * lag
+        toward = np.where((late & (self._wary[here] > 0))[:, None], self._toward[here], 0.0)
+        guarded = guard_limbs(moved, toward, GUARD * self.step)
+        late &= held | np.any(share < 1.0, axis=1) | np.any(guarded != moved, axis=(1, 2))
+        behind = (late[:, None] | (share < 1.0))[..., None]
+        moved = guarded
         now = np.where(behind, self._limbs_now[here] + moved, walk)
         self.swing[here] = np.where(behind, moved / self.step, self._stride[here])
         self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
@@ -370,29 +391,10 @@ class PeopleBodies:
 
     def _pose(self, here: Ints, limbs: Floats) -> None:
         """Set the poses of the capsules relative to their bodies."""
-        shapes, kept = self.shapes, (len(here), LIMB_COUNT)
-        ends = limbs.reshape(-1, 6)
-        axis = ends[:, 3:] - ends[:, :3]
-        length = np.maximum(np.sqrt(np.sum(axis * axis, axis=1)), 1e-9)
-        half = (0.5 * length).reshape(kept)
-        shapes.position[here] = (0.5 * (ends[:, 3:] + ends[:, :3])).reshape(*kept, 3)
-        shapes.size[here, :, 1] = half
-        shapes.bound[here] = half + shapes.size[here, :, 0]
-        shapes.rotation[here] = _upright_to(axis / length[:, None]).reshape(*kept, 4)
+        shapes = self.shapes
+        shapes.position[here], shapes.size[here, :, 1], shapes.rotation[here] = capsule_poses(limbs)
+        shapes.bound[here] = shapes.size[here, :, 1] + shapes.size[here, :, 0]
 
 
 STEADY = 1e-4
 """A pushed person with a velocity error below this [m/s] has recovered."""
-
-
-def _chain(limb: str) -> list[int]:
-    """Return the rows of the arm or leg of a limb; empty for the trunk."""
-    return [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in CHAINS.get(limb.split("_", maxsplit=1)[0], ())]
-
-
-def _upright_to(direction: Floats) -> Floats:
-    """Return quaternions ``[N, 4]`` that rotate the z axis to unit vectors ``[N, 3]``."""
-    x, y, z = direction.T
-    turn = np.stack([1.0 + z, -y, x, np.zeros_like(x)], axis=-1)
-    turn[z < -1.0 + 1e-9] = (0.0, 1.0, 0.0, 0.0)
-    return np.asarray(turn / np.sqrt(np.sum(turn * turn, axis=1, keepdims=True)))

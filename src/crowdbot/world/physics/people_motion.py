@@ -20,6 +20,7 @@ from crowdbot.humans import (
     ankle_positions,
     reach_poses,
     stand_on_ground,
+    striking_mass,
 )
 from crowdbot.world.ground.ground import Ground
 
@@ -28,13 +29,6 @@ __all__ = ["LimbCapsules", "PeopleMotion"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 NAMES = tuple(limb.name for limb in LIMBS)
-BELOW = {
-    "thigh": ("thigh", "shank", "foot"),
-    "shank": ("shank", "foot"),
-    "foot": ("shank", "foot"),
-    "upperarm": ("upperarm", "forearm", "hand"),
-    "forearm": ("forearm", "hand"),
-}
 SOLE, STEEP = 0.06, 2.0
 """A foot stands on the highest ground within ``SOLE`` [m] of the ankle, and rises ahead of an edge with this slope."""
 FASTEST = 11.9
@@ -209,12 +203,22 @@ class PeopleMotion:
         found[self.agents] = points - np.tile(place, 2)[:, None]
         return found
 
-    def limb_mass(self, agent: int, limb: str) -> float:
-        """Return the mass [kg] that swings with a limb of a person: the limb and all limbs attached to it."""
-        own = self.people.limb_mass[self.row[agent]]
-        stem, _, side = limb.partition("_")
-        below = BELOW.get(stem, (stem,))
-        return float(sum(own[NAMES.index(f"{name}_{side}" if side else name)] for name in below))
+    def limb_mass(self, agent: int, limb: str, point: Floats, normal: Floats, ends: Floats | None = None) -> float:
+        """Return the mass [kg] that a limb of a person has in an impact, see :func:`crowdbot.humans.striking_mass`.
+
+        Args:
+            agent: the person.
+            limb: name of the limb.
+            point: point of contact ``[3]`` [m].
+            normal: unit vector ``[3]`` of the impact.
+            ends: limb ends of the person ``[L, 6]`` [m]; None: the current ones.
+        """
+        row = self.row[agent]
+        ends = self.ends[row] if ends is None else ends
+        start, end = ends[:, :3], ends[:, 3:]
+        way = end[NAMES.index(limb)] - start[NAMES.index(limb)]
+        share = float((point - start[NAMES.index(limb)]) @ way) / max(float(way @ way), 1e-12)
+        return striking_mass(start, end, self.people.limb_mass[row], limb, min(max(share, 0.0), 1.0), normal)
 
     def limbs(self, active: NDArray[np.bool_]) -> LimbCapsules:
         """Return the capsules of all people.

@@ -30,8 +30,10 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
+from .kinematic_base import kinematic_bases
 from .nearby_people import movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
+from .recovery import CENTER
 from .rigid_world import SLOTS, RigidWorld
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
@@ -220,9 +222,7 @@ class PhysicsWorld(RigidWorld):
         walls = self.scene.walls
         self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
         self.rigid.people.led = self._led_people(self.scene)
-        self._contact_tracker = BodyContactTracker(
-            self.physics_dt, self._mass_of, self.people.limb_mass, self._heading_of
-        )
+        self._contact_tracker = BodyContactTracker(self.physics_dt, self._mass_of, self._limb_mass_of, self._heading_of)
         self._at = {a: (start.x, start.y, start.heading) for a, start in starts.items()}
 
     def _put(self, agent: int, scene: Scene) -> None:
@@ -262,10 +262,16 @@ class PhysicsWorld(RigidWorld):
         gait, ends = self._prepared(before, after)
         end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
+        self.rigid.reader.led = frozenset([*led.twists, *self.rigid.people.led.tolist()])
+        bases = kinematic_bases(self.engine_model, self.data, self.rigid.main.robots, led.twists)
         with self.rigid.engine_steps():
             for k in range(self._steps):
                 led.go(k / self._steps)
+                for base in bases:
+                    base.note()
                 self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
+                for base in bases if self.rigid.reader.touching else ():
+                    base.restore(self.rigid.model)
             led.go(1.0)
         for ghost in self.rigid.ghosts.values():
             if self.doors is not None:
@@ -319,9 +325,11 @@ class PhysicsWorld(RigidWorld):
         found = movers(self.rigid.main.robots, self.stage, self._movable, self.data, led)
         near, mass, ahead, firm = people_near(scene, persons, found, NEAR + FAST * self.dt)
         rows = self.people.row[persons[near]]
+        people = self.people.people
         self.skipped_people = self._people_bodies.take(
-            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near], firm[near]
-        )
+            persons[near], people.mass[rows], self.people.radius[rows], CENTER * people.height[rows], mass[near],
+            ahead[near], firm[near],
+        )  # fmt: skip
 
     def _substep(self, share: float, time: float) -> None:
         mj, model, data, reader = engine(), self.rigid.model, self.data, self.rigid.reader
@@ -369,6 +377,9 @@ class PhysicsWorld(RigidWorld):
 
     def _heading_of(self, agent: int) -> float:
         return float(self.scene.heading[0, agent])
+
+    def _limb_mass_of(self, agent: int, limb: str, point: Floats, normal: Floats) -> float:
+        return self.people.limb_mass(agent, limb, point, normal, self._people_bodies.limb_ends(agent))
 
     def _mass_of(self, party: ContactBody) -> float:
         if party.kind == "robot":
