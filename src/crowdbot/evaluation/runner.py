@@ -61,9 +61,8 @@ def evaluate(
         for k, cell in enumerate(plan.cells)
         for begin in range(0, len(plan.seeds), CHUNK)
     ]
-    files = (
-        [] if folder is None else [folder / f"{code_digest(job.xml, job.folder, str(job.seeds), str(job.families))}.json" for job in jobs]
-    )
+    keys = [] if folder is None else [_key(job) for job in jobs]
+    files = [] if folder is None else [folder / f"{key}.json" for key in keys]
     rows: dict[int, list[RunRow]] = {}
     for number, found in run_saved_jobs(run_job, jobs, files, write_rows, read_rows, workers, cluster):
         rows[number] = found
@@ -81,3 +80,8 @@ def evaluate(
         for k, cell in enumerate(plan.cells)
     )
     return EvaluationResult(cells, provenance())
+
+
+def _key(job: RunJob) -> str:
+    """Return a name for the result of a job, which changes with everything that the result depends on."""
+    return code_digest(job.xml, job.folder, str(job.seeds), str(job.families))

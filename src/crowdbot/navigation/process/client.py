@@ -15,7 +15,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
 
-import crowdbot
 import crowdbot.navigation
 from crowdbot.core import find_class, from_attributes
 from crowdbot.navigation.navigator import Navigator
@@ -66,7 +65,7 @@ def _system_folders() -> list[Path]:
     """Return the folders that Python and its libraries are loaded from."""
     names = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom", "/proc/self")
     python = [Path(path) for path in (sys.prefix, sys.base_prefix, *sysconfig.get_paths().values())]
-    return [*map(Path, names), *python, Path(crowdbot.__file__).parent]
+    return [*map(Path, names), *python, Path(__file__).parents[2]]
 
 
 def run_command(options: argparse.Namespace) -> NoReturn:
