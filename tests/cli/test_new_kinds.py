@@ -28,6 +28,8 @@ FILES = {
     "robot": "puck",
     "stage": "hall.geojson",
     "trial": "meeting.xml",
+    "challenge": "door.toml",
+    "submission": "quiet",
 }
 LAB = "mylab"
 TRIAL = """<?xml version="1.0" encoding="UTF-8"?>
@@ -46,7 +48,7 @@ TRIAL = """<?xml version="1.0" encoding="UTF-8"?>
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with a recording and all nine kinds in the folder ``mylab``."""
+    """Return a folder with a recording and all kinds in the folder ``mylab``."""
     folder = tmp_path_factory.mktemp("lab")
     (folder / LAB).mkdir()
     rows = (f"{10 * k}\t{who}\t{0.5 * k}\t{2 * who}\n" for k in range(21) for who in (1, 2))
@@ -120,6 +122,13 @@ def test_the_printed_command_runs(steps, capsys, kind):
     out, err = capsys.readouterr()
     assert out
     assert "Traceback" not in err
+
+
+def test_the_printed_command_of_a_challenge_runs_its_submission(steps, tmp_path, capsys):
+    words = shlex.split(steps["challenge"].replace("SUBMISSION", f"{LAB}/quiet"))
+    assert words == shlex.split(steps["submission"].replace("CHALLENGE", f"{LAB}/door.toml"))
+    assert main([*words[1:-1], str(tmp_path / "result")]) == 0
+    assert "Quiet in Door, public seeds" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("kind", ["sensor", "robot", "stage"])

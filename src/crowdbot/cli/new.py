@@ -9,13 +9,22 @@ from typing import TYPE_CHECKING
 
 from .output import note
 from .settings import add_settings, settings
-from .templates import CLASSES, FOLLOW_UP, class_files, robot_files, stage_files, trial_test
+from .templates import (
+    CLASSES,
+    FOLLOW_UP,
+    challenge_files,
+    class_files,
+    robot_files,
+    stage_files,
+    submission_files,
+    trial_test,
+)
 from .templates.maker_file import add_robot_options, convert_robot, is_robot_file
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-KINDS = (*CLASSES, "robot", "stage", "trial", "schema")
+KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "schema")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +34,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         metavar="FILE",
         type=Path,
-        help="file to write: .py, .geojson (stage), .xml (trial) or folder (robot); or a robot file to convert",
+        help="file to write: .py, .geojson (stage), .xml (trial), .toml (challenge) or folder (robot, submission);"
+        " or a robot file to convert",
     )
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of the trial")
@@ -107,8 +117,9 @@ def _files(options: argparse.Namespace) -> dict[Path, str]:
         return class_files(options.kind, options.file)
     if options.kind == "robot":
         return robot_files(options.file)
-    if options.kind == "stage":
-        return stage_files(options.file)
+    for kind, make in (("stage", stage_files), ("challenge", challenge_files), ("submission", submission_files)):
+        if options.kind == kind:
+            return make(options.file)
     return trial_test(options.file) if options.kind == "trial" and options.original is None else {}
 
 

@@ -11,7 +11,16 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError
 
-__all__ = ["CLASSES", "FOLLOW_UP", "class_files", "robot_files", "stage_files", "trial_test"]
+__all__ = [
+    "CLASSES",
+    "FOLLOW_UP",
+    "challenge_files",
+    "class_files",
+    "robot_files",
+    "stage_files",
+    "submission_files",
+    "trial_test",
+]
 
 
 class ClassKind(NamedTuple):
@@ -41,6 +50,8 @@ FOLLOW_UP = {
     "robot": '<robot type="{name}" .../> in a trial in the same folder',
     "stage": '<stage area="{name}"/> in a trial in the same folder',
     "trial": "crowdbot run {address}",
+    "challenge": "crowdbot challenge run {address} SUBMISSION --out result",
+    "submission": "crowdbot challenge run CHALLENGE {address} --out result",
 }
 """How each kind is used: by its path, or by its name beside a trial."""
 
@@ -86,6 +97,29 @@ def stage_files(file: Path) -> dict[Path, str]:
     if file.suffix not in (".geojson", ".json"):
         raise InputError(f"{file.name!r} must end in .geojson, since a stage is a walkable area")
     return {file: _fill("stage.txt"), **_named_test("stage.test.txt", file)}
+
+
+def challenge_files(file: Path) -> dict[Path, str]:
+    """Return the text of a challenge and of its contract test."""
+    if file.suffix != ".toml":
+        raise InputError(f"{file.name!r} must end in .toml, since a challenge is a TOML file")
+    return {file: _fill("challenge.txt", title=_title(file.stem)), **_named_test("challenge.test.txt", file)}
+
+
+def submission_files(folder: Path) -> dict[Path, str]:
+    """Return the files of a submission: its description, a navigator and, beside the folder, its contract test."""
+    stem = _identifier(folder.name)
+    (file, code), _ = class_files("navigator", Path(f"{stem}.py")).items()
+    cls = "".join(word[:1].upper() + word[1:] for word in stem.split("_"))
+    return {
+        folder / "submission.toml": _fill("submission.txt", title=_title(folder.name), stem=stem, cls=cls),
+        folder / file: code,
+        **_named_test("submission.test.txt", folder),
+    }
+
+
+def _title(name: str) -> str:
+    return name.replace("-", " ").replace("_", " ").capitalize()
 
 
 def trial_test(file: Path) -> dict[Path, str]:
