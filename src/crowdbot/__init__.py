@@ -16,7 +16,7 @@ _ROOMS = {
     "data": ("Forecast", "Trajectories", "Windows", "load", "save"),
     "models": ("ORCA", "CrowdModel", "CurrentDirection", "SocialForce"),
     "sensors": ("Lidar2D", "Sensor"),
-    "metrics": ("score",),
+    "metrics": ("LogMetric", "score"),
     "calibration": ("Calibrator",),
     "world": ("Robot",),
     "navigation": ("Navigator", "Observation"),
@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from crowdbot.data import Windows as Windows
     from crowdbot.data import load as load
     from crowdbot.data import save as save
+    from crowdbot.metrics import LogMetric as LogMetric
     from crowdbot.metrics import score as score
     from crowdbot.models import ORCA as ORCA
     from crowdbot.models import CrowdModel as CrowdModel

@@ -26,6 +26,7 @@ from crowdbot.simulation import Episode
 from crowdbot.trials import Trial
 from crowdbot.world import BODY_REGION_LIMITS
 
+from .own_metric import is_own_metric, load_metric, metric_name
 from .paired_run import empty_variant, ghost_variant, shifted_variant
 
 __all__ = [
@@ -92,7 +93,7 @@ def episode_metrics(
 
     Args:
         episode: the episode.
-        families: names of families (default: all that need one run).
+        families: names of families, and addresses of own metrics (default: all families that need one run).
         paired: further runs with the same seed, by the names of :func:`paired_variants`.
 
     Raises:
@@ -105,7 +106,7 @@ def episode_metrics(
     """
     names = [*LOG_FAMILIES] if families is None else list(families)
     log = episode_log(episode)
-    found = log_metrics(log, [name for name in names if name not in PAIRED_FAMILIES])
+    found = log_metrics(log, [name for name in names if name not in PAIRED_FAMILIES and not is_own_metric(name)])
     if episode.trial.robots[0].ghost:
         found = {name: value for name, value in found.items() if not TOUCH.search(name)}
     if episode.trial.world == "physics" and "severity" in names:
@@ -116,6 +117,8 @@ def episode_metrics(
         ]
         found |= impact_region_metrics(own, REGIONS, float(episode.trial.robots[0].mass))
     others = paired or {}
+    for address in filter(is_own_metric, names):
+        found[metric_name(address)] = load_metric(address).value(log)
     if "empty" in others:
         found |= empty_scene_ratios(log, episode_log(others["empty"]))
     if "ghost" in others:
@@ -161,7 +164,9 @@ def check_families(names: Sequence[str]) -> None:
     """
     known = [*LOG_FAMILIES, *PAIRED_FAMILIES]
     for name in names:
-        if name not in known:
+        if is_own_metric(name):
+            load_metric(name)
+        elif name not in known:
             raise InputError(f"no family of metrics {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}")
 
 

@@ -38,6 +38,7 @@ CLASSES = {
     "sensor": ClassKind("sensors", "sensors", "sensors.Sensor", "sensors.check_sensor"),
     "goal": ClassKind("models", "models.goals", "models.Goal", "models.check_goal"),
     "cost": ClassKind("calibration", "calibration", "calibration.Cost", "calibration.check_cost"),
+    "metric": ClassKind("metrics", "metrics", "metrics.LogMetric", "metrics.check_log_metric"),
     "navigator": ClassKind("navigation", "navigation", "navigation.Navigator", "navigation.check_navigator"),
 }
 FOLLOW_UP = {
@@ -47,6 +48,7 @@ FOLLOW_UP = {
     "goal": "crowdbot predict --data DATA --predictor simulated --goal {address}",
     "cost": "crowdbot calibrate --data DATA --cost {address}",
     "navigator": "crowdbot run frontal --set robot/navigator/type={address}",
+    "metric": "crowdbot evaluate frontal --seeds 0:2 --metrics success-rate,{address}",
     "robot": '<robot type="{name}" .../> in a trial in the same folder',
     "stage": '<stage area="{name}"/> in a trial in the same folder',
     "trial": "crowdbot run {address}",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .body_region import BodyRegion
 from .crowd_effect import crowd_effect, empty_scene_ratios
 from .group_intrusion import detect_groups
+from .log_metric import LogMetric, check_log_metric
 from .log_metrics import LOG_FAMILIES, log_metrics
 from .metric import Metric, metric_families, metric_page, metric_table
 from .robot_log import RobotLog
@@ -13,8 +14,10 @@ from .severity import head_injury_criterion, impact_region_metrics
 __all__ = [
     "LOG_FAMILIES",
     "BodyRegion",
+    "LogMetric",
     "Metric",
     "RobotLog",
+    "check_log_metric",
     "crowd_effect",
     "detect_groups",
     "empty_scene_ratios",
