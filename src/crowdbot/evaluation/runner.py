@@ -76,6 +76,8 @@ def evaluate(
             cell.hash,
             cell.protocol,
             tuple(row for number, job in enumerate(jobs) if job.cell == k for row in rows[number]),
+            cell.factors,
+            cell.base,
         )
         for k, cell in enumerate(plan.cells)
     )
