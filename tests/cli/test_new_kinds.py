@@ -28,6 +28,7 @@ FILES = {
     "robot": "puck",
     "stage": "hall.geojson",
     "trial": "meeting.xml",
+    "metric": "time_near.py",
     "challenge": "door.toml",
     "submission": "quiet",
 }
@@ -114,7 +115,7 @@ def test_the_contract_test_of_a_fresh_file_runs_by_the_printed_command(tmp_path)
     assert "1 passed" in done.stdout
 
 
-@pytest.mark.parametrize("kind", ["model", "predictor", "goal", "cost", "navigator", "trial"])
+@pytest.mark.parametrize("kind", ["model", "predictor", "goal", "cost", "navigator", "metric", "trial"])
 def test_the_printed_command_runs(steps, capsys, kind):
     program, *words = shlex.split(steps[kind].replace("DATA", "walk.txt"))
     assert program == "crowdbot"

@@ -2,15 +2,20 @@
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
+from .factor_effects import FactorEffect, factor_effects
+from .factor_sweep import FactorSweep, parse_factors, sweep_trials
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
+from .reality import RealPlacement, place_reality, reality_svg
+from .recorded_trial import recorded_trial
 from .report import write_report
 from .requirement import Requirement, RequirementVerdict, parse_requirement
 from .result import CellResult, EvaluationResult, load_evaluation
+from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .statistic import Statistic, parse_statistic
 from .worst_run import WorstRun, worst_runs
@@ -22,10 +27,14 @@ __all__ = [
     "EvaluationCell",
     "EvaluationPlan",
     "EvaluationResult",
+    "FactorEffect",
+    "FactorSweep",
     "Method",
     "PairedComparison",
+    "RealPlacement",
     "Requirement",
     "RequirementVerdict",
+    "RobotRecording",
     "RunRow",
     "Statistic",
     "WorstRun",
@@ -34,18 +43,25 @@ __all__ = [
     "episode_log",
     "episode_metrics",
     "evaluate",
+    "factor_effects",
     "families_of",
     "junit_xml",
     "load_evaluation",
+    "load_robot_recording",
     "own_method",
     "paired_comparison",
     "pareto_front",
+    "parse_factors",
     "parse_methods",
     "parse_requirement",
     "parse_seeds",
     "parse_statistic",
+    "place_reality",
+    "reality_svg",
+    "recorded_trial",
     "row_of",
     "row_values",
+    "sweep_trials",
     "wilson_interval",
     "worst_runs",
     "write_report",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import crowdbot.metrics
-from crowdbot.core import InputError, find_class, kebab_case, plugin_address
+from crowdbot.core import InputError, find_class, kebab_case
 from crowdbot.metrics import LogMetric, metric_table
 
-__all__ = ["is_own_metric", "load_metric", "metric_name"]
+__all__ = ["is_own_metric", "load_metric", "metric_name", "metric_source"]
+
+ADDRESS = re.compile(r"[^:]*(?:\.py|/):[A-Za-z_]\w*")
 
 
 def is_own_metric(name: str) -> bool:
@@ -17,7 +20,7 @@ def is_own_metric(name: str) -> bool:
     >>> is_own_metric("mine.py:TimeNear"), is_own_metric("p95:time-to-goal")
     (True, False)
     """
-    return plugin_address(name) is not None and "." in name.rpartition(":")[0]
+    return bool(ADDRESS.fullmatch(name))
 
 
 def metric_name(address: str) -> str:
@@ -43,3 +46,9 @@ def load_metric(address: str) -> LogMetric:
     except TypeError as error:
         raise InputError(f"metric {address!r} needs defaults for its parameters: {error}") from None
     return made
+
+
+def metric_source(address: str) -> str:
+    """Return the text of the file of a metric, which results depend on; empty for a folder."""
+    file = Path(address.rpartition(":")[0])
+    return file.read_text(encoding="utf-8") if file.is_file() else ""

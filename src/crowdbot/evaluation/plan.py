@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import itertools
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,12 +35,16 @@ class EvaluationCell:
         method: name of the navigator.
         robot: name of the robot type; empty as in the trial.
         variant: the trial with this navigator and robot.
+        factors: levels of the factors of a sweep by name; empty without one.
+        base: name of the trial without the levels.
     """
 
     trial: str
     method: str
     robot: str
     variant: Trial
+    factors: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    base: str = ""
 
     @property
     def xml(self) -> str:
@@ -85,8 +90,9 @@ class EvaluationPlan:
         seeds: seeds of the runs, the same for all navigators.
         trust: whether code from outside the folders of the trials may be loaded.
         families: families of metrics to compute from the logs, see :func:`crowdbot.metrics.metric_families` (default:
-        all
-            that need no paired run).
+            all that need no paired run).
+        factors: name of the trial without levels, and levels of factors, by name of a trial; trials with sweeps in
+            their files have them without this.
 
     Raises:
         InputError: a list is empty, a name or a seed is there twice, there are too many cells, or a family is unknown.
@@ -105,6 +111,7 @@ class EvaluationPlan:
     seeds: Sequence[int] = range(20)
     trust: bool = True
     families: tuple[str, ...] = tuple(LOG_FAMILIES)
+    factors: Mapping[str, tuple[str, Mapping[str, str]]] = dataclasses.field(default_factory=dict)
     cells: tuple[EvaluationCell, ...] = dataclasses.field(init=False)
 
     def __post_init__(self) -> None:
@@ -117,7 +124,16 @@ class EvaluationPlan:
             again = [label for label, count in Counter(labels).items() if count > 1]
             if again:
                 raise InputError(f"{name}: {again[0]} is there twice")
-        trials = [variant for trial in self.trials for variant in expand_sweeps(trial, trust=self.trust)]
+        levels = dict(self.factors)
+        trials = []
+        for trial in self.trials:
+            variants = expand_sweeps(trial, trust=self.trust)
+            trials += variants
+            if trial.sweeps:
+                paths = [sweep.path for sweep in trial.sweeps]
+                rows = itertools.product(*(sweep.each for sweep in trial.sweeps))
+                for variant, row in zip(variants, rows, strict=True):
+                    levels[variant.name] = (trial.name, dict(zip(paths, row, strict=True)))
         names = [trial.name for trial in trials]
         for name in names:
             if names.count(name) > 1:
@@ -126,7 +142,14 @@ class EvaluationPlan:
         if count > MOST_CELLS:
             raise InputError(f"the evaluation has {count} cells, at most {MOST_CELLS} are allowed")
         cells = tuple(
-            EvaluationCell(trial.name, method.name, robot, method.put_into(trial, robot, self.trust))
+            EvaluationCell(
+                trial.name,
+                method.name,
+                robot,
+                method.put_into(trial, robot, self.trust),
+                levels.get(trial.name, ("", {}))[1],
+                levels.get(trial.name, (trial.name, {}))[0],
+            )
             for trial in trials
             for robot in self.robots
             for method in self.methods

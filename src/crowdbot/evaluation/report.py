@@ -13,6 +13,8 @@ from string import Template
 from crowdbot.core import explain_write_errors
 
 from .comparison import PairedComparison
+from .effect_plots import effects_svg
+from .factor_effects import FactorEffect, factor_effects
 from .pareto import pareto_svg
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
@@ -55,7 +57,7 @@ def write_report(
         protocol=_protocol(result.cells),
         requirements=_requirements(result, requirements),
         comparisons=_comparisons(comparisons),
-        pareto=pareto_svg(result.cells),
+        pareto=pareto_svg(result.cells) + _effects(result, statistics),
         failures=_failures(result),
         runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
         provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),
@@ -135,6 +137,26 @@ def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
     table = _table(head, rows)
     about = "<p>Runs with the same seed are compared in pairs; p-values are corrected for all comparisons (Holm).</p>"
     return f"<h2>Comparisons</h2>{about}{table}" if table else ""
+
+
+def _effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
+    """Return tables and pictures of the effects of factors; empty without factors."""
+    if not any(cell.factors for cell in result.cells):
+        return ""
+    parts = [
+        "<h2>Effects of factors</h2><p>The effect of a level is its mean minus the mean of all levels; that of a"
+        " pair of levels is what is left after both. Intervals: bootstrap over seeds, 95 %.</p>"
+    ]
+    for metric in dict.fromkeys(one.metric for one in statistics):
+        groups: dict[tuple[str, str, str], list[FactorEffect]] = {}
+        for one in factor_effects(result, metric):
+            groups.setdefault((one.trial, one.method, one.robot), []).append(one)
+        for names, rows in groups.items():
+            title = html.escape(f"{metric.replace('_', ' ')}: {', '.join(filter(None, names))}")
+            cells = [(" and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)) for one in rows]
+            parts.append(f"<h3>{title}</h3>{effects_svg(rows)}")
+            parts.append(_table(["factor", "level", "mean", "effect"], cells))
+    return "".join(parts)
 
 
 def _p_value(value: float) -> str:

@@ -17,7 +17,7 @@ from .statistic import Statistic, parse_statistic
 
 __all__ = ["Requirement", "RequirementVerdict", "parse_requirement"]
 
-TEXT = re.compile(r"\s*([a-z0-9:_-]+)\s*(<=|>=|<|>)\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(?:@\s*([0-9.]+)\s*%)?\s*")
+TEXT = re.compile(r"\s*([^<>=@\s]+)\s*(<=|>=|<|>)\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(?:@\s*([0-9.]+)\s*%)?\s*")
 
 
 class RequirementVerdict(NamedTuple):

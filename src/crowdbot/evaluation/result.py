@@ -37,6 +37,8 @@ class CellResult:
         hash: SHA-256 of the text of the trial with this navigator.
         protocol: what a reader must know to compare the numbers.
         runs: one row for each seed, in the order of the plan.
+        factors: levels of the factors of a sweep by name; empty without one.
+        base: name of the trial without the levels.
     """
 
     trial: str
@@ -45,6 +47,8 @@ class CellResult:
     hash: str
     protocol: Mapping[str, Any]
     runs: tuple[RunRow, ...]
+    factors: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    base: str = ""
 
     @property
     def valid(self) -> tuple[RunRow, ...]:
@@ -121,6 +125,7 @@ class EvaluationResult:
                 "robot": cell.robot,
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
+                **({"factors": dict(cell.factors), "base": cell.base} if cell.factors else {}),
                 "runs": [row_values(row) for row in cell.runs],
             }
             for cell in self.cells
@@ -171,7 +176,9 @@ def provenance() -> dict[str, Any]:
 
 def _cell(values: Mapping[str, Any]) -> CellResult:
     names = (str(values["trial"]), str(values["navigator"]), str(values["robot"]), str(values["hash"]))
-    return CellResult(*names, dict(values["protocol"]), tuple(map(row_of, values["runs"])))
+    factors = {str(name): str(level) for name, level in dict(values.get("factors", {})).items()}
+    runs = tuple(map(row_of, values["runs"]))
+    return CellResult(*names, dict(values["protocol"]), runs, factors, str(values.get("base", values["trial"])))
 
 
 def _pairs(cells: Sequence[CellResult]) -> Iterable[tuple[CellResult, CellResult]]:

@@ -9,6 +9,7 @@ from crowdbot.core import run_saved_jobs
 from crowdbot.trials import code_digest
 
 from .job import RunJob, RunRow, read_rows, run_job, write_rows
+from .own_metric import is_own_metric, metric_source
 from .plan import EvaluationPlan
 from .result import CellResult, EvaluationResult, provenance
 
@@ -76,6 +77,8 @@ def evaluate(
             cell.hash,
             cell.protocol,
             tuple(row for number, job in enumerate(jobs) if job.cell == k for row in rows[number]),
+            cell.factors,
+            cell.base,
         )
         for k, cell in enumerate(plan.cells)
     )
@@ -84,4 +87,5 @@ def evaluate(
 
 def _key(job: RunJob) -> str:
     """Return a name for the result of a job, which changes with everything that the result depends on."""
-    return code_digest(job.xml, job.folder, str(job.seeds), str(job.families))
+    own = [metric_source(name) for name in job.families if is_own_metric(name)]
+    return code_digest(job.xml, job.folder, str(job.seeds), str(job.families), *own)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, did_you_mean
 
 from .intervals import Estimate, bootstrap_interval, wilson_interval
+from .own_metric import metric_name
 
 __all__ = ["RATES", "Statistic", "parse_statistic"]
 
@@ -24,6 +25,8 @@ RATES = {
 }
 """Names of the shares of runs, with their metric."""
 QUANTILE = re.compile(r"p(\d{1,2})")
+OWN = re.compile(r"(?P<kind>[a-z]\w*:)?(?P<address>[^:]*(?:\.py|/):[A-Za-z_]\w*)")
+"""A metric of users, after a kind."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +37,13 @@ class Statistic:
         name: as given, such as ``collision-rate``.
         metric: name of the metric, such as ``collision``.
         kind: ``rate``, ``mean``, ``median``, ``max``, ``min``, or ``p5`` to ``p99``.
+        address: class of a metric of users, such as ``mine.py:TimeNear``; empty for built-in metrics.
     """
 
     name: str
     metric: str
     kind: str
+    address: str = ""
 
     def estimate(self, values: Floats, confidence: float = 0.95) -> Estimate:
         """Return the statistic of one value for each run, with its interval.
@@ -61,7 +66,8 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
 
     Args:
         name: ``success-rate``, ``collision-rate``, ``timeout-rate`` or ``error-rate``; a metric, of which the mean is
-            taken; or a metric after ``median:``, ``min:``, ``max:`` or a percentile such as ``p95:``.
+            taken; or a metric after ``median:``, ``min:``, ``max:`` or a percentile such as ``p95:``. A metric of
+            users has its address: ``mine.py:TimeNear``.
         metrics: known metrics, to refuse others.
 
     Raises:
@@ -70,6 +76,10 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     >>> parse_statistic("collision-rate").metric, parse_statistic("p95:time-to-goal").kind
     ('collision', 'p95')
     """
+    if own := OWN.fullmatch(name):
+        word, address = metric_name(own["address"]), own["address"]
+        found = parse_statistic(f"{own['kind'] or ''}{word}", metrics)
+        return Statistic(f"{own['kind'] or ''}{word.replace('_', '-')}", word, found.kind, address)
     kind, colon, word = name.rpartition(":")
     if not colon and word in RATES:
         return Statistic(name, RATES[word], "rate")

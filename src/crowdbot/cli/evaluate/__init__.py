@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, progress
-from crowdbot.cli.settings import add_settings, add_world, settings
+from crowdbot.cli.settings import add_settings, add_world
 
-from .tables import print_comparisons, print_result, print_runs, print_verdicts, result_values
+from .plan_options import add_plan_options, plan_of, statistic_names
+from .recordings import add_recording_options, present_recordings
+from .tables import print_comparisons, print_effects, print_result, print_runs, print_verdicts, result_values
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
@@ -20,7 +22,7 @@ STATISTICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trials", nargs="+", metavar="TRIAL", help="trial files or built-in names")
+    parser.add_argument("trials", nargs="*", metavar="TRIAL", help="trial files or built-in names")
     parser.add_argument(
         "--navigators",
         default="own",
@@ -45,6 +47,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="number of processes")
     parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, or auto")
     parser.add_argument("--trust", action="store_true", help="allow code outside the folders of the trials")
+    add_plan_options(parser)
+    add_recording_options(parser)
     add_world(parser)
     add_settings(parser)
     add_json(parser)
@@ -53,19 +57,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the evaluation; return 1 if a requirement does not hold."""
     from crowdbot.core import InputError
-    from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_requirement, parse_seeds
-    from crowdbot.trials import load_trial
+    from crowdbot.evaluation import evaluate, parse_requirement
 
     if options.worst < 0:
         raise InputError(f"--worst {options.worst} must be at least 0")
     requirements = [parse_requirement(text) for text in options.require]
-    values = settings(options)
-    plan = EvaluationPlan(
-        [load_trial(name, trust=options.trust, **values) for name in options.trials],
-        parse_methods(options.navigators),
-        [name.strip() for name in options.robots.split(",")],
-        parse_seeds(options.seeds),
-    )
+    if options.logs or options.real:
+        return present_recordings(options)
+    if not options.trials:
+        raise InputError("evaluate needs a trial, or recordings with --logs or --real")
+    names = statistic_names(options, STATISTICS)
+    plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
     try:
         with progress(options.json) as report:
@@ -80,7 +82,7 @@ def main(options: argparse.Namespace) -> int:
         if parts is not None:
             note(f"crowdbot: what is done is stored in {options.out}; the same command continues")
         raise
-    return _present(options, plan, result, requirements, time.perf_counter() - begin)
+    return _present(options, plan, result, requirements, names, time.perf_counter() - begin)
 
 
 def _present(
@@ -88,11 +90,11 @@ def _present(
     plan: EvaluationPlan,
     result: EvaluationResult,
     requirements: list[Requirement],
+    names: list[str],
     wall: float,
 ) -> int:
     from crowdbot.evaluation import parse_requirement, parse_statistic
 
-    names = [*STATISTICS] if options.metrics is None else [name.strip() for name in options.metrics.split(",")]
     if options.metrics is None and result.failures:
         names = [*names, "error-rate"]
     statistics = [parse_statistic(name, result.metrics) for name in names]
@@ -109,6 +111,7 @@ def _present(
         print_json(result_values(result, statistics, comparisons, verdicts))
     else:
         print_result(result, statistics, wall)
+        print_effects(result, statistics)
         print_comparisons(result, comparisons)
         print_verdicts(verdicts)
         print_runs(result)

@@ -57,6 +57,23 @@ def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComp
         print_table(f"comparison with {first}", head, rows, caption, words=3)
 
 
+def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> None:
+    """Print the main effects of the factors of a sweep, and the interactions whose interval is clear of 0."""
+    from crowdbot.evaluation import factor_effects
+
+    if not any(cell.factors for cell in result.cells):
+        return
+    caption = "mean of the level minus mean of all levels; pairs: what is left after both; only pairs clear of 0"
+    for metric in dict.fromkeys(one.metric for one in statistics):
+        rows = [
+            [one.trial, one.method, " and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)]
+            for one in factor_effects(result, metric)
+            if len(one.factors) == 1 or one.effect.low > 0.0 or one.effect.high < 0.0
+        ]
+        head = ("trial", "navigator", "factor", "level", "mean", "effect")
+        print_table(f"effects on {metric.replace('_', ' ')}", head, rows, caption, words=4)
+
+
 def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:
     """Print whether the requirements hold."""
     for cell, requirement, verdict in verdicts:
@@ -97,6 +114,7 @@ def result_values(
             }
             for cell in result.cells
         ],
+        **({"effects": effect_values(result, statistics)} if any(cell.factors for cell in result.cells) else {}),
         "comparisons": [one._asdict() | {"difference": one.difference._asdict()} for one in comparisons],
         "requirements": [
             {**_names(cell), "requirement": requirement.text, "holds": verdict.holds, "sentence": verdict.sentence}
@@ -105,6 +123,17 @@ def result_values(
         "failed": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.failures],
         "invalid": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.invalid],
     }
+
+
+def effect_values(result: EvaluationResult, statistics: Sequence[Statistic]) -> list[dict[str, Any]]:
+    """Return the effects of factors on all metrics of the statistics."""
+    from crowdbot.evaluation import factor_effects
+
+    return [
+        one._asdict() | {"mean": one.mean._asdict(), "effect": one.effect._asdict()}
+        for metric in dict.fromkeys(one.metric for one in statistics)
+        for one in factor_effects(result, metric)
+    ]
 
 
 def _names(cell: CellResult) -> dict[str, str]:
