@@ -46,7 +46,7 @@ def robots(folder: Path) -> None:
         robot = Robot.load(name)
         place = [[0.0, 0.0], [-0.3, 1.1]]
         scene = Scene.of(place, goal=place, heading=[0.0, 0.0], external=[True, False], radius=[robot.radius, 0.25])
-        world = PhysicsWorld(scene, ORCA(), {0: robot}, 0.1)
+        world = PhysicsWorld(scene, ORCA(), {0: robot}, 0.1, riders=[0] if name.endswith("rider") else [])
         world.step({0: Twist()})
         camera = SceneCamera((2.6, -1.6, 1.5), (0.0, 0.35, 0.75), 560, 480, detail=0, shadows=True, view=0.85)
         axes.imshow(world.render(camera).rgb)

@@ -41,12 +41,12 @@ def striking_mass(start: Floats, end: Floats, mass: Floats, limb: str, share: fl
     >>> from crowdbot.humans import Gait, People
     >>> people = People.of(["man-36"])
     >>> gait = Gait(people, 0)
-    >>> state = gait.start(np.zeros((1, 2)), np.zeros(1), np.zeros((1, 2)), ["stand"])
+    >>> state = gait.start(np.zeros((1, 2)), np.zeros(1), np.zeros((1, 2)))
     >>> found = people.limbs(gait.posture(state))
     >>> one = found.start[0], found.end[0], people.limb_mass[0]
     >>> ahead = np.array([1.0, 0.0, 0.0])
     >>> [round(striking_mass(*one, name, 0.5, ahead), 1) for name in ("foot_l", "thigh_l", "hand_l")]
-    [2.0, 9.8, 0.8]
+    [1.6, 16.2, 0.5]
     """
     chain = limb_chain(limb)
     if not chain:
