@@ -92,7 +92,9 @@ def compare_traces(drive: Drive, manoeuvre: Manoeuvre, physics: DriveTrace, plan
     """
     held = manoeuvre.held
     over, steady = (
-        _speed_errors(drive, physics.twist[:held], plane.twist[:held]) if manoeuvre.name == "grid" else (0, 0)
+        _speed_errors(drive, physics.twist[:held], plane.twist[:held], manoeuvre.commands[0].left != 0.0)
+        if manoeuvre.name == "grid"
+        else (0, 0)
     )
     push, spin = _accelerations(drive, physics, plane)
     away = np.hypot(*(physics.position - plane.position).T)
@@ -120,14 +122,14 @@ def _limits(drive: Drive) -> Floats:
     return np.array([top, top, most], dtype=np.float64)
 
 
-def _speed_errors(drive: Drive, moved: Floats, planar: Floats) -> tuple[float, float]:
+def _speed_errors(drive: Drive, moved: Floats, planar: Floats, sideways: bool) -> tuple[float, float]:
     """Return the overshoot and the steady error of forward speed and turn rate, and of left speed if it is asked."""
     goal = planar[-1]
     scale = np.maximum(np.abs(goal), SMALL * _limits(drive))
     sign = np.where(goal < 0.0, -1.0, 1.0)
     excess = np.where(goal != 0.0, (moved * sign).max(axis=0) - np.abs(goal), np.abs(moved).max(axis=0))
     mean = moved[-round(STEADY / SAMPLE) :].mean(axis=0)
-    asked = [0, 2] if goal[1] == 0.0 else [0, 1, 2]
+    asked = [0, 1, 2] if sideways else [0, 2]
     over, steady = np.maximum(excess, 0.0) / scale, np.abs(mean - goal) / scale
     return float(over[asked].max()), float(steady[asked].max())
 
