@@ -23,6 +23,8 @@ STEADY = 1.0
 """Last part [s] of a held speed, over which the steady error is measured."""
 SMALL = 0.1
 """Errors of speeds are shares of the speed asked for, or of this share of the limit if that is larger."""
+NOISE = 0.05
+"""Accelerations [m/s2], [rad/s2] are compared with at least this: a car that drives straight turns by rounding only."""
 FALLEN = math.radians(30.0)
 """A robot that leans more has fallen [rad]."""
 
@@ -139,7 +141,7 @@ def _accelerations(drive: Drive, physics: DriveTrace, plane: DriveTrace) -> tupl
     found = []
     for name, part in (("max_acceleration", slice(0, 2)), ("max_turn_acceleration", slice(2, 3))):
         most = float(getattr(drive, name, 0.0)) or _slope(plane, part)
-        found.append(_slope(physics, part) / max(most, 1e-9))
+        found.append(_slope(physics, part) / max(most, NOISE))
     return found[0], found[1]
 
 
