@@ -25,7 +25,7 @@ FREE = 0.01
 LEAST = 0.001
 """Smallest share of the friction of the engine; it needs one above 0."""
 SETTLE = 0.1
-"""Time constant [s] of the loads of sliding tyres: pneumatic tyres and a yielding frame level out hops between steps."""
+"""Time constant [s] of the loads of sliding tyres: pneumatic tyres and a yielding frame level out hops."""
 FLAT = 0.7
 """Smallest vertical part of a contact normal of a wheel on the ground."""
 

@@ -22,7 +22,8 @@ MOST = 2.5
 """Maximum of the estimated factor, and of its inverse."""
 
 SlipState = tuple[float, float, float, float]
-"""Factor of the difference of the sides, offset [m] of the centre of turning, and forward speed [m/s] and turn rate [rad/s] expected by now."""
+"""Factor of the difference of the sides, offset [m] of the centre of turning, and forward speed [m/s] and turn rate
+[rad/s] expected by now."""
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ class SkidSteerDrive(WheeledDrive):
         return np.array([[1.0, -half, 0.0], [1.0, half, 0.0]]) / self.wheel_radius
 
     def slide(self, before: Twists, after: Twists, dt: float) -> Floats:
-        """Return the speeds ``[E, 3]`` [m/s] of the left and the right rims, and of the middle of the wheels to the left.
+        """Return the speeds ``[E, 3]`` [m/s] of the left and right rims, and of the middle of the wheels to the left.
 
         They are those at which the friction forces of four tyres give the base its acceleration: Coulomb's law against
         the slip of each tyre, with its load. If the forces do not suffice, the base has no lateral speed, and the rims
