@@ -25,10 +25,12 @@ TEXT = """<trial name="d" duration="0.2" world="physics">
 def test_every_part_of_the_ground_is_drawn() -> None:
     stage = Stage(
         ground=(
-            Ramp(x=2, y=0, length=4, width=2, height=0.3), Stairs(x=8, y=0, steps=3), Platform(x=0, y=5, length=2, width=1),
+            Ramp(x=2, y=0, length=4, width=2, height=0.3),
+            Stairs(x=8, y=0, steps=3),
+            Platform(x=0, y=5, length=2, width=1),
             Threshold(x=0, y=0, bevel=0.02),
         )
-    )  # fmt: skip
+    )
     lines = floor_plan(stage)
     # an outline for each part, and an arrow for the ramp and both bevels
     assert len(lines) == (1 + 3 + 1 + 3) + 3
