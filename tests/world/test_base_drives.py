@@ -55,12 +55,13 @@ def test_all_limits_hold_on_the_way(drive, commands, dt):
     pose, twist = ORIGIN, STILL
     for command in commands:
         pose, after = drive.step(pose, twist, Twist(*command), dt)
-        assert math.hypot(after.forward[0], after.left[0]) <= 0.9 + 1e-9
+        side, before = (after.left[0], twist.left[0]) if drive.sideways else (0.0, 0.0)  # else it slides
+        assert math.hypot(after.forward[0], side) <= 0.9 + 1e-9
         assert abs(after.turn[0]) <= 1.7 + 1e-9
         assert np.abs(drive.wheel_speeds(after.at(0))).max() <= 9.0 + 1e-6
-        assert math.hypot(after.forward[0] - twist.forward[0], after.left[0] - twist.left[0]) <= 0.6 * dt + 1e-9
+        assert math.hypot(after.forward[0] - twist.forward[0], side - before) <= 0.6 * dt + 1e-9
         assert abs(after.turn[0] - twist.turn[0]) <= 2.5 * dt + 1e-9
-        assert drive.sideways or after.left[0] == 0.0
+        assert drive.sideways or abs(after.left[0]) < 0.5 * 1.7 + 0.9
         twist = after
 
 
@@ -68,7 +69,34 @@ def test_all_limits_hold_on_the_way(drive, commands, dt):
 def test_a_command_inside_the_limits_is_reached_exactly(drive):
     command = Twist(0.3, 0.4, 0.1 if drive.sideways else 0.0)
     _, twist = driven(drive, command, 0.1, 40)
-    assert twist.at(0) == command
+    found = twist.at(0)
+    assert (found.forward, found.turn) == (command.forward, command.turn)
+    assert found.left == command.left if drive.sideways else -0.02 < found.left < 0.0  # slides outwards
+
+
+def test_a_skid_steer_base_slides_by_the_balance_of_its_forces():
+    drive = SkidSteerDrive(track=0.57, wheelbase=0.51, max_turn_rate=2.0)
+    sides = drive.slide(Twists.of(Twist(0.0, 1.0), 1), Twists.of(Twist(0.0, 1.0), 1), 0.05)[0]
+    assert sides == pytest.approx([-0.5 * 0.57 * drive.slip_factor, 0.5 * 0.57 * drive.slip_factor, 0.0], rel=0.02)
+    slow, fast = (driven(drive, Twist(v, 1.5), 0.05, 80)[1].left[0] for v in (0.4, 0.9))
+    assert fast < slow < 0.0
+    mirror = driven(drive, Twist(0.9, -1.5), 0.05, 80)[1].left[0]
+    assert mirror == pytest.approx(-fast, abs=1e-9)
+
+
+def test_a_load_beside_the_middle_moves_the_centre_of_turning():
+    drive = SkidSteerDrive(track=0.57, wheelbase=0.51, center_y=-0.07)
+    turning = Twists.of(Twist(0.0, 1.0), 1)
+    left, right, _ = drive.slide(turning, turning, 0.05)[0]
+    assert right + left < -0.1  # the lighter left wheels slide more
+    assert right - left > 0.57 * drive.slip_factor
+
+
+def test_speed_and_turn_rate_are_limited_together_by_friction():
+    drive = SkidSteerDrive(max_speed=3.0, max_turn_rate=4.0, friction=0.5, max_wheel_speed=500.0)
+    twist = driven(drive, Twist(3.0, 4.0), 0.05, 200)[1].at(0)
+    assert twist.forward * twist.turn == pytest.approx(0.4 * 0.5 * 9.81)
+    assert twist.turn / twist.forward == pytest.approx(4.0 / 3.0)
 
 
 @pytest.mark.parametrize("drive", WHEELED)
@@ -167,6 +195,7 @@ def test_a_batch_equals_each_environment(drive):
     ("make", "message"),
     [
         (lambda: SkidSteerDrive(slip=0.5), "SkidSteerDrive: slip = 0.5 must be finite and at least 1"),
+        (lambda: SkidSteerDrive(center_y=0.3), "SkidSteerDrive: center_y = 0.3 m must be at least -0.2 m and at most"),
         (lambda: SkidSteerDrive(track=0.0), "SkidSteerDrive: track = 0.0 m must be finite and above 0"),
         (lambda: MecanumDrive(wheel_radius=math.nan), "MecanumDrive: wheel_radius = nan m"),
         (lambda: MecanumDrive(max_wheel_speed=-1.0), "MecanumDrive: max_wheel_speed = -1.0 rad/s"),

@@ -72,6 +72,14 @@ class Trajectories(TrackTable):
 
     def _repr_svg_(self) -> str:
         """Return a drawing for notebooks: walls, the tracks of people and of robots."""
+        return self.drawing()
+
+    def drawing(self, beneath: Iterable[Path2D] = ()) -> str:
+        """Return an SVG drawing: walls, the tracks of people and of robots, above other lines.
+
+        >>> Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5).drawing().startswith("<svg")
+        True
+        """
         closed = [np.concatenate([ring, ring[:1]]) for ring in self.walls]
         walls = [Path2D(np.asarray(ring, dtype=np.float64), WALL_COLOR, 1.5) for ring in closed]
         tracks = [(int(who), self.position[self.id == who]) for who in self.ids]
@@ -80,7 +88,7 @@ class Trajectories(TrackTable):
         ends = [
             Disc(float(way[-1, 0]), float(way[-1, 1]), size, p.color) for (_, way), p in zip(tracks, paths, strict=True)
         ]
-        return draw_svg([*walls, *paths], ends, repr(self)[1:-1])
+        return draw_svg([*beneath, *walls, *paths], ends, repr(self)[1:-1])
 
     def track(self, id: int) -> Trajectories:
         """Return the track of one person or robot.

@@ -15,7 +15,7 @@ from crowdbot.core import FreeClock, InputError, TickSchedule
 from crowdbot.data import Trajectories
 from crowdbot.metrics import AgentLog, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading, Scan, planar_pose
-from crowdbot.trials import Trial
+from crowdbot.trials import Trial, floor_plan
 from crowdbot.world import BodyContactEvent, ContactForce
 
 from .failure import RunFailure
@@ -153,7 +153,7 @@ class Episode:
     def _repr_svg_(self) -> str:
         """Return a drawing of walls and paths for notebooks."""
         name = f"{self.trial.name}, seed {self.seed}, {self.outcome}"
-        return tracks_of(self, name, self.trial.recording.period)._repr_svg_()
+        return tracks_of(self, name, self.trial.recording.period).drawing(floor_plan(self.trial.stage))
 
     @property
     def schedule(self) -> TickSchedule:

@@ -32,6 +32,7 @@ from crowdbot.world import put_environments, select_environments, step_environme
 
 from .failure import RunFailure
 from .phases.decision import let_decide
+from .phases.drawing import simulation_svg
 from .phases.evaluation import note_arrivals, robot_contacts
 from .phases.sensing import RobotReadings, read_sensors
 from .robot_control import RobotControl
@@ -226,6 +227,10 @@ class Simulation:
             tuple(robot.robot for robot in self.robots),
             tuple(world.ids[e, [robot.agent for robot in self.robots]].tolist()),
         )
+
+    def _repr_svg_(self) -> str:
+        """Return a drawing of the first environment for notebooks, with doors at their current angle."""
+        return simulation_svg(self)
 
     def is_eventful(self) -> Bools:
         """Return ``[E]`` whether there is something to record although no scene is due."""

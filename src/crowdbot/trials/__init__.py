@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .files.trial_files import resolve_file
     from .ground.door import Door
     from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
+    from .ground.plan import floor_plan
     from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
     from .importers.hunavsim import import_hunavsim
@@ -80,6 +81,7 @@ __getattr__, __dir__ = lazy_exports(
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
         "ground.door": ["Door"],
+        "ground.plan": ["floor_plan"],
         "ground.elements": ["UNEVEN", "Platform", "Ramp", "Stairs", "Threshold"],
         "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
@@ -209,6 +211,7 @@ __all__ = [
     "element_word",
     "expand_spawners",
     "expand_sweeps",
+    "floor_plan",
     "has_kind",
     "import_dxf",
     "import_hunavsim",

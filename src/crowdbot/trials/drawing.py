@@ -8,13 +8,15 @@ import numpy as np
 
 from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
 
+from .ground.plan import floor_plan
+
 __all__ = ["trial_svg"]
 
 
 def trial_svg(trial: Any) -> str:
-    """Return an SVG drawing: walls grey, zones where people start blue, robots and their goals red."""
+    """Return an SVG drawing: walls grey, ground brown, doors, zones of people blue, robots and their goals red."""
     rings = [np.concatenate([ring, ring[:1]]) for ring in trial.stage.rings]
-    lines = [Path2D(ring, WALL_COLOR, 1.5) for ring in rings]
+    lines = floor_plan(trial.stage) + [Path2D(ring, WALL_COLOR, 1.5) for ring in rings]
     for area in [spawner.zone for spawner in trial.spawners] + [source.zone for source in trial.sources]:
         zone = np.asarray(area, dtype=np.float64)
         lines.append(Path2D(np.concatenate([zone, zone[:1]]), PERSON_COLOR, 1.0, 0.6))

@@ -23,6 +23,8 @@ STEADY = 1.0
 """Last part [s] of a held speed, over which the steady error is measured."""
 SMALL = 0.1
 """Errors of speeds are shares of the speed asked for, or of this share of the limit if that is larger."""
+NOISE = 0.05
+"""Accelerations [m/s2], [rad/s2] are compared with at least this: a car that drives straight turns by rounding only."""
 FALLEN = math.radians(30.0)
 """A robot that leans more has fallen [rad]."""
 
@@ -92,7 +94,9 @@ def compare_traces(drive: Drive, manoeuvre: Manoeuvre, physics: DriveTrace, plan
     """
     held = manoeuvre.held
     over, steady = (
-        _speed_errors(drive, physics.twist[:held], plane.twist[:held]) if manoeuvre.name == "grid" else (0, 0)
+        _speed_errors(drive, physics.twist[:held], plane.twist[:held], manoeuvre.commands[0].left != 0.0)
+        if manoeuvre.name == "grid"
+        else (0, 0)
     )
     push, spin = _accelerations(drive, physics, plane)
     away = np.hypot(*(physics.position - plane.position).T)
@@ -120,14 +124,14 @@ def _limits(drive: Drive) -> Floats:
     return np.array([top, top, most], dtype=np.float64)
 
 
-def _speed_errors(drive: Drive, moved: Floats, planar: Floats) -> tuple[float, float]:
+def _speed_errors(drive: Drive, moved: Floats, planar: Floats, sideways: bool) -> tuple[float, float]:
     """Return the overshoot and the steady error of forward speed and turn rate, and of left speed if it is asked."""
     goal = planar[-1]
     scale = np.maximum(np.abs(goal), SMALL * _limits(drive))
     sign = np.where(goal < 0.0, -1.0, 1.0)
     excess = np.where(goal != 0.0, (moved * sign).max(axis=0) - np.abs(goal), np.abs(moved).max(axis=0))
     mean = moved[-round(STEADY / SAMPLE) :].mean(axis=0)
-    asked = [0, 2] if goal[1] == 0.0 else [0, 1, 2]
+    asked = [0, 1, 2] if sideways else [0, 2]
     over, steady = np.maximum(excess, 0.0) / scale, np.abs(mean - goal) / scale
     return float(over[asked].max()), float(steady[asked].max())
 
@@ -137,7 +141,7 @@ def _accelerations(drive: Drive, physics: DriveTrace, plane: DriveTrace) -> tupl
     found = []
     for name, part in (("max_acceleration", slice(0, 2)), ("max_turn_acceleration", slice(2, 3))):
         most = float(getattr(drive, name, 0.0)) or _slope(plane, part)
-        found.append(_slope(physics, part) / max(most, 1e-9))
+        found.append(_slope(physics, part) / max(most, NOISE))
     return found[0], found[1]
 
 

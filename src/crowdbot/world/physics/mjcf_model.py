@@ -12,6 +12,7 @@ from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
 from crowdbot.world.physics.robots.robot_height import base_height
 from crowdbot.world.robots.drives.ackermann import AckermannDrive
+from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.wheel import Wheel
@@ -36,6 +37,8 @@ QUICKEST = 0.5
 GRAVITY = 9.81
 FIRM = 0.99
 """Solver impedance of tyres; that of other contacts is 0.9 to 0.95."""
+YIELDING = 0.8
+"""Solver impedance of tyres of skid-steer bases: they are pressed in by about a millimetre."""
 LEAN = 1e-6
 """Angle [rad] about x and y by which cylinders lean."""
 SKIN = "0.85 0.70 0.60 1"
@@ -45,8 +48,8 @@ SPRING = "0.5 0.5 0.001 0.5 2"
 
 
 class MjcfModel(NamedTuple):
-    """A world model: XML tree, mesh files, name ``prefixes`` of the robots, joints of all ``wheels``, and largest
-    ``torques`` [N m] of the driven ones by joint.
+    """A world model: XML tree, mesh files, name ``prefixes`` of the robots, joints of all ``wheels``, largest
+    ``torques`` [N m] of the driven ones by joint, and joints of those of ``skidding`` bases.
     """
 
     root: Element
@@ -54,6 +57,7 @@ class MjcfModel(NamedTuple):
     prefixes: dict[int, str]
     wheels: frozenset[str]
     torques: dict[str, float]
+    skidding: frozenset[str] = frozenset()
 
     def load(self, timestep: float) -> Any:
         """Return the ``mujoco.MjModel``."""
@@ -61,7 +65,7 @@ class MjcfModel(NamedTuple):
         model.opt.timestep = timestep
         _steadied(model, self.wheels)
         _lean(model)
-        _firm(model, self.torques)
+        _firm(model, self.torques, self.skidding)
         return model
 
 
@@ -120,7 +124,13 @@ def build_mjcf_model(
             if wheel.driven and robot.base != "planar"
         }
     )
-    return MjcfModel(root, files, prefixes, frozenset(wheels), torques)
+    skidding = {
+        prefixes[agent] + wheel.joint
+        for agent, robot in robots.items()
+        for wheel in robot.wheels
+        if isinstance(robot.drive, SkidSteerDrive)
+    }
+    return MjcfModel(root, files, prefixes, frozenset(wheels), torques, frozenset(skidding))
 
 
 def _torque(robot: Robot, wheel: Wheel) -> float:
@@ -130,14 +140,17 @@ def _torque(robot: Robot, wheel: Wheel) -> float:
     return effort if math.isfinite(effort) and effort > 0.0 else GRAVITY * robot.model.mass * wheel.radius
 
 
-def _firm(model: Any, driven: Collection[str]) -> None:
+def _firm(model: Any, driven: Collection[str], skidding: Collection[str]) -> None:
     """Make the tyres of driven wheels firm, with their friction on this floor.
 
-    Soft tyres creep sideways in curves, and castors would take the load off them.
+    Soft tyres creep sideways in curves, and castors would take the load off them. Tyres of a skid-steer base yield:
+    four firm ones on a rigid frame lose contact in turns, and hop.
     """
     bodies = [int(model.jnt_bodyid[model.joint(name).id]) for name in driven]
     tires = np.isin(model.geom_bodyid, bodies) & (model.geom_contype > 0)
     model.geom_solimp[tires, :2] = FIRM
+    yielding = [int(model.jnt_bodyid[model.joint(name).id]) for name in driven if name in skidding]
+    model.geom_solimp[tires & np.isin(model.geom_bodyid, yielding), :2] = YIELDING
     model.geom_friction[tires, 0] *= model.geom("floor").friction[0]
 
 

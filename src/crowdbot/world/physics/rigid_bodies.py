@@ -82,7 +82,7 @@ class RigidBodies:
         """Read the loads of wheels after an engine step."""
         for body in self.robots.values():
             if len(body.friction):
-                body.loads = body.friction.loads(self.data)
+                body.loads = body.friction.smooth_loads(body.loads, self.data, body.step)
 
     def take_state(self, others: Sequence[RigidBodies]) -> None:
         """Copy the state of all joints and motors that one of the others has as well; frames follow."""

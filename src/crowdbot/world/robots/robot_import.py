@@ -9,7 +9,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crowdbot.core import Element, RobotError, format_xml
-from crowdbot.world.robots.drives.base_drive import drive_type, middle_angle, rollers_of, turns_wheels, wheel_attributes
+from crowdbot.world.robots.drives.base_drive import (
+    curve_limit,
+    drive_type,
+    mass_attributes,
+    middle_angle,
+    rollers_of,
+    turns_wheels,
+    wheel_attributes,
+)
 from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
 from .base_kind import BaseKind, recognize_base
@@ -224,6 +232,12 @@ def _drive(done: _Conversion) -> dict[str, str]:
                 row["first-angle"] = format_number(value)
             else:
                 choose(key, value, "places of the wheels", DERIVED, unit)
+        if kind == "differential-drive":
+            most, why = curve_limit(done.model, base, done.wheeled)
+            choose("max_lateral_acceleration", most, why, DERIVED, "m/s2")
+        if kind == "skid-steer-drive":
+            for key, value in mass_attributes(done.model, base):
+                choose(key, value, "masses of the links", DERIVED, "m")
         if wheels:
             fastest = _wheel_limit(done)
             need = (speed + turn * reach) * (math.sqrt(2.0) if kind == "mecanum-drive" else 1.0) / base.wheels[0].radius

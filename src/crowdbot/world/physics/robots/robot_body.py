@@ -152,16 +152,17 @@ class RobotBody:
         if self._steers:
             self._steered(self._aim)
             return
-        speeds, before = self._wheel_rates(self._aim), self._wheel_rates(old)
+        speeds = self._wheel_rates(old, self._aim)
+        before = speeds if self._slip is not None else self._wheel_rates(old, old)
         if self._slip is not None and self._slip_state is not None:
             self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
         lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
         self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
 
-    def _wheel_rates(self, twist: Twists) -> Floats:
-        """Return the speeds of the driven wheels [rad/s] for a twist, with the slip of a skid-steer base."""
+    def _wheel_rates(self, old: Twists, twist: Twists) -> Floats:
+        """Return the speeds of the driven wheels [rad/s] on the way to a twist, with the slip of a skid-steer base."""
         if self._slip is not None and self._slip_state is not None:
-            twist = Twists.of(self._slip.wheels(self._slip_state, twist.at(0)), 1)
+            twist = Twists.of(self._slip.wheels(self._slip_state, old, twist, self.step), 1)
         return np.asarray(self._rolling @ _row(twist))
 
     def _pull(self, old: Twists) -> None:

@@ -24,6 +24,8 @@ FREE = 0.01
 """Friction across the axes of rollers, as a share of the friction along them: the resistance of their bearings."""
 LEAST = 0.001
 """Smallest share of the friction of the engine; it needs one above 0."""
+SETTLE = 0.1
+"""Time constant [s] of the loads of sliding tyres: pneumatic tyres and a yielding frame level out hops."""
 FLAT = 0.7
 """Smallest vertical part of a contact normal of a wheel on the ground."""
 
@@ -174,3 +176,19 @@ class WheelFriction:
         found = np.zeros(len(self))
         _weigh(data.contact.geom, data.contact.efc_address, data.efc_force, self.wheel_of, found)
         return found
+
+    def smooth_loads(self, before: Floats, data: Any, step: float) -> Floats:
+        """Return the loads ``[W]`` [N] of the wheels, smoothed over :data:`SETTLE`.
+
+        Four wheels on a rigid frame are statically overdetermined: between two engine steps, their loads may jump from
+        one diagonal to the other, and with them the friction of sliding tyres.
+
+        Args:
+            before: loads ``[W]`` [N] after the step before; all 0 at the start.
+            data: data of the engine.
+            step: time step of the engine [s].
+        """
+        found = self.loads(data)
+        if not self.skids or not before.any():
+            return found
+        return np.asarray(before - math.expm1(-step / SETTLE) * (found - before))

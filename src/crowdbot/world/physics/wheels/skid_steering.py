@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from crowdbot.core import Twist
+from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
 
@@ -18,10 +19,11 @@ RATE = 3.0
 QUIET = 0.1
 """Turn rate [rad/s] below which slip is hardly estimated."""
 MOST = 2.5
-"""Maximum of the estimated slip factor, as a multiple of that of the drive."""
+"""Maximum of the estimated factor, and of its inverse."""
 
 SlipState = tuple[float, float, float, float]
-"""Slip factor, offset [m] of the centre of turning, and forward speed [m/s] and turn rate [rad/s] expected by now."""
+"""Factor of the difference of the sides, offset [m] of the centre of turning, and forward speed [m/s] and turn rate
+[rad/s] expected by now."""
 
 
 @dataclass(frozen=True)
@@ -30,27 +32,26 @@ class SlipControl:
 
     The sides of the base turn about their instantaneous centres of rotation, which depend on friction and loads. The
     control estimates them while the base turns: the slip factor ``k`` (effective track divided by track) and the offset
-    ``c`` of their middle. The wheels get the forward speed ``v + c w`` and the turn rate ``k w`` for a command
-    ``(v, w)``. Both are corrected by the error of the twist, by a least-mean-squares step with the rate ``RATE``. The
-    estimate begins with the factor of the drive and ends within ``MOST`` times it. The velocity is that of the engine,
-    without noise.
+    ``c`` of their middle, both relative to the balance of forces of :meth:`SkidSteerDrive.slide`. For a command
+    ``(v, w)``, the sides get the speeds of that balance with ``k`` times their difference, and ``c w`` added to both.
+    Both are corrected by the error of the twist, by a least-mean-squares step with the rate ``RATE``. The factor begins
+    with 1 and stays within ``1 / MOST`` and ``MOST``. The velocity is that of the engine, without noise.
 
     Source: A. Mandow et al., Experimental kinematics for wheeled skid-steer mobile robots, IROS 2007; J. Pentzer et
     al., Model-based prediction of skid-steer robot kinematics using online estimation of track instantaneous centers of
     rotation, Journal of Field Robotics 31(3), 2014.
 
     Fields:
-        slip: slip factor of the drive.
-        track: distance between the left and right wheels [m].
+        drive: the drive.
 
-    >>> control = SlipControl(1.5, 0.4)
+    >>> control = SlipControl(SkidSteerDrive(track=0.4, wheelbase=0.4))
     >>> state = control.step(control.first, Twist(0.0, 1.0), Twist(0.0, 0.5), 0.005)
-    >>> state[0] < 1.5, control.wheels(control.first, Twist(0.5, 1.0)).turn
-    (True, 1.5)
+    >>> turning = Twists.of(Twist(0.0, 1.0), 1)
+    >>> state[0] > 1.0, round(control.wheels(control.first, turning, turning, 0.005).turn, 2)
+    (True, 1.99)
     """
 
-    slip: float
-    track: float
+    drive: SkidSteerDrive
 
     @classmethod
     def of(cls, robot: Robot) -> SlipControl | None:
@@ -58,12 +59,12 @@ class SlipControl:
         drive = robot.drive
         if robot.base != "wheels" or not isinstance(drive, SkidSteerDrive):
             return None
-        return cls(drive.slip_factor, drive.track)
+        return cls(drive)
 
     @property
     def first(self) -> SlipState:
         """State before the first step."""
-        return (self.slip, 0.0, 0.0, 0.0)
+        return (1.0, 0.0, 0.0, 0.0)
 
     def step(self, state: SlipState, wanted: Twist, found: Twist, dt: float) -> SlipState:
         """Return the new state.
@@ -80,11 +81,19 @@ class SlipControl:
         share = RATE * dt * turn / (turn * turn + QUIET * QUIET)
         factor += factor * share * (turn - found.turn)
         offset += share * (forward - found.forward)
-        factor = min(max(factor, 1.0), MOST * self.slip)
-        offset = min(max(offset, -self.track), self.track)
+        factor, most = min(max(factor, 1.0 / MOST), MOST), self.drive.track
+        offset = min(max(offset, -most), most)
         return (factor, offset, forward, turn)
 
-    def wheels(self, state: SlipState, wanted: Twist) -> Twist:
-        """Return the twist for which the wheels turn without slip, so that the base has another one with it."""
+    def wheels(self, state: SlipState, old: Twists, new: Twists, dt: float) -> Twist:
+        """Return the twist for which the wheels turn without slip, so that the base has another one with it.
+
+        Args:
+            state: the estimate.
+            old, new: twists of the base before and after the step, E = 1.
+            dt: time step [s].
+        """
         factor, offset, _, _ = state
-        return Twist(wanted.forward + offset * wanted.turn, factor * wanted.turn)
+        left, right, _ = self.drive.slide(old, new, dt)[0].tolist()
+        middle = 0.5 * (left + right) + offset * float(new.turn[0])
+        return Twist(middle, factor * (right - left) / self.drive.track)

@@ -9,14 +9,27 @@ import numpy as np
 from crowdbot.world.robots.base_kind import BaseKind, FoundWheel
 from crowdbot.world.urdf import RobotModel
 
-from .skid_steer import slip_of
+from .skid_slide import GRAVITY
+from .skid_steer import SHARE, slip_of
 
-__all__ = ["drive_type", "middle_angle", "rollers_of", "turns_wheels", "wheel_attributes"]
+__all__ = [
+    "curve_limit",
+    "drive_type",
+    "mass_attributes",
+    "middle_angle",
+    "rollers_of",
+    "turns_wheels",
+    "wheel_attributes",
+]
 
 WHEELED = ("differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional")
 """Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
 FASTEST = 3.0
 """Largest guess of the maximum turn rate [rad/s]."""
+PULLED = 2.0
+"""Largest acceleration in curves [m/s2] of a base that is moved directly: half of what its forces give."""
+UPRIGHT = 0.5
+"""The same of a base on wheels, as a share of the acceleration at which it would tip over (assumed)."""
 FASTEST_SLIDING = 2.0
 """The same for skid-steer bases and omnidirectional wheels, as that of Husky: faster, they slide outwards."""
 
@@ -120,3 +133,31 @@ def middle_angle(base: BaseKind, inner: float) -> float:
     sides = [float(wheel.center[1]) for wheel in base.wheels if wheel.steering]
     half = 0.5 * (max(sides) - min(sides)) / base.wheelbase if base.wheelbase else 0.0
     return math.atan(1.0 / (1.0 / math.tan(inner) + half))
+
+
+def mass_attributes(model: RobotModel, base: BaseKind) -> list[tuple[str, float]]:
+    """Return place of the wheels and of the centre of mass, and radius of gyration [m], of a skid-steer drive."""
+    whole, places = model.inertial(), np.array([wheel.center for wheel in base.wheels])
+    x, y = 0.5 * (places[:, :2].min(axis=0) + places[:, :2].max(axis=0))
+    floor = min(float(wheel.center[2]) - wheel.radius for wheel in base.wheels)
+    half = 0.5 * np.ptp(places[:, :2], axis=0)
+    ahead, left = np.clip(whole.center[:2] - (x, y), -half, half).tolist()
+    return [
+        ("wheels_x", float(x)),
+        ("center_x", ahead),
+        ("center_y", left),
+        ("center_height", max(0.0, float(whole.center[2]) - floor)),
+        ("gyration_radius", math.sqrt(float(whole.tensor[2, 2]) / whole.mass)),
+    ]
+
+
+def curve_limit(model: RobotModel, base: BaseKind, wheeled: bool) -> tuple[float, str]:
+    """Return the largest product of speed and turn rate [m/s2] of a differential base, and the reason."""
+    if not wheeled:
+        return PULLED, "half of the force that moves the base"
+    floor = min(wheel.center[2] - wheel.radius for wheel in base.wheels)
+    height = float(model.inertial().center[2] - floor)
+    tips = UPRIGHT * GRAVITY * 0.5 * base.track / max(height, 1e-3)
+    if tips < SHARE * GRAVITY:
+        return tips, "half of that at which it tips over"
+    return SHARE * GRAVITY, f"{SHARE:g} of the friction of rubber"

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import functools
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core import check_number
+from crowdbot.core import Pose, Twist, check_number
 
+from .drive import Twists, integrate_twist
+from .skid_slide import GRAVITY, side_speeds
 from .wheeled import Floats, WheeledDrive
 
 __all__ = ["SkidSteerDrive", "slip_of"]
+
+SHARE = 0.4
+"""Largest product of speed and turn rate, as a share of friction coefficient times gravity: sliding wheels need the
+rest of the friction to turn the base."""
 
 
 def slip_of(track: float, wheelbase: float) -> float:
@@ -36,14 +44,20 @@ class SkidSteerDrive(WheeledDrive):
     """Skid-steer drive, as in Husky, Jackal and Pioneer 3-AT: four wheels or two tracks that do not steer.
 
     In a turn the wheels slide sideways, so they run faster than those of a differential drive: by ``slip``, the
-    effective track divided by the track. Speeds of the left and right wheels are
-    ``(forward -+ turn * slip * track / 2) / wheel_radius``. The lateral speed of a command is ignored. A command beyond
-    the wheel limits is shortened to a slower one on the same curve.
+    effective track divided by the track. Speeds of the left and right wheels are about
+    ``(forward -+ turn * slip * track / 2) / wheel_radius``. The lateral speed of a command is ignored; in a curve, the
+    base slides outwards, see :meth:`slide`. A command beyond the limits of wheels or friction is shortened to a slower
+    one on the same curve.
 
     Fields:
         track: distance between the left and right wheels [m].
         wheelbase: distance between the first and the last axle [m].
         slip: slip factor; 0: :func:`slip_of`.
+        friction: friction coefficient of the tyres on the floor.
+        wheels_x: middle of the wheels, ahead of the origin of the robot [m].
+        center_x, center_y: centre of mass from the middle of the wheels, ahead and to the left [m].
+        center_height: height of the centre of mass above the floor [m].
+        gyration_radius: radius of gyration about the vertical [m]; 0: that of a box on the wheels.
         max_speed, max_turn_rate, max_acceleration, max_turn_acceleration, wheel_radius, max_wheel_speed: as in
             :class:`WheeledDrive`.
 
@@ -59,6 +73,12 @@ class SkidSteerDrive(WheeledDrive):
     track: float = 0.4
     wheelbase: float = 0.3
     slip: float = 0.0
+    friction: float = 1.0
+    wheels_x: float = 0.0
+    center_x: float = 0.0
+    center_y: float = 0.0
+    center_height: float = 0.0
+    gyration_radius: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -66,6 +86,12 @@ class SkidSteerDrive(WheeledDrive):
         check_number("SkidSteerDrive", "wheelbase", self.wheelbase, "m", exclusive_min=0.0)
         if self.slip != 0.0:
             check_number("SkidSteerDrive", "slip", self.slip, min=1.0)
+        check_number("SkidSteerDrive", "friction", self.friction, exclusive_min=0.0)
+        for name, most in (("center_x", 0.5 * self.wheelbase), ("center_y", 0.5 * self.track)):
+            check_number("SkidSteerDrive", name, getattr(self, name), "m", min=-most, max=most)
+        check_number("SkidSteerDrive", "wheels_x", self.wheels_x, "m")
+        for name in ("center_height", "gyration_radius"):
+            check_number("SkidSteerDrive", name, getattr(self, name), "m", min=0.0)
 
     @property
     def slip_factor(self) -> float:
@@ -77,3 +103,55 @@ class SkidSteerDrive(WheeledDrive):
         """Wheel speeds of the left and the right side per twist, ``[2, 3]``."""
         half = 0.5 * self.track * self.slip_factor
         return np.array([[1.0, -half, 0.0], [1.0, half, 0.0]]) / self.wheel_radius
+
+    def slide(self, before: Twists, after: Twists, dt: float) -> Floats:
+        """Return the speeds ``[E, 3]`` [m/s] of the left and right rims, and of the middle of the wheels to the left.
+
+        They are those at which the friction forces of four tyres give the base its acceleration: Coulomb's law against
+        the slip of each tyre, with its load. If the forces do not suffice, the base has no lateral speed, and the rims
+        have the speeds for equal loads.
+
+        Args:
+            before, after: twists before and after a time step; of ``after``, the lateral speed is not used.
+            dt: time step [s].
+
+        Source: J. Y. Wong and C. F. Chiang, A general theory for skid steering of tracked vehicles on firm ground,
+        Proc. IMechE D 215, 2001.
+
+        >>> drive, turning = SkidSteerDrive(track=0.4, wheelbase=0.4), Twists.of(Twist(0.0, 1.0), 1)
+        >>> drive.slide(turning, turning, 0.05).round(3).tolist()
+        [[-0.397, 0.397, 0.0]]
+        """
+        out, middle = np.empty((len(after.turn), 3)), before.left + before.turn * self.wheels_x
+        body = np.array([self.friction * GRAVITY, self.center_height, self._gyration])
+        old = np.stack([before.forward, before.turn, middle], axis=1)
+        new = np.stack([after.forward, after.turn], axis=1)
+        side_speeds(old, new, float(dt), self._tires, body, out)
+        return out
+
+    @property
+    def _gyration(self) -> float:
+        """Squared radius of gyration [m2]."""
+        return self.gyration_radius**2 or (self.wheelbase**2 + self.track**2) / 12.0
+
+    @functools.cached_property
+    def _tires(self) -> Floats:
+        """Places, shares of the weight and levers of four tyres ``[4, 5]``; see :func:`slide_of`."""
+        long = self.track * math.sqrt(self.slip_factor - 1.0)
+        place = 0.5 * np.array([[long, self.track], [long, -self.track], [-long, self.track], [-long, -self.track]])
+        balance = np.concatenate([np.ones((1, 4)), place.T])
+        load = np.linalg.pinv(balance) @ np.array([1.0, self.center_x, self.center_y])
+        load = np.maximum(load, 0.0) / np.maximum(load, 0.0).sum()
+        return np.concatenate([place, load[:, None], place - (self.center_x, self.center_y)], axis=1)
+
+    def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
+        """Return pose and twist ``dt`` [s] later, with the lateral speed at which the base slides."""
+        count = len(pose.heading)
+        wanted, still = Twists.of(command, count), np.zeros(count)
+        bend = np.abs(wanted.forward * np.clip(wanted.turn, -self.max_turn_rate, self.max_turn_rate))
+        share = np.minimum(1.0, np.sqrt(SHARE * self.friction * GRAVITY / np.maximum(bend, 1e-300)))
+        slower = Twists(wanted.forward * share, wanted.turn * share, still)
+        _, after = super().step(pose, Twists(twist.forward, twist.turn, still), slower, dt)
+        left = self.slide(twist, after, dt)[:, 2] - after.turn * self.wheels_x
+        after = Twists.of_columns(np.stack([after.forward, after.turn, left]))
+        return integrate_twist(pose, after, dt), after
