@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import special
 
 from crowdbot.calibration import Search
 from crowdbot.core import InputError
-from scipy import special
 
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult

@@ -67,7 +67,8 @@ def falsify(
     >>> from crowdbot.falsification import PlainSampling, SearchSpace, falsify, parse_factor
     >>> from crowdbot.trials import load_trial
     >>> trial = load_trial("frontal", duration=6.0)
-    >>> result = falsify(SearchSpace(trial, (parse_factor("robot/y=uniform(-0.4, 0.4)"),)), "timeout", PlainSampling(), runs=4)
+    >>> space = SearchSpace(trial, (parse_factor("robot/y=uniform(-0.4, 0.4)"),))
+    >>> result = falsify(space, "timeout", PlainSampling(), runs=4)
     >>> result.failures, result.clusters[0].event
     (4, 'timeout')
     """
