@@ -25,8 +25,8 @@ from crowdbot.sensors import (
 from crowdbot.trials import Mount, RobotSpec
 from crowdbot.world import MountPlacement, World, wheel_geometry, wheel_rotation
 
-from .old_people import arrival_of, known_people, people_then
-from .reading_names import name_by_id, tracked_columns
+from .readings.old_people import arrival_of, known_people, people_then
+from .readings.reading_names import name_by_id, tracked_columns
 from .world_view import WorldView
 
 __all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "spatial"]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .world_view import WorldView
+from crowdbot.simulation.world_view import WorldView
 
 __all__ = ["arrival_of", "known_people", "people_then"]
 
