@@ -272,7 +272,8 @@ def test_found_trials_give_the_same_digest_and_an_interrupted_search_continues(
 
 def test_a_navigator_that_raises_is_a_counted_failure_and_its_file_travels(tmp_path: Path) -> None:
     (tmp_path / "shy.py").write_text(
-        "from dataclasses import dataclass\nfrom crowdbot.core import Twist\nfrom crowdbot.navigation import Navigator\n"
+        "from dataclasses import dataclass\n"
+        "from crowdbot.core import Twist\nfrom crowdbot.navigation import Navigator\n"
         "@dataclass(frozen=True)\nclass Shy(Navigator):\n    def act(self, observation):\n"
         "        if observation.time > 1.0:\n            raise ValueError('too shy')\n        return Twist(0.1)\n"
     )
