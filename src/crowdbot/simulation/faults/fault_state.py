@@ -135,8 +135,8 @@ class FaultState:
         """Return the faults that begin or end at the current ticks ``[E]``, with their environments."""
         found = []
         for k, name in enumerate(self.names):
-            now = self.active(k, ticks * step)
-            before = self.active(k, (ticks - 1) * step) & (ticks > 0)
+            now = self.active(k, ticks.astype(np.float64) * step)
+            before = self.active(k, (ticks - 1).astype(np.float64) * step) & (ticks > 0)
             for e in np.flatnonzero(now != before).tolist():
                 state = "begin" if now[e] else "end"
                 found.append((e, FaultOrder(robot=robot.name, fault=name, state=state)))
