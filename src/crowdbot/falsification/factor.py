@@ -81,7 +81,8 @@ class Factor:
     def value_at(self, z: float) -> float | int | str:
         """Return the value for a standard normal number.
 
-        >>> [round(parse_factor("x=log-uniform(0.1, 10)").value_at(0.0), 12), parse_factor("x=integer(2, 5)").value_at(9.0)]
+        >>> wide, few = parse_factor("x=log-uniform(0.1, 10)"), parse_factor("x=integer(2, 5)")
+        >>> [round(wide.value_at(0.0), 12), few.value_at(9.0)]
         [1.0, 5]
         """
         share = min(max(float(special.ndtr(z)), EDGE), 1.0 - EDGE)
