@@ -8,7 +8,7 @@ from .event import describe_event
 from .factor import Factor, parse_factor
 from .failure import FAILURES, FailureCriterion, parse_failure
 from .falsifier import falsify, parse_sampling
-from .found_trial import FoundTrial, write_found
+from .found_trial import FoundTrial, write_failures
 from .plain_sampling import PlainSampling
 from .proposal import Proposal, fit_proposal
 from .report import describe_rarity, factor_ranges, write_report
@@ -51,6 +51,6 @@ __all__ = [
     "parse_sampling",
     "replicate_estimate",
     "run_samples",
-    "write_found",
+    "write_failures",
     "write_report",
 ]

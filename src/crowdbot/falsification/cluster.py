@@ -17,7 +17,7 @@ __all__ = ["FailureCluster", "find_clusters"]
 Floats = NDArray[np.float64]
 MOST = 2000
 """Failures of one event that are compared with each other; others join the nearest cluster."""
-CUT = 0.7
+CUT = 1.1
 """Distance of two clusters, relative to that of two random points."""
 
 
@@ -45,7 +45,7 @@ class FailureCluster:
 def find_clusters(samples: Sequence[Sample], weights: Floats) -> list[FailureCluster]:
     """Return the clusters of the failures, by their share of the probability.
 
-    Failures with one event are divided by average linkage at 0.7 times the distance that two random points have.
+    Failures with one event are divided by average linkage at 1.1 times the distance that two random points have.
 
     Args:
         samples: all samples of a search.

@@ -20,6 +20,10 @@ from .sampling import Sampling, SamplingResult
 __all__ = ["CrossEntropy"]
 
 Floats = NDArray[np.float64]
+WIDE, NARROW = 1.5, 1.2
+"""Factor of the standard deviations of a proposal that still moves, and of one that is fitted to failures."""
+CLIP = 10.0
+"""Largest weight of a point to which a proposal is fitted, as a multiple of the median."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,10 @@ class CrossEntropy(Sampling):
             if not (elite.any() and math.isfinite(level)):
                 used.append(Proposal.standard(runner.dimensions))
                 continue
-            used.append(fit_proposal(points[elite], np.exp(-log_mix[elite]), rng, self.defensive))
+            weights = np.exp(-log_mix[elite])
+            weights = np.minimum(weights, CLIP * float(np.median(weights)))
+            widen = WIDE if level > 0.0 else NARROW
+            used.append(fit_proposal(points[elite], weights, rng, self.defensive, widen))
             if fails >= self.enough and len(levels) > 2 and levels[-2] == 0.0 and levels[-3] == 0.0:
                 break
         explored = len(runner.samples)
@@ -88,8 +95,7 @@ class CrossEntropy(Sampling):
         weights[:explored] = 0.0
         valid = np.array([sample.valid for sample in runner.samples])
         mass = float(np.sum(weights[valid])) / max(1.0, float(np.sum(weights)))
-        fails = robustness[explored:] <= 0.0
-        estimate = importance_estimate(fails, weights[explored:], 1.0 / used[-1].defensive)
+        estimate = importance_estimate(robustness[explored:] <= 0.0, weights[explored:], 1.0 / used[-1].defensive)
         if not valid[explored:].all() and mass > 0.0:
             estimate = estimate._replace(
                 **{name: min(1.0, getattr(estimate, name) / mass) for name in ("value", "low", "high")}

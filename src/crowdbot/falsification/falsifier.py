@@ -16,7 +16,7 @@ from .cluster import find_clusters
 from .cross_entropy import CrossEntropy
 from .directed import DirectedSearch
 from .failure import FailureCriterion, parse_failure
-from .found_trial import select_failures, write_found
+from .found_trial import select_failures, write_failures
 from .plain_sampling import PlainSampling
 from .result import FalsificationResult, FoundFailure
 from .runner import SampleRunner
@@ -67,7 +67,8 @@ def falsify(
     >>> from crowdbot.falsification import PlainSampling, SearchSpace, falsify, parse_factor
     >>> from crowdbot.trials import load_trial
     >>> trial = load_trial("frontal", duration=6.0)
-    >>> result = falsify(SearchSpace(trial, (parse_factor("robot/y=uniform(-0.4, 0.4)"),)), "timeout", PlainSampling(), runs=4)
+    >>> space = SearchSpace(trial, (parse_factor("robot/y=uniform(-0.4, 0.4)"),))
+    >>> result = falsify(space, "timeout", PlainSampling(), runs=4)
     >>> result.failures, result.clusters[0].event
     (4, 'timeout')
     """
@@ -92,7 +93,7 @@ def falsify(
         for k in chosen
     ]
     if folder is not None:
-        files = write_found(space, samples, chosen, folder / "found")
+        files = write_failures(space, samples, chosen, folder / "found")
         kept = [
             dataclasses.replace(one, file=f"found/{file.path.name}", same=file.same)
             for one, file in zip(kept, files, strict=True)

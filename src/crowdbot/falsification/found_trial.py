@@ -18,7 +18,7 @@ from .cluster import FailureCluster
 from .sample import Sample
 from .search_space import SearchSpace
 
-__all__ = ["FoundTrial", "select_failures", "write_found"]
+__all__ = ["FoundTrial", "select_failures", "write_failures"]
 
 
 class FoundTrial(NamedTuple):
@@ -41,7 +41,9 @@ def select_failures(clusters: Sequence[FailureCluster], most: int) -> list[int]:
     return [*dict.fromkeys(found)][:most]
 
 
-def write_found(space: SearchSpace, samples: Sequence[Sample], chosen: Sequence[int], folder: Path) -> list[FoundTrial]:
+def write_failures(
+    space: SearchSpace, samples: Sequence[Sample], chosen: Sequence[int], folder: Path
+) -> list[FoundTrial]:
     """Write failures to ``1.xml``, ``2.xml`` and so on, with the files that they need, and run each once.
 
     Files of an earlier search in the folder are replaced.

@@ -22,7 +22,7 @@ REACH = 4.5
 
 
 def runs_svg(result: FalsificationResult) -> str:
-    """Return a picture of the robustness of each run in the order of the search; failures have the color of their cluster."""
+    """Return a picture of the robustness of each run in the order of the search; the color is that of the cluster."""
     values = np.array([sample.robustness for sample in result.samples])
     finite = values[np.isfinite(values)]
     if not len(finite):

@@ -14,7 +14,7 @@ __all__ = ["Proposal", "fit_proposal"]
 Floats = NDArray[np.float64]
 STEPS = 40
 """Steps of the expectation-maximisation."""
-FLOOR = 0.15
+FLOOR = 0.3
 """Least standard deviation of a component."""
 PER_COMPONENT = 3
 """Effective points for each number of a component at least."""
@@ -71,7 +71,9 @@ class Proposal:
         return np.asarray(np.log(self.shares) + log.sum(axis=2))
 
 
-def fit_proposal(points: Floats, weights: Floats, rng: np.random.Generator, defensive: float) -> Proposal:
+def fit_proposal(
+    points: Floats, weights: Floats, rng: np.random.Generator, defensive: float, widen: float = 1.0
+) -> Proposal:
     """Return a proposal fitted to weighted points by expectation-maximisation.
 
     The number of components is that with the largest weighted likelihood less the Bayesian information criterion.
@@ -81,6 +83,7 @@ def fit_proposal(points: Floats, weights: Floats, rng: np.random.Generator, defe
         weights: ``[N]``, at least one above 0.
         rng: random generator of the first means.
         defensive: share of the standard normal density.
+        widen: factor of the standard deviations.
 
     >>> rng = np.random.default_rng(0)
     >>> two = np.concatenate([rng.normal(-3, 0.5, (200, 1)), rng.normal(3, 0.5, (200, 1))])
@@ -98,7 +101,7 @@ def fit_proposal(points: Floats, weights: Floats, rng: np.random.Generator, defe
         penalty = 0.5 * (count * (2 * dimensions + 1) - 1) * math.log(max(2.0, effective))
         if likelihood - penalty > score:
             best, score = found, likelihood - penalty
-    return Proposal(best.shares, best.means, best.deviations, defensive)
+    return Proposal(best.shares, best.means, widen * best.deviations, defensive)
 
 
 def _maximize(points: Floats, share: Floats, count: int, rng: np.random.Generator) -> Proposal:

@@ -108,8 +108,8 @@ def _clusters(result: FalsificationResult) -> str:
         return "<p>No run fails.</p>"
     names = (*("red", "orange", "violet", "teal", "pink", "olive")[: len(COLORS)], *["dark"] * len(result.clusters))
     rows = [
-        (n + 1, names[n], one.event, len(one.members), f"{one.share:.3g}", f"{result.samples[one.worst].robustness:.3g}",
-         factor_ranges(result, one.members))
+        (n + 1, names[n], one.event, len(one.members), f"{one.share:.3g}",
+         f"{result.samples[one.worst].robustness:.3g}", factor_ranges(result, one.members))
         for n, one in enumerate(result.clusters)
     ]  # fmt: skip
     head = ("cluster", "color", "event", "failures", "share of the probability", "least robustness", "values")
@@ -119,7 +119,8 @@ def _clusters(result: FalsificationResult) -> str:
 def _found(result: FalsificationResult) -> str:
     rows = [
         (one.file or n, one.cluster, result.samples[one.sample].event, result.samples[one.sample].seed,
-         f"{result.samples[one.sample].robustness:.3g}", ", ".join(f"{path} = {_short(v)}" for path, v in one.values.items()))
+         f"{result.samples[one.sample].robustness:.3g}",
+         ", ".join(f"{path} = {_short(value)}" for path, value in one.values.items()))
         for n, one in enumerate(result.found, 1)
     ]  # fmt: skip
     return _table(("trial", "cluster", "event", "seed", "robustness", "values"), rows) if rows else ""

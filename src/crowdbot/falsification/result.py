@@ -100,15 +100,15 @@ class FalsificationResult:
                 found[sample.message] = found.get(sample.message, 0) + 1
         return found
 
-    def ranges(self, members: Sequence[int]) -> dict[str, tuple[Any, Any]]:
+    def ranges(self, members: Sequence[int]) -> dict[str, tuple[Any, ...]]:
         """Return the smallest and the largest value of each factor among some runs; of a choice, all its values."""
-        found: dict[str, tuple[Any, Any]] = {}
+        found: dict[str, tuple[Any, ...]] = {}
         for d, factor in enumerate(self.factors):
             values = [factor.value_at(self.samples[k].point[d]) for k in members]
             if factor.kind == "choice":
                 found[factor.path] = tuple(sorted(set(map(str, values))))
             else:
-                found[factor.path] = (min(values), max(values))  # type: ignore[type-var]
+                found[factor.path] = (min(values), max(values))
         return found
 
     def table(self) -> dict[str, Any]:

@@ -40,10 +40,10 @@ class Splitting(Sampling):
 
     Particles are drawn from the distributions. At each level, those with the smallest robustness are copied, and each
     copy moves by Markov steps that keep the distribution below the level: the factors move by a preconditioned
-    Crank-Nicolson step, and half of the steps draw another seed. A failure that depends on the seed more than on the
-    factors is found, too. The probability is the product of the shares at the levels. Replicates are independent; the
-    interval is Student's over their estimates. A replicate that reaches no failure within the budget counts as 0, and
-    the interval then starts at 0.
+    Crank-Nicolson step, and half of the steps draw another seed. Failures that depend on the seed alone are as rare as
+    in plain runs, since seeds have no order. The probability is the product of the shares at the levels. Replicates are
+    independent; the interval is Student's over their estimates. A replicate that reaches no failure within the budget
+    counts as 0, and the interval then starts at 0.
 
     Fields:
         replicates: number of independent replicates.

@@ -6,6 +6,7 @@ from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
 from .failure import RunFailure, RunFailureWarning
+from .faults.fault_order import FaultOrder
 from .orders.avatar_order import AvatarOrder
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
 from .orders.element_orders import AddElementOrder, RemoveElementOrder
@@ -54,6 +55,7 @@ __all__ = [
     "EpisodeDigest",
     "EpisodeLog",
     "EpisodeStatistics",
+    "FaultOrder",
     "GoalOrder",
     "HungDecisionOrder",
     "JointOrder",

@@ -25,6 +25,8 @@ from crowdbot.sensors import (
 from crowdbot.trials import Mount, RobotSpec
 from crowdbot.world import MountPlacement, World, wheel_geometry, wheel_rotation
 
+from .readings.old_people import arrival_of, known_people, people_then
+from .readings.reading_names import name_by_id, tracked_columns
 from .world_view import WorldView
 
 __all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "spatial"]
@@ -44,6 +46,7 @@ class SensorReadings:
         reading: reading with N rows.
         ids: ``[N, A]`` ids of the agents at the time of the measurement.
         slots: ``[N]`` number of agents of each environment.
+        people: ``[N, A, 4]`` positions and velocities then, for a sensor whose readings can be old.
     """
 
     name: str
@@ -51,6 +54,7 @@ class SensorReadings:
     reading: Reading
     ids: Ints
     slots: Ints
+    people: NDArray[np.float64] | None = None
 
     def row(self, number: int) -> Reading:
         """Return the reading in row ``number`` with person ids instead of agent indices."""
@@ -58,7 +62,7 @@ class SensorReadings:
         reading = self.reading if alone else self.reading.environment(number)
         slots = int(self.slots[number])
         if isinstance(reading, TrackedPeople) and reading.present.shape[1] > slots:
-            reading = _tracked_columns(reading, np.arange(slots))
+            reading = tracked_columns(reading, np.arange(slots))
         return name_by_id(reading, self.ids[number, :slots])
 
     def without(self, excluded: Bools) -> SensorReadings | None:
@@ -78,7 +82,8 @@ class SensorReadings:
     def select(self, rows: Ints, environments: Ints) -> SensorReadings:
         """Return some rows, which belong to other environments now."""
         reading = self.reading.select(rows)
-        return SensorReadings(self.name, environments, reading, self.ids[rows], self.slots[rows])
+        people = None if self.people is None else self.people[rows]
+        return SensorReadings(self.name, environments, reading, self.ids[rows], self.slots[rows], people)
 
 
 @dataclass
@@ -100,6 +105,8 @@ class MountedSensor:
         moved: ``[E, 6]`` place on the robot after its joints moved, as ``placed``; None before.
         seen, seen_ids: ``[E, A]`` agents in the latest reading, and their ids then.
         wheels: wheels of the robot, for a sensor with encoders.
+        lateness: ``[E]`` additional ticks until a reading arrives, by a fault; None for a sensor without one.
+        keeps_people: whether readings hold the states of people.
     """
 
     mount: Mount
@@ -116,6 +123,8 @@ class MountedSensor:
     seen: Bools | None = None
     seen_ids: Ints | None = None
     wheels: WheelGeometry | None = None
+    lateness: Ints | None = None
+    keeps_people: bool = False
 
     def __post_init__(self) -> None:
         if not len(self.latest):
@@ -182,6 +191,10 @@ class MountedSensor:
         readings = self.latest[environment]
         return None if readings is None else readings.row(int(self.latest_row[environment]))
 
+    def known_people(self, environment: int) -> NDArray[np.float64] | None:
+        """Return ``[A, 4]`` positions and velocities of agents in the latest reading, None without one."""
+        return known_people(self.latest[environment], int(self.latest_row[environment]))
+
     def _keep(self, readings: SensorReadings) -> None:
         index = readings.environments
         self.latest[index] = readings
@@ -211,7 +224,8 @@ class MountedSensor:
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
         if new is not None or self.state is not None:
             self.state = new if every else put_state_rows(self.state, due, new, count)
-        return self.schedule.arrives(ticks[due]), SensorReadings(self.name, due, reading, ids[due], slots[due])
+        people = people_then(self, around, due)
+        return arrival_of(self, ticks, due), SensorReadings(self.name, due, reading, ids[due], slots[due], people)
 
     def _measure_one(self, e: int, ticks: Ints, agent: int, around: WorldView) -> tuple[Ints, SensorReadings]:
         index = np.array([e])
@@ -220,8 +234,9 @@ class MountedSensor:
         world = around.world
         view = SensorView(scene, pose, around.of(e), wheel_rotation(world, agent, self.wheels, e))
         reading, self.state[e] = self._ask(view, self.state[e], self.rngs[e])
-        return self.schedule.arrives(ticks[index]), SensorReadings(
-            self.name, index, reading, world.ids[index], world.slots[index]
+        people = people_then(self, around, index)
+        return arrival_of(self, ticks, index), SensorReadings(
+            self.name, index, reading, world.ids[index], world.slots[index], people
         )
 
     def _ask(self, view: SensorView, state: Any, rng: Any) -> tuple[Reading, Any]:
@@ -321,6 +336,7 @@ def mounted_sensors(
             own and not space and not sensor.renders and not world.has_own_walls,
             None,
             wheels=wheel_geometry(robot.body) if sensor.encoders else None,
+            keeps_people=any(getattr(spec.fault, "sensor", None) in ("", mount.name) for spec in robot.faults),
         )
         probe.state = sensor.begin() if probe.together else [sensor.begin() for _ in seeds]
         old = (known or {}).get(mount.name)
@@ -334,18 +350,6 @@ def mounted_sensors(
     return tuple(found)
 
 
-def name_by_id(reading: Reading, ids: Ints) -> Reading:
-    """Return a reading of one environment with person ids instead of agent indices."""
-    if np.array_equal(ids, np.arange(len(ids))):
-        return reading
-    if isinstance(reading, TrackedPeople):
-        return _tracked(reading, ids)
-    hit = getattr(reading, "hit", None)
-    if hit is None:
-        return reading
-    return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[np.maximum(hit, 0)], hit))  # type: ignore[call-arg]
-
-
 def visible_agents(reading: Reading, agents: int) -> Bools | None:
     """Return ``[N, A]`` the agents in a reading; None for sensors that do not detect people."""
     if isinstance(reading, TrackedPeople):
@@ -354,24 +358,6 @@ def visible_agents(reading: Reading, agents: int) -> Bools | None:
     if hit is None or not hasattr(reading, "visible_agents"):
         return None
     return np.asarray(reading.visible_agents(agents))
-
-
-def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
-    """Return the rows ordered by id: row k belongs to person k."""
-    there = np.flatnonzero(ids >= 0)
-    count = int(ids.max(initial=-1)) + 1
-    rows: dict[str, Any] = {}
-    for part in ("present", "position", "velocity", "radius", "heading"):
-        value = getattr(reading, part)
-        wide = np.full((len(value), count, *value.shape[2:]), False if part == "present" else np.nan)
-        wide[:, ids[there]] = value[:, there]
-        rows[part] = wide
-    return dataclasses.replace(reading, **rows)
-
-
-def _tracked_columns(reading: TrackedPeople, agents: Ints) -> TrackedPeople:
-    parts = ("present", "position", "velocity", "radius", "heading")
-    return dataclasses.replace(reading, **{part: getattr(reading, part)[:, agents] for part in parts})
 
 
 def _select_pose(pose: Pose | SpatialPose, index: Ints) -> Any:

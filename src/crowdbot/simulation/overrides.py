@@ -14,6 +14,7 @@ from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 from crowdbot.world import environment_seeds
 
 from .door_orders import check_doors, order_doors
+from .faults.fault_state import FaultState
 from .mounted_sensor import mounted_sensors
 from .robot_control import RobotControl, decision_schedule
 from .robot_joints import restore_joints
@@ -254,6 +255,16 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
         control=decision_schedule(robot, simulation.world.clock),
         sensors=sensors,
         arrived=old.arrived if same_goal else np.zeros_like(old.arrived),
+        faults=_faults(simulation, old, robot),
         goal=old.goal if same_goal else np.tile(np.array(goal.position, dtype=np.float64), (count, 1)),
         tolerance=old.tolerance if same_goal else np.full(count, goal.tolerance),
     )
+
+
+def _faults(simulation: Simulation, old: RobotControl, robot: RobotSpec) -> FaultState | None:
+    """Return the faults of a robot that continues; random numbers go on where the kinds of faults are the same."""
+    new = FaultState.of(robot, simulation.seeds)
+    kinds = [[type(spec.fault) for spec in one.faults] for one in (old.robot, robot)]
+    if new is not None and old.faults is not None and kinds[0] == kinds[1]:
+        new.draws, new.rngs = old.faults.draws, old.faults.rngs
+    return new

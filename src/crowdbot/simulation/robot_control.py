@@ -28,6 +28,7 @@ from crowdbot.world import Twists, World, free_joints
 
 from .decision_timer import DecisionTimer
 from .door_paths import next_waypoints
+from .faults.fault_state import FaultState
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
@@ -92,6 +93,7 @@ class RobotControl:
         tolerance: ``[E]`` distance [m] to the goal below which the robot has arrived.
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
         joints: ``[E, J]`` target of each joint [rad or m] that has been moved, otherwise NaN.
+        faults: faults of the robot, or None.
         wanted: targets of joints from the latest decisions by environment, until they are applied.
     """
 
@@ -112,6 +114,7 @@ class RobotControl:
     goal: Floats
     tolerance: Floats
     joints: Floats
+    faults: FaultState | None = None
     wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
@@ -140,6 +143,7 @@ class RobotControl:
             np.tile(np.array(robot.goal.position, dtype=np.float64), (count, 1)),
             np.full(count, robot.goal.tolerance),
             np.full((count, len(free_joints(robot.body))), np.nan),
+            FaultState.of(robot, seeds),
         )
 
     def change_memory(self, trial: Trial, robot: RobotSpec) -> RobotControl:
@@ -158,10 +162,12 @@ class RobotControl:
             tracks=self.tracks if same else _empty_tracks(robot, count),
         )
 
-    @property
-    def commands(self) -> Twists:
-        """The current commands as twists."""
-        return Twists.of_columns(np.ascontiguousarray(self.command.T.copy()))
+    def commands(self, times: Floats) -> Twists:
+        """Return the current commands as twists, as the drive gets them at times ``[E]`` [s]."""
+        command = self.command
+        if self.faults is not None:
+            command = self.faults.change_commands(command, times, self.robot.radius)
+        return Twists.of_columns(np.ascontiguousarray(command.T.copy()))
 
     def mount(self, name: str) -> Mount:
         """Return a mounted sensor by name."""
@@ -217,7 +223,7 @@ class RobotControl:
             rows = np.zeros(1, dtype=np.int64)
         else:
             rows, scene = environments, around.flat
-        return _Observations.of(
+        batch = _Observations.of(
             scene,
             self.agent,
             self.limits,
@@ -230,6 +236,7 @@ class RobotControl:
             predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),
         )
+        return batch if self.faults is None else self.faults.distort(batch, world, self.sensors, environments)
 
     def _latest(self, environment: int) -> dict[str, Reading]:
         """Return the latest reading of each sensor that has one."""
@@ -272,6 +279,8 @@ class RobotControl:
             if isinstance(error, MissingExtra):
                 raise error
         late = self.timer.judge(self.robot, environments, ticks, decisions)
+        if self.faults is not None:
+            late = late | self.faults.lost_commands(around.world.times, environments)
         self._remember(environments, known)
         for k, e in enumerate(environments.tolist()):
             if k not in failures:
@@ -328,6 +337,7 @@ class RobotControl:
         other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
         other.tracks = self.tracks.select(environments) if self.tracks else self.tracks
         other.timer = self.timer.select(environments)
+        other.faults = None if self.faults is None else self.faults.select(environments)
         for name in ROWS:
             setattr(other, name, getattr(self, name)[environments])
         return other
@@ -339,6 +349,8 @@ class RobotControl:
         for k, e in enumerate(environments.tolist()):
             self.memories[e] = other.memories[k]
         self.timer.put(environments, other.timer)
+        if self.faults is not None and other.faults is not None:
+            self.faults.put(environments, other.faults)
         if self.tracks:
             self.tracks = self.tracks.put(environments, other.tracks)
         for name in ROWS:

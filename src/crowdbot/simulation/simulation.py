@@ -351,7 +351,7 @@ class Simulation:
     def _step(self) -> None:
         """Parts 1 to 5."""
         ids = self.world.ids.copy()
-        commands = {robot.agent: robot.commands for robot in self.robots}
+        commands = {robot.agent: robot.commands(self.world.times) for robot in self.robots}
         self.world, errors = step_environments(self.world, commands)
         if self.around.world is not self.world:
             self._set_around()

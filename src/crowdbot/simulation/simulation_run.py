@@ -325,6 +325,10 @@ class SimulationRun:
         for control in self.simulation.robots:
             for order in control.timer.orders(control.robot, self.simulation.ticks, self.simulation.failures):
                 self._orders.setdefault(order.environment, []).append(order)
+            if control.faults is not None:
+                step = self.simulation.world.clock.dt
+                for e, event in control.faults.orders(control.robot, self.simulation.ticks, step):
+                    self._orders.setdefault(e, []).append(event)
 
     def _end_where(self, chosen: Bools, stops: Bools) -> Bools:
         """Set the ends of environments ``[E]`` that end now, and return which ones."""

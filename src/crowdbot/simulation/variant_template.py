@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.trials import Crowds, InitialPeople, RandomizedModel, Trial
+from crowdbot.trials import Crowds, InitialPeople, RandomizedModel, Trial, have_same_kinds
 from crowdbot.world import World, join_worlds
 
 from .robot_control import RobotControl
@@ -24,7 +24,7 @@ OWN = ("name", "about", "seed")
 FREE = {
     "spawners": ("zone", "speed", "radius"),
     "agents": ("x", "y", "speed", "radius"),
-    "robots": ("x", "y", "heading", "goal"),
+    "robots": ("x", "y", "heading", "goal", "faults"),
 }
 """Fields of elements in which variants may differ."""
 
@@ -32,8 +32,8 @@ FREE = {
 class VariantTemplate(WorldTemplate):
     """Makes the initial worlds of variants of the same shape, one for each environment.
 
-    Variants can differ in the parameters of the crowd model, in start zones, speeds and radii of people, and in start
-    and goal of robots. Each environment is bit-identical to a simulation of its variant alone.
+    Variants can differ in the parameters of the crowd model, in start zones, speeds and radii of people, and in start,
+    goal and numbers of faults of robots. Each environment is bit-identical to a simulation of its variant alone.
 
     Args:
         trials: variant of each environment.
@@ -88,6 +88,8 @@ class VariantTemplate(WorldTemplate):
             for e, trial in enumerate(self.trials):
                 goal = trial.robots[k].goal
                 control.goal[e], control.tolerance[e] = goal.position, goal.tolerance
+                if control.faults is not None:
+                    control.faults.change(e, trial.robots[k])
 
     def begin(self, seeds: Sequence[int]) -> tuple[World, InitialPeople]:
         """Return the world of one seed for each variant at its start, and the people of the first.
@@ -109,8 +111,8 @@ def _check_shape(first: Trial, other: Trial) -> None:
         if field.compare and name not in OWN and not _is_alike(getattr(first, name), getattr(other, name), name):
             raise InputError(
                 f"the variants {first.name!r} and {other.name!r} differ in {name}; variants in one simulation can"
-                " differ in parameters of the crowd model, starts, speeds and radii of people, and in start and goal"
-                " of robots"
+                " differ in parameters of the crowd model, starts, speeds and radii of people, and in start, goal"
+                " and numbers of faults of robots"
             )
 
 
@@ -132,4 +134,6 @@ def _is_same_but(one: Any, two: Any, free: Collection[str]) -> bool:
     names = [field.name for field in dataclasses.fields(one) if field.compare and field.name not in free]
     if any(getattr(one, name) != getattr(two, name) for name in names):
         return False
-    return "goal" not in free or bool(one.goal.tolerance == two.goal.tolerance)
+    if "goal" not in free:
+        return True
+    return bool(one.goal.tolerance == two.goal.tolerance) and have_same_kinds(one.faults, two.faults)

@@ -16,6 +16,14 @@ if TYPE_CHECKING:
     from .camera import OVERVIEW, Camera, overview
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
+    from .faults.blind_sensor import BlindSensor
+    from .faults.fault import Fault, FaultSpec, SensorFault, have_same_kinds
+    from .faults.frozen_sensor import FrozenSensor
+    from .faults.late_sensor import LateSensor
+    from .faults.localization_jump import LocalizationJump
+    from .faults.localization_offset import LocalizationOffset
+    from .faults.lost_commands import LostCommands
+    from .faults.slipping_wheel import SlippingWheel
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_digest, code_references, is_code
     from .files.stage_maps import is_area_file, map_files
@@ -102,6 +110,14 @@ __getattr__, __dir__ = lazy_exports(
         "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
         "placement.spawn_placement": ["GAP", "InitialPeople"],
+        "faults.blind_sensor": ["BlindSensor"],
+        "faults.fault": ["Fault", "FaultSpec", "SensorFault", "have_same_kinds"],
+        "faults.frozen_sensor": ["FrozenSensor"],
+        "faults.late_sensor": ["LateSensor"],
+        "faults.localization_jump": ["LocalizationJump"],
+        "faults.localization_offset": ["LocalizationOffset"],
+        "faults.lost_commands": ["LostCommands"],
+        "faults.slipping_wheel": ["SlippingWheel"],
         "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
         "robots.reaction": ["ReactionSpec", "robot_reactions"],
@@ -142,6 +158,7 @@ __all__ = [
     "Agent",
     "AgentParameter",
     "Avatar",
+    "BlindSensor",
     "Camera",
     "ContactSpec",
     "Crowd",
@@ -153,13 +170,20 @@ __all__ = [
     "End",
     "EndCondition",
     "Exit",
+    "Fault",
+    "FaultSpec",
+    "FrozenSensor",
     "Group",
     "ImportedTrial",
     "InitialPeople",
     "JointTarget",
     "Journey",
+    "LateSensor",
     "Light",
     "Limits",
+    "LocalizationJump",
+    "LocalizationOffset",
+    "LostCommands",
     "ModelRange",
     "Mount",
     "Obstacle",
@@ -183,6 +207,8 @@ __all__ = [
     "RobotPredictor",
     "RobotSpec",
     "Routing",
+    "SensorFault",
+    "SlippingWheel",
     "SourceSpec",
     "Spawner",
     "Stage",
@@ -213,6 +239,7 @@ __all__ = [
     "expand_sweeps",
     "floor_plan",
     "has_kind",
+    "have_same_kinds",
     "import_dxf",
     "import_hunavsim",
     "import_original",

@@ -29,6 +29,7 @@ from crowdbot.prediction import Predictor
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
+from .faults.fault import FaultSpec, fault_problems
 from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
@@ -193,6 +194,7 @@ class RobotSpec:
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
     joints: tuple[JointTarget, ...] = children("joint", about="targets of joints over time", max=1000)
+    faults: tuple[FaultSpec, ...] = children("fault", about="faults of sensors, localization, commands, wheels", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Folder of the robot folder, and whether that may lie outside; not part of the XML."""
@@ -233,6 +235,8 @@ class RobotSpec:
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
         for problem in rider_problems(self.rider_kind, self.body.seat):
+            raise InputError(problem)
+        for problem in fault_problems(self.faults, self.sensors):
             raise InputError(problem)
         for problem in joint_problems(self.joints, self.body) if self.joints else ():
             raise InputError(problem)

@@ -36,10 +36,13 @@ def read_sensors(
     live = live.copy()
     for robot in robots:
         for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
-            arrived, failures = sensor.work(ticks, live, robot.agent, around)
+            able = live if robot.faults is None else robot.faults.measuring(sensor, around.world, live)
+            arrived, failures = sensor.work(ticks, able, robot.agent, around)
             found += [(robot, readings) for readings in arrived]
             for e, error in failures:
                 errors[e], live[e] = error, False
+        if robot.faults is not None:
+            robot.faults.clear_blind(robot.sensors, around.world.times)
     if errors:
         failed = ~live
         rest = ((robot, readings.without(failed)) for robot, readings in found)

@@ -33,7 +33,10 @@ HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
     "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control wanted planner",
     "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
-    "crowdbot.simulation.mounted_sensor.MountedSensor": "mount placed schedule space together wheels",
+    "crowdbot.simulation.faults.fault_state.FaultState": "faults names",
+    "crowdbot.simulation.mounted_sensor.MountedSensor": (
+        "mount placed schedule space together wheels lateness keeps_people"
+    ),
     "crowdbot.world.planar.PlanarWorld": (
         "model drives dt seed leave_radius robot_margin router contact limits journeys sources exits portals script"
         " heading_jitter substeps latency ghosts reactions joined _models _segments _surfaces _plain_router"

@@ -1,0 +1,1 @@
+"""Faults of robots in a running simulation."""
