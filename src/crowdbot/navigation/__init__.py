@@ -12,7 +12,10 @@ from .observation import DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
+from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
 from .planners.model_predictive import MPCNavigator
+from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
+from .planners.policy_weights import LAYERS, PolicyWeights
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
@@ -21,6 +24,9 @@ from .track_batch import TrackBatch
 from .track_history import TrackHistory
 
 __all__ = [
+    "LAYERS",
+    "OWN_VALUES",
+    "PERSON_VALUES",
     "Action",
     "AgentsInView",
     "Decisions",
@@ -34,6 +40,9 @@ __all__ = [
     "Observation",
     "ObservationBatch",
     "PathPlanner",
+    "PolicyInputs",
+    "PolicyNavigator",
+    "PolicyWeights",
     "PotentialFieldNavigator",
     "SocialForceNavigator",
     "Straight",
@@ -46,4 +55,5 @@ __all__ = [
     "check_navigator",
     "copy_memory",
     "dynamic_window_twist",
+    "policy_inputs",
 ]
