@@ -25,7 +25,8 @@ def meeting(people=(), **changes):
 
 
 def test_the_room_shows_its_contracts():
-    names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "social-force", "straight"}
+    names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "rds", "social-force", "straight"}
+    names |= {"time-elastic-band"}
     assert set(BUILTIN) == names
     assert all(hasattr(navigation, name) for name in navigation.__all__)
 

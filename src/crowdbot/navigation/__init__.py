@@ -12,6 +12,8 @@ from .observation import DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
+from .planners.driving_support import RDSNavigator
+from .planners.elastic_band import TimeElasticBandNavigator
 from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
 from .planners.model_predictive import MPCNavigator
 from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
@@ -44,8 +46,10 @@ __all__ = [
     "PolicyNavigator",
     "PolicyWeights",
     "PotentialFieldNavigator",
+    "RDSNavigator",
     "SocialForceNavigator",
     "Straight",
+    "TimeElasticBandNavigator",
     "TrackBatch",
     "TrackHistory",
     "VisiblePeople",

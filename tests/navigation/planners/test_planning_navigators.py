@@ -14,7 +14,9 @@ from crowdbot.navigation import (
     MPCNavigator,
     Observation,
     PotentialFieldNavigator,
+    RDSNavigator,
     SocialForceNavigator,
+    TimeElasticBandNavigator,
     TrackHistory,
     VisiblePeople,
     check_navigator,
@@ -22,7 +24,14 @@ from crowdbot.navigation import (
 from crowdbot.prediction import Predictor
 from crowdbot.world import DifferentialDrive, Omnidirectional, Twists
 
-KINDS = (SocialForceNavigator, PotentialFieldNavigator, DynamicWindowNavigator, MPCNavigator)
+KINDS = (
+    SocialForceNavigator,
+    PotentialFieldNavigator,
+    DynamicWindowNavigator,
+    MPCNavigator,
+    TimeElasticBandNavigator,
+    RDSNavigator,
+)
 WHEELS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 ANY_WAY = WHEELS._replace(holonomic=True)
 pytestmark = pytest.mark.parametrize("kind", KINDS)

@@ -96,8 +96,9 @@ class ORCA(CrowdModel):
         time_horizon: time horizon for agents [s].
         time_horizon_walls: time horizon for walls [s].
         max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
+        reciprocal: whether external agents, such as robots, are expected to make half of the change.
 
-    External agents do not give way; the others make the whole change. The model chooses the permitted velocity nearest
+    External agents do not give way; unless ``reciprocal``, the others make the whole change. The model chooses the permitted velocity nearest
     to the desired one. If none is permitted, it minimises the largest violation (walls are never violated). Velocities
     may be discontinuous: real robots need an acceleration limit.
 
@@ -131,6 +132,7 @@ class ORCA(CrowdModel):
         2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", min=SHORTEST
     )
     max_speed: PerAgent | None = None
+    reciprocal: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -148,7 +150,7 @@ class ORCA(CrowdModel):
             rows(speed_limit(self.max_speed, scene)),
             rows(per_agent(self.time_horizon, scene.shape, "time_horizon")),
             rows(per_agent(self.time_horizon_walls, scene.shape, "time_horizon_walls")),
-            rows(scene.external),
+            rows(np.zeros_like(scene.external) if self.reciprocal else scene.external),
             rows(walking),
         )
         launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))

@@ -22,6 +22,8 @@ Floats = NDArray[np.float64]
 
 STEP = 0.2
 """Time step of plans [s]."""
+WALKING = 0.5
+"""Speed [m/s] from which the uncertainty of a person grows fully."""
 LOGISTIC = 1.702
 """Factor with which the logistic function is within 0.01 of the normal distribution."""
 WALL = 100.0
@@ -38,7 +40,7 @@ class MPCNavigator(Navigator):
 
     * progress: ``(mean + last remaining path) / speed`` over the horizon,
     * ``risk`` times the sum over people of the largest probability of contact, ``Phi(-(gap - margin) / sigma)`` with
-      ``sigma = uncertainty + growth t``, as a weighted mean over the futures of the forecast,
+      ``sigma = uncertainty + growth t min(1, pace / 0.5 m/s)``, as a weighted mean over the futures of the forecast,
     * ``comfort`` times the mean lack of ``space`` to people, as a share,
     * ``smoothness`` times the change of the motion in the first step, as shares of the largest speed and turn rate,
     * the depth in walls and their margin.
@@ -52,7 +54,7 @@ class MPCNavigator(Navigator):
         risk: cost of a certain contact [s].
         margin: clearance at which a contact is as likely as not [m].
         uncertainty: standard deviation of the clearance now [m].
-        growth: its growth with time [m/s].
+        growth: its growth with time for a person who walks [m/s].
         comfort: cost of no clearance during the horizon [s].
         space: clearance to people that is wanted [m].
         smoothness: cost of a full change of the twist [s].
@@ -76,8 +78,8 @@ class MPCNavigator(Navigator):
     risk: float = 20.0
     margin: float = 0.05
     uncertainty: float = 0.05
-    growth: float = 0.08
-    comfort: float = 2.0
+    growth: float = 0.02
+    comfort: float = 1.0
     space: float = 0.4
     smoothness: float = 0.1
     wall_margin: float = 0.1
@@ -109,19 +111,22 @@ class MPCNavigator(Navigator):
     def _people(self, observation: Observation, position: Floats) -> Floats:
         """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``."""
         T, total = position.shape[1], np.zeros(len(position))
-        places, radius, weight = self._forecast(observation, T)
-        sigma = self.uncertainty + self.growth * STEP * np.arange(1, T + 1)
+        places, radius, weight, pace = self._forecast(observation, T)
+        sigma = self.uncertainty + self.growth * STEP * np.arange(1, T + 1)[:, None] * pace
         for future, share in zip(places, weight.tolist(), strict=True):
             away = position[:, :, None] - future
             gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - radius - observation.radius
-            steep = np.clip(LOGISTIC * (gap - self.margin) / sigma[:, None], -50.0, 50.0)
+            steep = np.clip(LOGISTIC * (gap - self.margin) / sigma, -50.0, 50.0)
             meets = 1.0 / (1.0 + np.exp(steep.min(axis=1)))
             lack = np.maximum(1.0 - np.maximum(gap, 0.0) / self.space, 0.0).max(axis=2, initial=0.0)
             total += share * (self.risk * meets.sum(axis=1) + self.comfort * lack.mean(axis=1))
         return total
 
-    def _forecast(self, observation: Observation, steps: int) -> tuple[Floats, Floats, Floats]:
-        """Return places ``[K, T, N, 2]`` of the people within reach, their radii ``[N]`` and the weights ``[K]``."""
+    def _forecast(self, observation: Observation, steps: int) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return places ``[K, T, N, 2]`` of the people within reach, radii ``[N]``, weights ``[K]``, shares ``[N]``.
+
+        The shares are those of the growth of the uncertainty: who stands is expected to stay.
+        """
         people = observation.people
         times = STEP * np.arange(1, steps + 1)
         places = (people.position + times[:, None, None] * people.velocity)[None]
@@ -140,7 +145,8 @@ class MPCNavigator(Navigator):
         reach = self.speed * self.horizon + observation.radius + self.space + 1.0
         closest = np.hypot(*np.moveaxis(places - observation.position, -1, 0)).min(axis=(0, 1)) - people.radius
         near = closest < reach
-        return places[:, :, near], people.radius[near], weight
+        pace = np.minimum(np.hypot(*people.velocity[near].T) / WALKING, 1.0)
+        return places[:, :, near], people.radius[near], weight, pace
 
     def _walls(self, observation: Observation, position: Floats) -> Floats:
         """Return the cost ``[C]`` of paths ``[C, T, 2]`` in walls or in their margin."""

@@ -86,9 +86,8 @@ def roll_out(observation: Observation, speed: float, steps: int, step: float) ->
         if k == 0:
             first[:] = target
             step_of = motion - _motion(observation)
-            change = (
-                np.hypot(step_of[:, 0], step_of[:, 1]) / top + np.abs(step_of[:, 2]) / observation.limits.max_turn_rate
-            )
+            turned = 0.0 if observation.limits.holonomic else np.abs(step_of[:, 2]) / observation.limits.max_turn_rate
+            change = np.hypot(step_of[:, 0], step_of[:, 1]) / top + turned
         ahead = np.where(passed[:, None], goal, way) - place
         distance = np.hypot(*ahead.T)
         remaining[:, k] = distance + np.where(passed, 0.0, beyond)

@@ -36,9 +36,9 @@ SLOWEST = 1e-6
 """Turn rate of the robot, which keeps its heading [rad/s]; a drive needs one above 0."""
 
 ORCA_OF_CROWDNAV = navigation.ORCANavigator(
-    safety=0.0, share=0.5, time_horizon=5.0, neighbor_distance=10.0, max_neighbors=10, reaction=STEP
+    safety=MARGIN, share=0.5, time_horizon=5.0, neighbor_distance=10.0, max_neighbors=10, reaction=STEP
 )
-"""The robot's ORCA with the settings of CrowdNav, without a safety margin."""
+"""ORCA of the robot with the settings of CrowdNav, which adds 0.01 m to each radius even without a safety margin."""
 
 
 def _robot(radius: float, visible: bool) -> RobotSpec:
@@ -54,9 +54,7 @@ def _robot(radius: float, visible: bool) -> RobotSpec:
         goal=RobotGoal(0.0, radius, 0.3),
         drive=Omnidirectional(1.0, SLOWEST, INSTANT, INSTANT),
         navigator=ORCA_OF_CROWDNAV,
-        sensors=(
-            Mount(name="people", sensor=GroundTruthPeople(range_max=100.0, visible_only=False, rate=1.0 / STEP)),
-        ),
+        sensors=(Mount(name="people", sensor=GroundTruthPeople(range_max=100.0, visible_only=False, rate=1.0 / STEP)),),
     )
 
 
@@ -74,7 +72,7 @@ def _crossing(
         heading_jitter=0.0,
         robot_margin=MARGIN,
         recording=RecordingSpec(period=STEP, markers=2.0 * STEP),
-        crowd=ORCA(10.0, 10.0, 5.0, 5.0, max_speed=1.0),
+        crowd=ORCA(10.0, 10.0, 5.0, 5.0, max_speed=1.0, reciprocal=True),
         spawners=[
             Spawner(
                 name="people",
