@@ -31,18 +31,22 @@ def weights_of(folder: Path) -> list[bytes]:
 def test_the_same_training_gives_the_same_weights_to_the_last_bit(tmp_path: Path) -> None:
     rows = []
     for name in ("a", "b"):
-        training = train_navigator(TASKS, SMALL, tmp_path / name)
+        training = train_navigator(TASKS, SMALL, tmp_path / name, cases=4)
         rows.append([{k: v for k, v in row.items() if "seconds" not in k} for row in training.rows])
     assert weights_of(tmp_path / "a") == weights_of(tmp_path / "b")
     assert rows[0] == rows[1]
+    score = training.score
+    assert [row["trial"] for row in score] == ["crowdnav-circle-5 people=2", "crowdnav-square-5 people=3"]
+    assert all(sum(float(row[name]) for name in ("success", "collision", "timeout")) == 1.0 for row in score)
+    assert PolicyWeights.read(tmp_path / "b" / "policy.npz")[1]["score"] == score
     assert rows[0][-1]["steps"] == 3 * 2 * 6 * 5
-    other = train_navigator(TASKS, PPOSettings(**{**vars(SMALL), "seed": 6}), tmp_path / "c")
+    other = train_navigator(TASKS, PPOSettings(**{**vars(SMALL), "seed": 6}), tmp_path / "c", cases=0)
     assert weights_of(tmp_path / "c") != weights_of(tmp_path / "a")
     assert other.done == 3
 
 
 def test_an_interrupted_training_resumes_with_the_same_end(tmp_path: Path) -> None:
-    train_navigator(TASKS, SMALL, tmp_path / "whole")
+    train_navigator(TASKS, SMALL, tmp_path / "whole", cases=0)
 
     def stop(row: dict[str, float], rounds: int) -> None:
         raise KeyboardInterrupt
@@ -52,7 +56,7 @@ def test_an_interrupted_training_resumes_with_the_same_end(tmp_path: Path) -> No
             train_navigator(
                 TASKS, SMALL, tmp_path / "part", resume=(tmp_path / "part" / "last.npz").is_file(), report=stop
             )
-    done = train_navigator(TASKS, SMALL, tmp_path / "part", resume=True)
+    done = train_navigator(TASKS, SMALL, tmp_path / "part", resume=True, cases=0)
     assert done.done == 3
     assert weights_of(tmp_path / "part") == weights_of(tmp_path / "whole")
     with (tmp_path / "part" / "log.csv").open() as log:
@@ -142,7 +146,9 @@ def test_the_command_trains_and_resumes(tmp_path: Path, capsys: pytest.CaptureFi
     told = json.loads(capsys.readouterr().out)
     assert told["rounds"] == 2
     assert told["log"][-1]["steps"] == 2 * 4 * 3
-    assert Path(told["weights"]).is_file()
+    assert told["score"][0]["trial"] == "crowdnav-circle-5 people=2"
+    card = PolicyWeights.read(Path(told["weights"]))[1]
+    assert card["command"].startswith('crowdbot train navigator --trials "crowdnav-circle-5 people=2" --rounds 2')
     assert main(words(tmp_path / "a")) == 2
     assert "has a training; add --resume" in capsys.readouterr().err
     assert main(words(tmp_path / "a", "--resume")) == 0
@@ -178,5 +184,7 @@ def test_predictors_need_recordings(tmp_path: Path, capsys: pytest.CaptureFixtur
 def test_a_task_without_environments_is_refused() -> None:
     with pytest.raises(InputError, match="environments = 0 must be at least 1"):
         TrainingTask("crowdnav-circle-5", 0)
+    with pytest.raises(InputError, match="task 'frontal': the first robot must have holonomic"):
+        NavigatorTraining([TrainingTask("frontal", 2)], SMALL)
     with pytest.raises(InputError, match="at least one task"):
         NavigatorTraining((), SMALL)

@@ -17,7 +17,7 @@ from .planners.elastic_band import TimeElasticBandNavigator
 from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
 from .planners.model_predictive import MPCNavigator
 from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
-from .planners.policy_weights import LAYERS, PolicyWeights
+from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
@@ -59,5 +59,6 @@ __all__ = [
     "check_navigator",
     "copy_memory",
     "dynamic_window_twist",
+    "policy_file",
     "policy_inputs",
 ]

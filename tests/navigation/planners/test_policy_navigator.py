@@ -22,9 +22,10 @@ from crowdbot.navigation import (
     PolicyWeights,
     VisiblePeople,
     check_navigator,
+    policy_file,
     policy_inputs,
 )
-from crowdbot.navigation.planners.policy_weights import read_policy, shipped_policy
+from crowdbot.navigation.planners.policy_weights import read_policy
 from crowdbot.world import DifferentialDrive, Omnidirectional, Twists
 
 HOLONOMIC = DriveLimits(1.0, 1.5, holonomic=True)
@@ -116,7 +117,7 @@ def test_people_who_are_far_away_or_unseen_have_no_effect() -> None:
 
 def test_the_network_equals_a_plain_calculation() -> None:
     batch = batch_of(5, 8, STIFF, 3)
-    weights, _ = PolicyWeights.read(shipped_policy())
+    weights, _ = PolicyWeights.read(policy_file())
     inputs = policy_inputs(batch)
     for e in range(5):
         own, people = inputs.own[e], inputs.people[e, : inputs.present[e]]
@@ -165,13 +166,13 @@ def test_it_reaches_its_goal_alone(limits: DriveLimits) -> None:
 
 
 def test_the_shipped_weights_have_a_card() -> None:
-    assert shipped_policy().stat().st_size < 1_000_000
-    _, card = PolicyWeights.read(shipped_policy())
+    assert policy_file().stat().st_size < 1_000_000
+    _, card = PolicyWeights.read(policy_file())
     assert {"plan", "rounds", "command", "score"} <= set(card)
 
 
 def test_wrong_files_of_weights_are_refused(tmp_path: Path) -> None:
-    weights, card = PolicyWeights.read(shipped_policy())
+    weights, card = PolicyWeights.read(policy_file())
     with pytest.raises(InputError, match=r"there is no file .*none.npz; make one with crowdbot train navigator"):
         PolicyWeights.read(tmp_path / "none.npz")
     (tmp_path / "text.npz").write_text("text")

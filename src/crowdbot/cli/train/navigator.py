@@ -65,7 +65,13 @@ def train_policy(options: argparse.Namespace) -> int:
                     note(_sentence(row, rounds))
 
             done = train_navigator(
-                tasks, settings, options.out, resume=options.resume, threads=options.threads, report=tell
+                tasks,
+                settings,
+                options.out,
+                resume=options.resume,
+                threads=options.threads,
+                command=_command(options),
+                report=tell,
             )
     except KeyboardInterrupt:
         if (options.out / CHECKPOINT).is_file():
@@ -96,6 +102,16 @@ def _settings(options: argparse.Namespace) -> PPOSettings:
     return PPOSettings(**values)
 
 
+def _command(options: argparse.Namespace) -> str:
+    """Return the command that makes the weights, for their card."""
+    words = ["crowdbot train navigator"]
+    if options.trials is not None:
+        words.append(f'--trials "{options.trials}"')
+    words += [f"--{name} {getattr(options, name)}" for name in ("rounds", "environments") if getattr(options, name)]
+    words += [f"--seed {options.seed}"] if options.seed else []
+    return " ".join([*words, *(["--set", *options.set] if options.set else []), "--out DIR"])
+
+
 def _tasks(options: argparse.Namespace) -> tuple[TrainingTask, ...]:
     """Return the tasks of ``--trials``, with equal numbers of environments, or the standard tasks."""
     from crowdbot.core import InputError
@@ -123,10 +139,10 @@ def _sentence(row: dict[str, float], rounds: int) -> str:
 def _print_result(options: argparse.Namespace, done: NavigatorTraining, file: str) -> None:
     last = done.rows[-1]
     if options.json:
-        print_json({"weights": file, "rounds": done.done, "log": done.rows})
+        print_json({"weights": file, "rounds": done.done, "log": done.rows, "score": done.score})
         return
-    names = ("success", "collision", "timeout")
-    caption = f"shares of the training episodes; {last['steps'] / 1e6:.2f} M steps in {last['seconds']:.0f} s"
-    rows = [(f"round {row['round']:.0f}", *(f"{row[name]:.3f}" for name in names)) for row in (done.rows[0], last)]
-    print_table("policy", ("", *names), rows, f"{caption}; weights in {file}")
+    names = ("success", "collision", "timeout", "time")
+    rows = [(str(row["trial"]), *(f"{row[name]:.3f}" for name in names)) for row in done.score]
+    caption = f"{last['steps'] / 1e6:.2f} M steps in {last['seconds']:.0f} s; weights in {file}"
+    print_table("policy in 200 unseen cases", ("trial", *names[:3], "time [s]"), rows, caption)
     note(f'compare with: crowdbot evaluate crowdnav-circle-5 --navigators "orca, policy file={file}" --seeds 0:500')

@@ -18,6 +18,7 @@ from crowdbot.navigation import PolicyWeights
 from crowdbot.prediction import load_checkpoint, save_checkpoint, torch_module, torch_threads
 
 from .policy_network import PolicyNetwork
+from .policy_score import score_policy
 from .policy_task import TrainingTask
 from .ppo_settings import PPOSettings
 from .ppo_update import update_policy
@@ -53,6 +54,7 @@ class NavigatorTraining:
         self.optimizer = torch.optim.Adam([*self.network.layers.values()], lr=settings.learning_rate, eps=1e-5)
         self.crowd_tasks = [task.crowd_task(settings.reward) for task in self.tasks]
         self.done, self.rows = 0, list[TrainingRow]()
+        self.score: list[dict[str, str | float]] = []
 
     @property
     def plan(self) -> str:
@@ -94,8 +96,8 @@ class NavigatorTraining:
         """Return the weights of the navigator now."""
         return self.network.weights()
 
-    def save(self, folder: Path) -> None:
-        """Write the state, the weights of the navigator and the log."""
+    def save(self, folder: Path, **card: Any) -> None:
+        """Write the state, the weights of the navigator with more values for their card, and the log."""
         moments = self.optimizer.state_dict()["state"]
         state = {
             "plan": self.plan,
@@ -105,7 +107,7 @@ class NavigatorTraining:
             "moments": {str(k): {name: np.asarray(v) for name, v in one.items()} for k, one in moments.items()},
         }
         save_checkpoint(folder / CHECKPOINT, KIND, state)
-        self.weights().save(folder / POLICY_FILE, {"plan": self.plan, "rounds": self.done})
+        self.weights().save(folder / POLICY_FILE, {"plan": self.plan, "rounds": self.done, **card})
         draft = folder / f"{LOG}.part"
         with draft.open("w", newline="", encoding="utf-8") as stream:
             table = csv.DictWriter(stream, list(self.rows[-1]) if self.rows else ["round"])
@@ -145,11 +147,14 @@ def train_navigator(
     *,
     resume: bool = False,
     threads: int = 1,
+    cases: int = 200,
+    command: str = "",
     report: Callable[[TrainingRow, int], Any] | None = None,
 ) -> NavigatorTraining:
     """Train the policy and write its state, weights and log to a folder after each round.
 
-    With one thread, the same tasks and settings give the same weights to the last bit, also after interruptions.
+    With one thread, the same tasks and settings give the same weights to the last bit, also after interruptions. At the
+    end, the card of the weights gets the score in unseen cases, see :func:`score_policy`.
 
     Args:
         tasks: trials with their numbers of environments.
@@ -157,6 +162,8 @@ def train_navigator(
         folder: output folder; created if missing.
         resume: whether to continue the training in the folder.
         threads: number of PyTorch threads.
+        cases: number of unseen cases of each task for the score; 0 for no score.
+        command: command for the card.
         report: called with each row of the log and the number of rounds.
 
     Raises:
@@ -170,7 +177,10 @@ def train_navigator(
         folder.mkdir(parents=True, exist_ok=True)
         while training.done < settings.rounds:
             row = training.run_round()
-            training.save(folder)
+            training.save(folder, command=command)
             if report is not None:
                 report(row, settings.rounds)
+    if cases:
+        training.score = score_policy(folder / POLICY_FILE, training.tasks, cases)
+        training.save(folder, command=command, score=training.score)
     return training

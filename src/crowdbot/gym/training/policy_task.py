@@ -70,8 +70,14 @@ class TrainingTask:
             raise InputError(f"task {self.trial!r}: environments = {self.environments} must be at least 1")
 
     def crowd_task(self, reward: Reward) -> CrowdTask:
-        """Return the task with the inputs of the policy and holonomic actions."""
+        """Return the task with the inputs of the policy and holonomic actions.
+
+        Raises:
+            InputError: the trial has no robot that moves in every direction.
+        """
         trial = load_trial(self.trial, **self.values)
+        if not trial.robots or not trial.robots[0].holonomic:
+            raise InputError(f'task {self.trial!r}: the first robot must have holonomic="true"')
         people = sum(one.count for one in trial.spawners) + len(trial.agents) + len(trial.robots) - 1
         people += sum(one.max_count or 20 for one in trial.sources)
         form = PolicyObservation("people", max_people=max(1, min(people, 20)))

@@ -17,7 +17,7 @@ from crowdbot.core import InputError
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES
 
-__all__ = ["LAYERS", "PolicyWeights", "read_policy"]
+__all__ = ["LAYERS", "PolicyWeights", "policy_file", "read_policy"]
 
 Singles = NDArray[np.float32]
 
@@ -91,8 +91,12 @@ class PolicyWeights(NamedTuple):
         return tuple(np.ascontiguousarray(value, dtype=np.float64) for value in self)
 
 
-def shipped_policy() -> Path:
-    """Return the file of the weights that are part of the package."""
+def policy_file() -> Path:
+    """Return the file of the weights that are part of the package.
+
+    >>> policy_file().name
+    'policy.npz'
+    """
     return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "navigators", "policy.npz")))
 
 
@@ -101,7 +105,7 @@ def read_policy(file: str) -> tuple[NDArray[np.float64], ...]:
 
     A file is read once, and again after it has changed.
     """
-    path = Path(file) if file else shipped_policy()
+    path = Path(file) if file else policy_file()
     changed = path.stat().st_mtime_ns if path.is_file() else 0
     return _layers(path, changed)
 
