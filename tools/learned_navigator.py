@@ -5,7 +5,8 @@
 Every row is a navigator in a trial with the seeds 0 to N - 1, all in one simulation: share of successes, of collisions
 and of timeouts with Wilson intervals of 95 %, mean time of the successes, and the mean impact speed over all cases,
 which is the closing speed at the first contact, or 0 without a contact, with a bootstrap interval. ORCA has the margins
-0 and 0.15 m of CrowdNav, which adds them and 0.01 m to the radii of both bodies. `check only` is the policy with a network that always moves straight to the goal: what its check of contacts does without learning.
+0 and 0.15 m of CrowdNav, which adds them and 0.01 m to the radii of both bodies. `check only` is the policy with a
+network that always moves straight to the goal: what its check of contacts does without learning.
 """
 
 from __future__ import annotations
