@@ -48,7 +48,7 @@ def test_the_official_checker_passes_without_a_warning(observation: str) -> None
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(CrowdEnv("circle-crossing", observation=observation, duration=3.0), skip_render_check=True)
-    assert CrowdEnv(observation=observation).metadata["render_modes"] == []
+    assert CrowdEnv(observation=observation).metadata["render_modes"] == ["rgb_array"]
 
 
 def test_an_episode_has_the_bytes_of_a_run() -> None:
@@ -176,8 +176,8 @@ def test_registered_environments_are_made() -> None:
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"observation": "image"}, "observation = 'image' must be one of people, scan, both"),
-        ({"action": "force"}, "action = 'force' must be one of velocity, holonomic"),
+        ({"observation": "image"}, "observation = 'image' must be one of people, scan, both, occupancy"),
+        ({"action": "force"}, "action = 'force' must be one of velocity, acceleration, holonomic"),
         ({"robot": "r2"}, "has no robot 'r2'; it has robot"),
         ({"trial": Trial(name="empty", duration=1.0, crowd=ORCA())}, "trial 'empty' has no robot"),
         ({"autoreset": "never", "num_envs": 2}, "autoreset = 'never' must be one of next-step, same-step"),

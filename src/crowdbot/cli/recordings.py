@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 __all__ = ["add_recordings", "horizon", "print_notes", "recordings"]
 
 
-def add_recordings(parser: argparse.ArgumentParser, predict: int = 12) -> None:
+def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
     """Add the options for files, their time base and their windows."""
     add = parser.add_argument
-    add("--data", nargs="+", type=Path, required=True, metavar="PATH", help="recordings")
+    add("--data", nargs="+", type=Path, required=required, metavar="PATH", help="recordings")
     add("--observe", type=int, default=8, metavar="ROWS", help="observed rows of a window (default: 8)")
     add("--predict", type=int, default=predict, metavar="ROWS", help=f"predicted rows of a window (default: {predict})")
     add(

@@ -9,14 +9,17 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from crowdbot.core import InputError
+from crowdbot.rendering import SimulationCamera, camera_names
 from crowdbot.trials import Trial, load_trial
 
 from .action_form import ActionForm
 from .crowd_task import CrowdTask
 from .observation_form import ObservationForm, bounds_of
 from .reward import Reward
+from .robot_port import RobotPort
 
-__all__ = ["CrowdEnv", "make_task", "observation_space"]
+__all__ = ["CrowdEnv", "first_environment", "make_task", "port_space"]
 
 Observation = dict[str, NDArray[np.float32]]
 MOST_SEEDS = 2**31
@@ -31,10 +34,12 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     Args:
         trial: a trial, a trial file, or a built-in name.
-        observation: ``people``, ``scan`` or ``both``, or an :class:`ObservationForm`.
-        action: ``velocity`` or ``holonomic``, or an :class:`ActionForm`.
+        observation: ``people``, ``scan``, ``both`` or ``occupancy``, or an :class:`ObservationForm`.
+        action: ``velocity``, ``acceleration`` or ``holonomic``, or an :class:`ActionForm`.
         reward: terms of the reward (default: those of CrowdNav).
         robot: name of the robot (default: the first).
+        render_mode: ``rgb_array`` for images of a camera by :meth:`render`, or None.
+        camera: name of the camera (default: the first of the trial, or its overview).
         values: values by path for a trial that is loaded, such as ``duration=20``.
 
     >>> env = CrowdEnv("circle-crossing")
@@ -46,7 +51,7 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     (False, False)
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium wants a dictionary here
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - Gymnasium wants a dictionary here
 
     def __init__(
         self,
@@ -55,10 +60,18 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         action: ActionForm | str = "velocity",
         reward: Reward | None = None,
         robot: str = "",
+        render_mode: str | None = None,
+        camera: str = "",
         **values: Any,
     ) -> None:
-        self.task = make_task(trial, observation, action, reward, robot, values)
-        self.observation_space: Any = observation_space(self.task)
+        if render_mode not in (None, "rgb_array"):
+            raise InputError(f"render_mode = {render_mode!r} must be 'rgb_array' or None")
+        self.render_mode = render_mode
+        self.task = make_task(trial, observation, action, reward, robot, values, posed=render_mode is not None)
+        self.camera = camera or camera_names(self.task.trial)[0]
+        self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / self.task.dt))}
+        self._view: SimulationCamera | None = None
+        self.observation_space: Any = port_space(self.task.port)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
 
     def reset(
@@ -67,7 +80,8 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         """Begin an episode with a seed; without one, it is drawn."""
         super().reset(seed=seed)
         own = int(self.np_random.integers(MOST_SEEDS)) if seed is None else int(seed)
-        return _first(self.task.reset([own])), {"seed": own}
+        self._view = None
+        return first_environment(self.task.reset([own])), {"seed": own}
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Take an action until the next control step."""
@@ -76,7 +90,22 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         if found.outcomes[0]:
             info |= {"outcome": found.outcomes[0], "is_success": found.outcomes[0] == "success"}
         terminated, truncated = bool(found.terminated[0]), bool(found.truncated[0])
-        return _first(found.observations), float(found.rewards[0]), terminated, truncated, info
+        return first_environment(found.observations), float(found.rewards[0]), terminated, truncated, info
+
+    def render(self) -> Any:
+        """Return the image ``[H, W, 3]`` of the camera, uint8; None without a render mode.
+
+        Raises:
+            InputError: the camera is unknown, or the environment was not reset.
+            MissingExtra: mujoco is not installed.
+        """
+        if self.render_mode is None:
+            return None
+        if self.task.simulation is None:
+            raise InputError("call reset before render")
+        if self._view is None:
+            self._view = SimulationCamera(self.task.simulation, self.camera)
+        return self._view.shot().rgb
 
 
 def make_task(
@@ -86,6 +115,7 @@ def make_task(
     reward: Reward | None,
     robot: str,
     values: dict[str, Any],
+    posed: bool = False,
 ) -> CrowdTask:
     """Return the task of an environment from its arguments."""
     chosen = load_trial(trial, **values) if isinstance(trial, str) else trial
@@ -95,19 +125,21 @@ def make_task(
         ActionForm(action) if isinstance(action, str) else action,
         Reward() if reward is None else reward,
         robot,
+        posed,
     )
 
 
-def observation_space(task: CrowdTask, count: int = 0) -> spaces.Dict:
-    """Return the space of the observations of a task: of one environment, or of ``count`` environments."""
+def port_space(port: RobotPort, count: int = 0) -> spaces.Dict:
+    """Return the space of the observations of a robot: of one environment, or of ``count`` environments."""
     parts: dict[str, spaces.Space[Any]] = {}
-    for name, shape in task.observation.shapes(task.beams).items():
-        low, high = bounds_of(name, task.longest)
+    for name, shape in port.observation.shapes(port.beams).items():
+        low, high = bounds_of(name, port.longest)
         whole = (count, *shape) if count else shape
         smallest, largest = (np.broadcast_to(np.asarray(value, dtype=np.float32), whole) for value in (low, high))
         parts[name] = spaces.Box(smallest, largest, dtype=np.float32)
     return spaces.Dict(parts)
 
 
-def _first(observations: Observation) -> Observation:
+def first_environment(observations: Observation) -> Observation:
+    """Return the observation of the first environment."""
     return {name: value[0] for name, value in observations.items()}

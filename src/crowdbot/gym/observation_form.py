@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.navigation import ObservationBatch
 
+from .occupancy_grid import occupancy_grids
+
 __all__ = ["FORMS", "PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"]
 
 Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[np.float32]]
 
-FORMS = ("people", "scan", "both")
+FORMS = ("people", "scan", "both", "occupancy")
 ROBOT_VALUES = (
     "waypoint_distance", "waypoint_cos", "waypoint_sin", "goal_distance", "forward", "turn", "left", "radius",
     "max_speed", "max_turn_rate",
@@ -33,8 +35,11 @@ class ObservationForm:
     """Parts of an observation.
 
     Fields:
-        form: ``people`` (the nearest people that the robot sees), ``scan`` (ranges of its laser scanner) or ``both``.
+        form: ``people`` (the nearest people that the robot sees), ``scan`` (ranges of its laser scanner), ``both`` of
+            them, or ``occupancy`` (a grid around the robot, of the people that it sees and of the walls).
         max_people: number of rows of people; the nearest come first, free rows are 0.
+        cells: number of cells of a side of the grid.
+        cell: width of a cell [m].
 
     Raises:
         InputError: a value is not allowed.
@@ -45,12 +50,18 @@ class ObservationForm:
 
     form: str = "people"
     max_people: int = 10
+    cells: int = 32
+    cell: float = 0.25
 
     def __post_init__(self) -> None:
         if self.form not in FORMS:
             raise InputError(f"observation = {self.form!r} must be one of {', '.join(FORMS)}")
         if not 1 <= self.max_people <= 1000:
             raise InputError(f"max_people = {self.max_people} must be from 1 to 1000")
+        if not 1 <= self.cells <= 1000:
+            raise InputError(f"cells = {self.cells} must be from 1 to 1000")
+        if not (math.isfinite(self.cell) and self.cell > 0.0):
+            raise InputError(f"cell = {self.cell} m must be finite and above 0")
 
     @property
     def with_people(self) -> bool:
@@ -69,6 +80,8 @@ class ObservationForm:
             found["people"] = (self.max_people, len(PERSON_VALUES))
         if self.with_scan:
             found["scan"] = (beams,)
+        if self.form == "occupancy":
+            found["occupancy"] = (self.cells, self.cells)
         return found
 
     def arrays(self, batch: ObservationBatch, scan: Floats | None) -> Arrays:
@@ -83,6 +96,8 @@ class ObservationForm:
             parts["people"] = _people(batch, self.max_people)
         if scan is not None and self.with_scan:
             parts["scan"] = scan
+        if self.form == "occupancy":
+            parts["occupancy"] = occupancy_grids(batch, self.cells, self.cell)
         return {name: np.clip(np.nan_to_num(value), -FAR, FAR).astype(np.float32) for name, value in parts.items()}
 
 
@@ -90,6 +105,8 @@ def bounds_of(name: str, longest: float) -> tuple[Floats, Floats]:
     """Return the smallest and the largest values of a part, for its last axis or for all of it; values are clipped."""
     if name == "scan":
         return np.zeros(1), np.full(1, longest)
+    if name == "occupancy":
+        return np.zeros(1), np.ones(1)
     if name == "people":
         return np.array([*[-FAR] * 4, 0.0, -FAR, 0.0]), np.array([*[FAR] * 6, 1.0])
     low = np.array([0.0, -1.0, -1.0, 0.0, *[-FAR] * 3, 0.0, 0.0, 0.0])

@@ -1,10 +1,16 @@
-"""Registered environments: the built-in trials with a robot by their names."""
+"""Registered environments: standard tasks of the field and built-in trials by their names.
+
+``CrowdNavCircle5-v0`` and others are the crossings of CrowdNav (Chen et al. 2019, doi:10.1109/ICRA.2019.8794134) with
+holonomic actions; ``ChallengeBoth100-v0`` and others are the scenarios of the CrowdBot challenge.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 import gymnasium
+
+from crowdbot.trials import builtin_trials
 
 __all__ = ["TASKS", "register_environments"]
 
@@ -15,6 +21,16 @@ TASKS: dict[str, dict[str, Any]] = {
     "Intersection-v0": {"trial": "intersection"},
     "OneWayAgainst-v0": {"trial": "one-way-against"},
     "TwoWay-v0": {"trial": "two-way"},
+    **{
+        f"CrowdNav{kind.title()}{people}-v0": {"trial": f"crowdnav-{kind}-{people}", "action": "holonomic"}
+        for kind in ("circle", "square")
+        for people in (5, 10, 20)
+    },
+    **{
+        "".join(word.title() for word in name.split("-")) + "-v0": {"trial": name}
+        for name in builtin_trials()
+        if name.startswith("challenge-")
+    },
 }
 """Arguments of :class:`crowdbot.gym.CrowdEnv` by id, without the namespace."""
 

@@ -14,7 +14,7 @@ from crowdbot.core import InputError
 from crowdbot.trials import Trial
 
 from .action_form import ActionForm
-from .environment import MOST_SEEDS, make_task, observation_space
+from .environment import MOST_SEEDS, make_task, port_space
 from .observation_form import ObservationForm
 from .reward import Reward
 
@@ -64,8 +64,8 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
         self.metadata = {"render_modes": [], "autoreset_mode": modes[autoreset]}
         self.task = make_task(trial, observation, action, reward, robot, values)
         self.num_envs, self.same_step = num_envs, autoreset == "same-step"
-        self.single_observation_space = observation_space(self.task)
-        self.observation_space = observation_space(self.task, num_envs)
+        self.single_observation_space = port_space(self.task.port)
+        self.observation_space = port_space(self.task.port, num_envs)
         self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (num_envs, 2), np.float32)
 

@@ -14,7 +14,10 @@ from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
 from .planners.driving_support import RDSNavigator
 from .planners.elastic_band import TimeElasticBandNavigator
+from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
 from .planners.model_predictive import MPCNavigator
+from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
+from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
@@ -24,6 +27,9 @@ from .track_batch import TrackBatch
 from .track_history import TrackHistory
 
 __all__ = [
+    "LAYERS",
+    "OWN_VALUES",
+    "PERSON_VALUES",
     "Action",
     "AgentsInView",
     "Decisions",
@@ -37,6 +43,9 @@ __all__ = [
     "Observation",
     "ObservationBatch",
     "PathPlanner",
+    "PolicyInputs",
+    "PolicyNavigator",
+    "PolicyWeights",
     "PotentialFieldNavigator",
     "ProcessNavigator",
     "RDSNavigator",
@@ -52,4 +61,6 @@ __all__ = [
     "check_navigator",
     "copy_memory",
     "dynamic_window_twist",
+    "policy_file",
+    "policy_inputs",
 ]

@@ -1,6 +1,6 @@
 """Images and videos from the cameras of a trial, and plots of episodes."""
 
-from .camera_images import SMOOTH, RenderedImage, RenderRequest, camera_names, render_images
+from .camera_images import SMOOTH, RenderedImage, RenderRequest, SimulationCamera, camera_names, render_images
 from .image_writer import ImageWriter, color_segmentation
 from .reaction_plot import plot_reactions
 
@@ -9,6 +9,7 @@ __all__ = [
     "ImageWriter",
     "RenderRequest",
     "RenderedImage",
+    "SimulationCamera",
     "camera_names",
     "color_segmentation",
     "plot_reactions",

@@ -15,7 +15,7 @@ from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spa
 from crowdbot.simulation import OrderSource, RobotControl, Simulation, SimulationRun
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
-__all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
+__all__ = ["RenderRequest", "RenderedImage", "SimulationCamera", "camera_names", "render_images"]
 
 SMOOTH = 0.04
 """Default time between two images of a video [s], rounded to time steps."""
@@ -98,17 +98,14 @@ def render_images(
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
     name = camera or camera_names(trial)[0]
-    if name not in camera_names(trial):
-        known = camera_names(trial)
-        raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
-    _check_drawing()
+    _check_drawing(trial, name)
     simulation = Simulation(trial, chosen, posed=True)
     ticks = _ticks(simulation, take)
     first, last = ticks[0], ticks[-1]
     if prepare is not None:
         prepare(simulation)
     running = SimulationRun(simulation, sources=sources)
-    lens = _Lens(simulation, name, chosen, depth, segmentation)
+    lens = SimulationCamera(simulation, name, chosen, depth, segmentation)
     for tick in ticks:
         while simulation.tick < tick and running.outcome is None:
             running.step()
@@ -153,8 +150,11 @@ def _ticks(simulation: Simulation, take: RenderRequest) -> Sequence[int]:
     return [first + schedule.tick_of(k) for k in range(schedule.index(last - first) + 1)]
 
 
-def _check_drawing() -> None:
-    """Check before the run that rendering works."""
+def _check_drawing(trial: Trial, name: str) -> None:
+    """Check that the trial has the camera and that rendering works."""
+    known = camera_names(trial)
+    if name not in known:
+        raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
     import_optional("mujoco", "an image of a trial", "sim")
 
 
@@ -162,10 +162,30 @@ def _looks(mount: Mount) -> bool:
     return isinstance(mount.sensor, RGBCamera | DepthCamera)
 
 
-class _Lens:
-    """A camera of a running simulation."""
+class SimulationCamera:
+    """A camera of a running simulation with one environment.
 
-    def __init__(self, simulation: Simulation, name: str, seed: int, depth: bool, segmentation: bool) -> None:
+    Args:
+        simulation: the simulation, with body poses (``posed=True``).
+        name: a name of :func:`camera_names`.
+        seed: seed of the noise of a camera of a robot.
+        depth, segmentation: whether to render these images, too.
+
+    Raises:
+        InputError: the camera is unknown.
+        MissingExtra: mujoco is not installed.
+
+    >>> from crowdbot.trials import load_trial
+    >>> simulation = Simulation(load_trial("frontal"), 0, posed=True)
+    >>> simulation.begin()
+    >>> SimulationCamera(simulation, "overview").shot().rgb.shape
+    (600, 960, 3)
+    """
+
+    def __init__(
+        self, simulation: Simulation, name: str, seed: int = 0, depth: bool = False, segmentation: bool = False
+    ) -> None:
+        _check_drawing(simulation.trial, name)
         self.simulation, self.depth, self.segmentation = simulation, depth, segmentation
         self.rng = stream(seed, "render", name)
         self.control: RobotControl | None = None

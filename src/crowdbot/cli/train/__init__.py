@@ -1,4 +1,4 @@
-"""``crowdbot train``: train a predictor on recordings of people."""
+"""``crowdbot train``: train a predictor on recordings of people, or the navigator ``policy`` in simulated crowds."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .output import add_json, note, number, print_json, print_table
-from .recordings import add_recordings, print_notes, recordings
-from .schemes import assignments
+from crowdbot.cli.output import add_json, note, number, print_json, print_table
+from crowdbot.cli.recordings import add_recordings, print_notes, recordings
+from crowdbot.cli.schemes import assignments
+
+from .navigator import NAVIGATOR, add_navigator, check_options, train_policy
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
@@ -22,8 +24,10 @@ EPOCHS = 100
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("what", metavar="NAME", help=f"predictor: {', '.join(LEARNERS)}")
-    add_recordings(parser)
+    names = f"predictor: {', '.join(LEARNERS)}; or {NAVIGATOR}"
+    parser.add_argument("what", metavar="NAME", help=names)
+    add_recordings(parser, required=False)
+    add_navigator(parser)
     add = parser.add_argument
     add("--check", nargs="+", type=Path, metavar="PATH", help="validation recordings (default: see --hold)")
     add(
@@ -73,6 +77,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Train and print the path of the weights."""
     from crowdbot.core import InputError, UnknownName, explain_write_errors
+
+    check_options(options)
+    if options.what == NAVIGATOR:
+        return train_policy(options)
+    if options.what not in LEARNERS:
+        raise UnknownName("learned predictor", options.what, (*LEARNERS, NAVIGATOR))
     from crowdbot.prediction import (
         BEST,
         LAST,
@@ -84,8 +94,6 @@ def main(options: argparse.Namespace) -> int:
         train,
     )
 
-    if options.what not in LEARNERS:
-        raise UnknownName("learned predictor", options.what, LEARNERS)
     if options.resume and not (options.out / LAST).is_file():
         raise InputError(
             f"--out {options.out} has no {LAST}: nothing to resume; give the folder of a training, or omit --resume"

@@ -1,0 +1,188 @@
+"""The learned policy as a navigator, within the limits of the drive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Paper, Twist, check_number
+from crowdbot.navigation.batch_rows import drive_numbers, rows_for_kernels, share_time
+from crowdbot.navigation.decisions import Decisions
+from crowdbot.navigation.dynamic_window import dynamic_window_twists
+from crowdbot.navigation.goal_motion import holonomic_twists
+from crowdbot.navigation.navigator import Navigator
+from crowdbot.navigation.observation import Observation
+from crowdbot.navigation.observation_batch import AgentsInView, ObservationBatch
+from crowdbot.navigation.wall_arrays import wall_arrays
+
+from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_network, avoid_contacts, limit_velocities, write_inputs
+from .policy_weights import read_policy
+
+__all__ = ["PolicyInputs", "PolicyNavigator", "policy_inputs"]
+
+Floats = NDArray[np.float64]
+
+MOST_PEOPLE = 20
+"""Number of nearest people that the policy knows."""
+
+
+class PolicyInputs(NamedTuple):
+    """Inputs of the policy in N environments, in the goal frame: x towards the waypoint.
+
+    Fields:
+        axis: ``[N, 2]`` x axis of the goal frame, in the world.
+        own: ``[N, F]`` values of the robot.
+        people: ``[N, K, G]`` values of the nearest people, nearest first.
+        present: ``[N]`` number of people.
+    """
+
+    axis: Floats
+    own: Floats
+    people: Floats
+    present: NDArray[np.int64]
+
+
+def policy_inputs(
+    batch: ObservationBatch, most: int = MOST_PEOPLE, asking: NDArray[np.bool_] | None = None, speed: float = np.inf
+) -> PolicyInputs:
+    """Return the inputs of the policy for N observations.
+
+    Args:
+        batch: what the robot knows in N environments.
+        most: number K of people.
+        asking: ``[N]`` environments to fill; default all.
+        speed: largest speed [m/s], limited by the drive.
+
+    >>> from crowdbot.navigation import DriveLimits
+    >>> batch = ObservationBatch(pose=np.zeros((2, 3)), goal=np.array([[4.0, 0.0], [0.0, 4.0]]),
+    ...     radius=np.full(2, 0.3), limits=DriveLimits(1.0, 2.0), dt=0.1)
+    >>> policy_inputs(batch).axis.tolist()
+    [[1.0, 0.0], [0.0, 1.0]]
+    """
+    N, people = len(batch), batch.people
+    found = PolicyInputs(
+        np.tile([1.0, 0.0], (N, 1)),
+        np.zeros((N, len(OWN_VALUES))),
+        np.zeros((N, most, len(PERSON_VALUES))),
+        np.zeros(N, dtype=np.int64),
+    )
+    write_inputs(
+        np.ones(N, np.bool_) if asking is None else asking,
+        batch.pose, batch.goal, batch.waypoint, batch.twist, batch.radius, min(speed, batch.limits.max_speed),
+        people.position, people.velocity, people.radius, people.seen, *found,
+    )  # fmt: skip
+    return found
+
+
+@dataclass(frozen=True)
+class PolicyNavigator(Navigator):
+    """Moves as a small neural network that was trained in simulated crowds by reinforcement learning.
+
+    The network knows the nearest 20 people within 10 m, with their velocities and radii, and returns a velocity. It is
+    invariant to rotations and to the order of people. A velocity that would bring the robot closer than a margin to a
+    person who keeps walking straight is replaced by a near one that does not. The network does not know walls: with
+    walls, or with a drive that cannot move sideways, :func:`dynamic_window_twist` selects a twist near its velocity.
+
+    Fields:
+        speed: largest speed [m/s], limited by the drive.
+        horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
+        margin: clearance to people that is kept for this time [m].
+        file: file of weights from ``crowdbot train navigator`` (default: the weights of the package).
+
+    Sources: proximal policy optimisation, Schulman et al. 2017, https://arxiv.org/abs/1707.06347; inputs in the goal
+    frame, Chen et al. 2019, doi:10.1109/ICRA.2019.8794134.
+
+    Raises:
+        InputError: a number is out of its range.
+
+    >>> from crowdbot.navigation import DriveLimits
+    >>> limits = DriveLimits(1.0, 2.0, holonomic=True)
+    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(0.0, 4.0), radius=0.3, limits=limits, dt=0.25)
+    >>> PolicyNavigator().act(here).left > 0.5
+    True
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Schulman et al.", 2017, "Proximal policy optimization algorithms", "arXiv", "10.48550/arXiv.1707.06347"
+    )
+
+    speed: float = 1.0
+    horizon: float = 1.0
+    margin: float = 0.15
+    file: str = ""
+
+    def __post_init__(self) -> None:
+        check_number("PolicyNavigator", "speed", self.speed, "m/s", exclusive_min=0.0)
+        check_number("PolicyNavigator", "horizon", self.horizon, "s", min=0.0)
+        check_number("PolicyNavigator", "margin", self.margin, "m", exclusive_min=0.0)
+
+    def act(self, observation: Observation) -> Twist:
+        """Return the twist of the policy."""
+        out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)
+        self._move(_as_batch(observation), asking, out)
+        return Twist(*out[0].tolist())
+
+    def decide_batch(
+        self,
+        batch: ObservationBatch,
+        memories: Sequence[Any],
+        robot: str = "",
+        timer: Callable[[], float] | None = None,
+        limit: float | None = None,
+    ) -> Decisions:
+        """Return the decisions in N environments, with kernels; see :meth:`Navigator.decide_batch`."""
+        if not self._keeps(PolicyNavigator, "act", "_move"):
+            return super().decide_batch(batch, memories, robot, timer, limit)
+        decisions, begin = Decisions.still(memories), timer() if timer else 0.0
+        asking = rows_for_kernels(batch, with_people=True)
+        if asking.any():
+            self._move(batch, asking, decisions.twist)
+        share_time(decisions, asking, begin, timer)
+        if not asking.all():
+            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
+        return decisions
+
+    def _move(self, batch: ObservationBatch, asking: NDArray[np.bool_], out: Floats) -> None:
+        """Write the twists ``[N, 3]`` of the asking environments."""
+        inputs = policy_inputs(batch, MOST_PEOPLE, asking, self.speed)
+        velocity, numbers = np.zeros((len(batch), 2)), drive_numbers(batch.limits, self.speed)
+        layers: Any = read_policy(self.file)
+        apply_network(asking, inputs.own, inputs.people, inputs.present, velocity, *layers)
+        limit_velocities(asking, batch.pose, batch.goal, batch.waypoint, inputs.axis, numbers, velocity)
+        if batch.limits.holonomic and not len(wall_arrays(batch.walls).segments):
+            if self.horizon > 0.0:
+                people = batch.people
+                avoid_contacts(
+                    asking, batch.pose, batch.radius, people.position, people.velocity, people.radius, people.seen,
+                    float(numbers[0]), self.horizon, self.margin, velocity,
+                )  # fmt: skip
+            holonomic_twists(asking, batch.pose, velocity, numbers, float(batch.dt), out)
+        else:
+            dynamic_window_twists(batch, asking, velocity, self.speed, out)
+
+
+def _as_batch(observation: Observation) -> ObservationBatch:
+    """Return one observation as a batch."""
+    people, count = observation.people, len(observation.people)
+    seen = AgentsInView(
+        people.position.reshape(1, count, 2),
+        people.velocity.reshape(1, count, 2),
+        people.radius.reshape(1, count),
+        np.ones((1, count), np.bool_),
+        people.ids.reshape(1, count),
+    )
+    return ObservationBatch(
+        pose=np.array([observation.pose], np.float64),
+        goal=np.array([observation.goal], np.float64),
+        waypoint=np.array([observation.waypoint], np.float64),
+        twist=np.array([observation.twist], np.float64),
+        radius=np.array([observation.radius], np.float64),
+        limits=observation.limits,
+        dt=float(observation.dt),
+        people=seen,
+        walls=observation.walls,
+    )
