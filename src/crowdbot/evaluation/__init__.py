@@ -4,7 +4,7 @@ from .comparison import PairedComparison, correct_p_values, paired_comparison
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow
 from .junit import junit_xml
-from .method import Method, own_method, parse_methods
+from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .report import write_report
@@ -40,6 +40,7 @@ __all__ = [
     "parse_seeds",
     "parse_statistic",
     "wilson_interval",
+    "with_safety",
     "worst_runs",
     "write_report",
 ]

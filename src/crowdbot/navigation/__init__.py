@@ -21,6 +21,8 @@ from .planners.window_navigator import DynamicWindowNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
+from .wrappers.safety_layer import SafetyLayer, SafetyState
+from .wrappers.scan_map import ScanMapNavigator
 
 __all__ = [
     "Action",
@@ -38,6 +40,9 @@ __all__ = [
     "PathPlanner",
     "PotentialFieldNavigator",
     "RDSNavigator",
+    "SafetyLayer",
+    "SafetyState",
+    "ScanMapNavigator",
     "SocialForceNavigator",
     "Straight",
     "TimeElasticBandNavigator",

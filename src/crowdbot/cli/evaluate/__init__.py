@@ -28,6 +28,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help='navigators with parameters, separated by commas: "orca, orca safety=0.2, mine.py:Mine"'
         " (default: own, the navigator of each trial)",
     )
+    parser.add_argument(
+        "--safety",
+        choices=("own", "both"),
+        default="own",
+        help="each navigator as it is (own), or without and with a safety layer (both); default: own",
+    )
     parser.add_argument("--robots", default="", metavar="LIST", help="robot types, separated by commas (default: own)")
     parser.add_argument("--seeds", default="0:20", metavar="SEEDS", help="seeds, such as 0:100 (default: 0:20)")
     parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")
@@ -53,16 +59,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the evaluation; return 1 if a requirement does not hold."""
     from crowdbot.core import InputError
-    from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_requirement, parse_seeds
+    from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_requirement, parse_seeds, with_safety
     from crowdbot.trials import load_trial
 
     if options.worst < 0:
         raise InputError(f"--worst {options.worst} must be at least 0")
     requirements = [parse_requirement(text) for text in options.require]
     values = settings(options)
+    methods = parse_methods(options.navigators)
     plan = EvaluationPlan(
         [load_trial(name, trust=options.trust, **values) for name in options.trials],
-        parse_methods(options.navigators),
+        with_safety(methods) if options.safety == "both" else methods,
         [name.strip() for name in options.robots.split(",")],
         parse_seeds(options.seeds),
     )

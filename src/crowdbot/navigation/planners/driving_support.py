@@ -78,9 +78,9 @@ class RDSNavigator(Navigator):
     )
 
     speed: float = 1.0
-    horizon: float = 1.5
+    horizon: float = 3.0
     wall_horizon: float = 1.0
-    margin: float = 0.1
+    margin: float = 0.2
     front: float = 0.0
     rear: float = 0.0
     width: float = 0.0
