@@ -125,7 +125,7 @@ max_neighbors=15, reaction=0.3)
     def _seen(self, observation: Observation, grid: Floats, corner: tuple[int, int]) -> Observation:
         """Return the observation of a planner that knows only the occupied cells."""
         at = np.argwhere(grid >= OCCUPIED)
-        centre = (at + corner + 0.5) * self.cell
+        centre = ((at + corner + 0.5) * self.cell).astype(np.float64)
         away = np.hypot(*(centre - observation.position).T)
         near = np.argsort(away, kind="stable")[:MOST]
         count = len(near)
@@ -148,9 +148,10 @@ def _shifted(grid: Floats, di: int, dj: int) -> Floats:
 
 @kernel
 def _add_beams(grid: Floats, x: float, y: float, angles: Floats, ranges: Floats) -> None:
-    """Add beams from ``x, y`` to a grid; all lengths are in cells. A beam passes cells until half a cell before its end.
+    """Add beams from ``x, y`` to a grid; all lengths are in cells.
 
-    A beam without an end passes all cells in its direction; one with an invalid range adds nothing.
+    A beam passes cells until half a cell before its end. A beam without an end passes all cells in its direction; one
+    with an invalid range adds nothing.
     """
     count = len(grid)
     passed = np.zeros((count, count), np.bool_)
@@ -162,12 +163,12 @@ def _add_beams(grid: Floats, x: float, y: float, angles: Floats, ranges: Floats)
         cos, sin = math.cos(angles[b]), math.sin(angles[b])
         length = min(r, 1.5 * count)
         for n in range(int(2.0 * max(length - 0.5, 0.0))):
-            i, j = int(math.floor(x + 0.5 * n * cos)), int(math.floor(y + 0.5 * n * sin))
+            i, j = math.floor(x + 0.5 * n * cos), math.floor(y + 0.5 * n * sin)
             if not (0 <= i < count and 0 <= j < count):
                 break
             passed[i, j] = True
         if math.isfinite(r):
-            i, j = int(math.floor(x + r * cos)), int(math.floor(y + r * sin))
+            i, j = math.floor(x + r * cos), math.floor(y + r * sin)
             if 0 <= i < count and 0 <= j < count:
                 hit[i, j] = True
     for i in range(count):
