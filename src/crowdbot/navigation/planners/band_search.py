@@ -177,13 +177,17 @@ def _evaluate(scene: BandScene, band: Floats, dt: float, equations: _Equations) 
 
 @kernel
 def _solve(matrix: Floats, gradient: Floats, damping: float, factor: Floats, step: Floats) -> None:
-    """Write the step of damped least squares, by a Cholesky decomposition."""
+    """Write the step of damped least squares, by a Cholesky decomposition.
+
+    Both coordinates of a point have the same damping, so that the step does not depend on the axes.
+    """
     n = len(gradient)
     for i in range(n):
         for j in range(i + 1):
             value = matrix[i, j]
             if i == j:
-                value += damping * matrix[i, i] + 1e-6
+                mate = i ^ 1 if i < n - 1 else i
+                value += damping * 0.5 * (matrix[i, i] + matrix[mate, mate]) + 1e-6
             for k in range(j):
                 value -= factor[i, k] * factor[j, k]
             factor[i, j] = math.sqrt(max(value, 1e-12)) if i == j else value / factor[j, j]
