@@ -57,6 +57,12 @@ def row(name: str, found: CellResult) -> str:
     return f"| `{name}` | {title} | {len(found.values('success'))} | {' | '.join(texts)} |"
 
 
+def table(found: list[tuple[str, CellResult]]) -> str:
+    """Return results as a table."""
+    head = "| trial | navigator | runs | success rate | collision rate | timeout rate | time to goal [s] |"
+    return "\n".join([head, "|---|---|---|---|---|---|---|", *(row(*pair) for pair in found)]) + "\n"
+
+
 def others() -> list[str]:
     """Return the other built-in trials with a robot and at most 60 people, without the challenge."""
     left = [name for name in builtin_trials() if not name.startswith(("challenge", "crowdnav"))]
@@ -68,7 +74,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=500)
     parser.add_argument("--slow-seeds", type=int, default=100)
-    parser.add_argument("--others", type=int, default=10, help="seeds of the other trials")
+    parser.add_argument("--others", type=int, default=0, help="seeds of the other built-in trials (default: none)")
     parser.add_argument("--parts", type=Path, default=Path("navigators-parts"))
     options = parser.parse_args()
     trials = [*CROWDNAV]
@@ -77,10 +83,8 @@ def main() -> None:
     found += cells(trials[2:], SLOW, max(1, options.slow_seeds // 5), options.parts)
     found.sort(key=lambda pair: trials.index(pair[0]))
     rest = [*cells(others(), GENERAL, options.others, options.parts)] if options.others else []
-    head = "| trial | navigator | runs | success rate | collision rate | timeout rate | time to goal [s] |"
-    rule = "|---|---|---|---|---|---|---|"
-    tables = ["\n".join([head, rule, *(row(*pair) for pair in part)]) for part in (found, rest)]
-    text = TEXT.read_text(encoding="utf-8").replace("{crowdnav}", tables[0]).replace("{others}", tables[1])
+    texts = [table(found), f"\n## Other built-in trials\n\n{table(rest)}" if rest else ""]
+    text = TEXT.read_text(encoding="utf-8").replace("{crowdnav}", texts[0]).replace("{others}\n", texts[1])
     PAGE.write_text(text, encoding="utf-8")
 
 
