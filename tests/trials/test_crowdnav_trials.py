@@ -121,3 +121,12 @@ def test_orca_has_its_published_results() -> None:
     assert success == pytest.approx(0.904, abs=0.04)
     assert published(trial, "straight", 500)[0] == pytest.approx(0.026, abs=0.025)
     assert published(load_trial("crowdnav-circle-5", visible=True), "own", 500)[0] == 1.0
+
+
+def test_success_rises_with_the_attention_of_people() -> None:
+    rates = []
+    for attention in (0.0, 0.5, 1.0):
+        trial = load_trial("attention-ladder", attention=attention)
+        rates.append(published(trial, "own", 120)[0])
+    assert rates[0] < 0.5 < rates[2]
+    assert rates[0] < rates[1] < rates[2]

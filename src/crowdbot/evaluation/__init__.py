@@ -7,7 +7,7 @@ from .factor_sweep import FactorSweep, parse_factors, sweep_trials
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
-from .method import Method, own_method, parse_methods
+from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .reality import RealPlacement, place_reality, reality_svg
@@ -63,6 +63,7 @@ __all__ = [
     "row_values",
     "sweep_trials",
     "wilson_interval",
+    "with_safety",
     "worst_runs",
     "write_report",
 ]

@@ -5,16 +5,19 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import Element, InputError, TrialError, format_xml
 from crowdbot.trials import Trial, element_from, parse_trial
 
-__all__ = ["Method", "own_method", "parse_methods"]
+__all__ = ["Method", "own_method", "parse_methods", "with_safety"]
 
 OWN = "own"
 """Name of the method that leaves the navigator of a trial as it is."""
+SAFETY = "+safety"
+"""End of the name of a method whose robot has a safety layer."""
 SETTING = re.compile(r"([A-Za-z][\w-]*)=(\S+)")
 BY_TYPE = ("radius", "height", "mass", "latency", "rider")
 """Attributes of a robot that its type gives."""
@@ -28,14 +31,18 @@ class Method:
         name: text of the method, such as ``orca time-horizon=3``; ``own`` is the navigator of the trial.
         type: name of a navigator, or a class in a file: ``mine.py:Mine``.
         parameters: texts by name of the parameter.
+        safety: whether the robot has a safety layer; None as in the trial.
 
     >>> parse_methods("orca, orca time-horizon=3, own")[1]
-    Method(name='orca time-horizon=3', type='orca', parameters=(('time-horizon', '3'),))
+    Method(name='orca time-horizon=3', type='orca', parameters=(('time-horizon', '3'),), safety=None)
+    >>> parse_methods("orca+safety")[0].safety
+    True
     """
 
     name: str
     type: str = ""
     parameters: tuple[tuple[str, str], ...] = ()
+    safety: bool | None = None
 
     def put_into(self, trial: Trial, robot_type: str = "", trust: bool = True) -> Trial:
         """Return the trial with this navigator for its first robot.
@@ -52,13 +59,17 @@ class Method:
         """
         if not trial.robots:
             raise InputError(f"trial {trial.name!r} has no robot to evaluate")
-        if not self.type and not robot_type:
+        if not self.type and not robot_type and self.safety is None:
             return trial
         root = element_from("trial", trial, trial.folder)
         robot = next(child for child in root.children if child.tag == "robot")
         if self.type:
             robot.children = [child for child in robot.children if child.tag != "navigator"]
             robot.children.append(self._element(trial.folder))
+        if self.safety is not None:
+            had = [child for child in robot.children if child.tag == "safety"]
+            robot.children = [child for child in robot.children if child.tag != "safety"]
+            robot.children += (had or [Element("safety")]) if self.safety else []
         if robot_type:
             _change_type(robot, _relative(robot_type, trial.folder))
         place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
@@ -77,6 +88,8 @@ class Method:
 def parse_methods(text: str) -> tuple[Method, ...]:
     """Return the methods of a list, separated by commas; parameters follow the name, separated by blanks.
 
+    ``orca+safety`` puts a safety layer around ``orca``.
+
     Raises:
         InputError: the list is empty, has a method twice, or a parameter is not ``name=value``.
     """
@@ -90,6 +103,23 @@ def parse_methods(text: str) -> tuple[Method, ...]:
     return methods
 
 
+def with_safety(methods: Sequence[Method]) -> tuple[Method, ...]:
+    """Return each method without a safety layer, then with it; those that end with ``+safety`` only with it.
+
+    >>> [method.name for method in with_safety(parse_methods("orca, mpc+safety"))]
+    ['orca', 'orca+safety', 'mpc+safety']
+    """
+    found = []
+    for method in methods:
+        if method.safety:
+            found.append(method)
+            continue
+        kind, *settings = method.name.split()
+        guarded = dataclasses.replace(method, name=" ".join([kind + SAFETY, *settings]), safety=True)
+        found += [dataclasses.replace(method, safety=False), guarded]
+    return tuple({method.name: method for method in found}.values())
+
+
 def own_method() -> Method:
     """Return the method that leaves the navigator of a trial as it is."""
     return Method(OWN)
@@ -97,15 +127,17 @@ def own_method() -> Method:
 
 def _parse_method(text: str) -> Method:
     kind, *settings = text.split()
-    if kind == OWN and not settings:
-        return own_method()
+    bare = kind.removesuffix(SAFETY)
+    safety = True if bare != kind else None
+    if bare == OWN and not settings:
+        return Method(kind, safety=safety)
     parameters = []
     for setting in settings:
         match = SETTING.fullmatch(setting)
         if match is None:
             raise InputError(f"navigator {text.strip()!r}: {setting!r} must be name=value, such as time-horizon=3")
         parameters.append((match[1], match[2]))
-    return Method(" ".join([kind, *settings]), kind, tuple(parameters))
+    return Method(" ".join([kind, *settings]), bare, tuple(parameters), safety)
 
 
 def _change_type(robot: Element, kind: str) -> None:

@@ -68,6 +68,7 @@ class EvaluationCell:
             "robot": robot.type or f"disc of {robot.radius:g} m",
             "drive": type(robot.drive).__name__,
             "holonomic": robot.holonomic,
+            "safety": robot.safety is not None,
             "senses": sensors,
             "people": self.variant.people,
             "crowd": type(self.variant.crowd).__name__,

@@ -25,6 +25,8 @@ from .process.process_navigator import ProcessNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
+from .wrappers.safety_layer import SafetyLayer, SafetyState
+from .wrappers.scan_map import ScanMapNavigator
 
 __all__ = [
     "LAYERS",
@@ -49,6 +51,9 @@ __all__ = [
     "PotentialFieldNavigator",
     "ProcessNavigator",
     "RDSNavigator",
+    "SafetyLayer",
+    "SafetyState",
+    "ScanMapNavigator",
     "SocialForceNavigator",
     "Straight",
     "TimeElasticBandNavigator",

@@ -63,11 +63,11 @@ class DecisionTimer:
         self, robot: RobotSpec, batch: ObservationBatch, environments: Ints
     ) -> tuple[list[Any], dict[int, Exception]]:
         """Return the memories of the navigator before the first decision, and what failed."""
-        return robot.navigator.first_memories(batch, robot=robot.name, limit=self._limit(robot, environments))
+        return robot.controller.first_memories(batch, robot=robot.name, limit=self._limit(robot, environments))
 
     def decide(self, robot: RobotSpec, batch: ObservationBatch, memories: list[Any], environments: Ints) -> Decisions:
         """Let the navigator decide, with compute times if they matter."""
-        navigator, name = robot.navigator, robot.name
+        navigator, name = robot.controller, robot.name
         decide = functools.partial(_decide, navigator, batch, name, self._limit(robot, environments))
         if robot.deadline is None or self._is_replay(environments):
             return decide(memories, None)

@@ -246,6 +246,7 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
     goal = robot.goal
     same_goal, count = goal == old.robot.goal, simulation.count
     same = type(old.robot.navigator) is type(robot.navigator)
+    same = same and (old.robot.safety is None) == (robot.safety is None)
     return dataclasses.replace(
         old.change_memory(simulation.trial, robot),
         robot=robot,

@@ -56,6 +56,7 @@ TITLES = {
     "centre.",
     "one-against-ten": "A crowd of ten crosses the path of the robot at an angle, or walks towards it.",
     "crowd-against-crowd": "Two crowds meet, scattered or in ranks, and a robot crosses the place where they do.",
+    "attention-ladder": "A circle crossing of CrowdNav in which a share of the people sees the robot.",
     **{
         f"crowdnav-{kind}-{count}": f"CrowdNav: {count} people {words}, and a robot that they do not see crosses; it"
         " knows everybody's state."

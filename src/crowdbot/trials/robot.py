@@ -38,6 +38,7 @@ from .robots.joint_target import JointTarget, joint_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
+from .robots.safety import SafetySpec, guarded, safety_problems
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
@@ -189,6 +190,7 @@ class RobotSpec:
     goal: RobotGoal = child(about="goal")
     planner: Planner | None = child(None, about="path planner around walls (default: straight to the goal)")
     pose: RobotPose | None = child(None, about="pose from outside (default: the drive moves the robot)")
+    safety: SafetySpec | None = child(None, about="safety layer between navigator and drive (default: none)")
     predictor: RobotPredictor | None = child(None, about="predictor of the observation's forecast (default: none)")
     drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
     navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
@@ -232,6 +234,8 @@ class RobotSpec:
             )
         if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
+        for problem in safety_problems(self.safety, self.navigator):
+            raise InputError(problem)
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
             raise InputError(problem)
         for problem in rider_problems(self.rider_kind, self.body.seat):
@@ -294,6 +298,11 @@ class RobotSpec:
         else:
             made = dataclasses.replace(self._kind, drive=self.drive)
         return dataclasses.replace(made, latency=self.latency)
+
+    @functools.cached_property
+    def controller(self) -> Navigator:
+        """The navigator that decides, behind the safety layer of the robot."""
+        return guarded(self.navigator, self.safety)
 
     @property
     def rider_kind(self) -> str:

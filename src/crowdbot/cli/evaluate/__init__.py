@@ -30,6 +30,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help='navigators with parameters, separated by commas: "orca, orca safety=0.2, mine.py:Mine"'
         " (default: own, the navigator of each trial)",
     )
+    parser.add_argument(
+        "--safety",
+        choices=("own", "both"),
+        default="own",
+        help="each navigator as it is (own), or without and with a safety layer (both); default: own",
+    )
     parser.add_argument("--robots", default="", metavar="LIST", help="robot types, separated by commas (default: own)")
     parser.add_argument("--seeds", default="0:20", metavar="SEEDS", help="seeds, such as 0:100 (default: 0:20)")
     parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")

@@ -57,6 +57,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         parse_seeds,
         parse_statistic,
         sweep_trials,
+        with_safety,
     )
     from crowdbot.metrics import LOG_FAMILIES
     from crowdbot.trials import load_trial
@@ -81,9 +82,10 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     statistics = [parse_statistic(one) for one in names]
     own = dict.fromkeys(one.address for one in statistics if one.address)
     families = (*LOG_FAMILIES, *own, *families_of([one.metric for one in statistics]))
+    methods = parse_methods(options.navigators)
     return EvaluationPlan(
         trials,
-        parse_methods(options.navigators),
+        with_safety(methods) if options.safety == "both" else methods,
         [name.strip() for name in options.robots.split(",")],
         parse_seeds(options.seeds),
         families=families,

@@ -98,9 +98,9 @@ class ORCA(CrowdModel):
         max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
         reciprocal: whether external agents, such as robots, are expected to make half of the change.
 
-    External agents do not give way; unless ``reciprocal``, the others make the whole change. The model chooses the permitted velocity nearest
-    to the desired one. If none is permitted, it minimises the largest violation (walls are never violated). Velocities
-    may be discontinuous: real robots need an acceleration limit.
+    External agents do not give way; unless ``reciprocal``, the others make the whole change. The model chooses the
+    permitted velocity nearest to the desired one. If none is permitted, it minimises the largest violation (walls are
+    never violated). Velocities may be discontinuous: real robots need an acceleration limit.
 
     The default reproduces the RVO2 library. Differences: external agents take no share of the avoidance, and
     overlapping walls and degenerate scenes give bounded velocities.

@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
-from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.navigation import window_search
 
 __all__ = ["POINTS", "BandScene", "optimize_bands"]
 
 Floats = NDArray[np.float64]
+
+nearest_on_segment = window_search.nearest_on_segment  # type: ignore[attr-defined]
 
 POINTS = 20
 """Number of intervals of a band."""
@@ -54,7 +56,7 @@ class _Equations(NamedTuple):
 
     matrix: Floats
     gradient: Floats
-    index: NDArray[np.int64]
+    columns: NDArray[np.int64]
     slope: Floats
 
 
@@ -78,14 +80,14 @@ def _add(equations: _Equations, count: int, residual: float) -> float:
 def _point(equations: _Equations, at: int, i: int, sx: float, sy: float) -> None:
     """Set the slopes of point ``i`` of the band; both ends are fixed."""
     inner = 0 < i < POINTS
-    equations.index[at] = 2 * (i - 1) if inner else -1
-    equations.index[at + 1] = 2 * (i - 1) + 1 if inner else -1
+    equations.columns[at] = 2 * (i - 1) if inner else -1
+    equations.columns[at + 1] = 2 * (i - 1) + 1 if inner else -1
     equations.slope[at], equations.slope[at + 1] = sx, sy
 
 
 @kernel
 def _interval(equations: _Equations, at: int, slope: float) -> None:
-    equations.index[at], equations.slope[at] = VARIABLES - 1, slope
+    equations.columns[at], equations.slope[at] = VARIABLES - 1, slope
 
 
 @kernel
@@ -175,13 +177,17 @@ def _evaluate(scene: BandScene, band: Floats, dt: float, equations: _Equations) 
 
 @kernel
 def _solve(matrix: Floats, gradient: Floats, damping: float, factor: Floats, step: Floats) -> None:
-    """Write the step of damped least squares, by a Cholesky decomposition."""
+    """Write the step of damped least squares, by a Cholesky decomposition.
+
+    Both coordinates of a point have the same damping, so that the step does not depend on the axes.
+    """
     n = len(gradient)
     for i in range(n):
         for j in range(i + 1):
             value = matrix[i, j]
             if i == j:
-                value += damping * matrix[i, i] + 1e-6
+                mate = i ^ 1 if i < n - 1 else i
+                value += damping * 0.5 * (matrix[i, i] + matrix[mate, mate]) + 1e-6
             for k in range(j):
                 value -= factor[i, k] * factor[j, k]
             factor[i, j] = math.sqrt(max(value, 1e-12)) if i == j else value / factor[j, j]

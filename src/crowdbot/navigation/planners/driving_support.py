@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number, kernel
-from crowdbot.models.velocity_obstacles import linear_program, orca_lines
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
+from crowdbot.navigation.orca_search import avoid_agent, best_velocity
 from crowdbot.navigation.wall_arrays import wall_arrays
 
 from .clearance import move_with
@@ -20,8 +20,6 @@ from .clearance import move_with
 __all__ = ["RDSNavigator"]
 
 Floats = NDArray[np.float64]
-
-best_velocity, avoid_agent = linear_program.best_velocity, orca_lines.avoid_agent
 
 EAGER = 100.0
 """Value for unknown accelerations [m/s2], [rad/s2]."""
@@ -78,9 +76,9 @@ class RDSNavigator(Navigator):
     )
 
     speed: float = 1.0
-    horizon: float = 1.5
+    horizon: float = 3.0
     wall_horizon: float = 1.0
-    margin: float = 0.1
+    margin: float = 0.2
     front: float = 0.0
     rear: float = 0.0
     width: float = 0.0
@@ -110,10 +108,10 @@ class RDSNavigator(Navigator):
         wish = self._wish(observation, top, lead)
         fixed = np.zeros((0, 4)) if limits.holonomic else _drive_lines(observation, top, lead)
         near = np.hypot(*place.T) < (2.0 * top + np.hypot(*moving.T)) * self.horizon + 2.0 * radius + 2.0
-        chosen = (np.ascontiguousarray(row[near]) for row in (place, moving, people.radius))
+        place, moving, size = (np.ascontiguousarray(row[near]) for row in (place, moving, people.radius))
         out = np.zeros(2)
         fastest = top if limits.holonomic else math.hypot(top, lead * limits.max_turn_rate)
-        _choose(shape, now, *chosen, np.ascontiguousarray(walls), times, fixed, fastest, wish, out)
+        _choose(shape, now, place, moving, size, np.ascontiguousarray(walls), times, fixed, fastest, wish, out)
         if limits.holonomic:
             return move_with(observation, np.asarray(frame.T @ out), self.speed)
         forward = min(max(float(out[0]), 0.0), top)

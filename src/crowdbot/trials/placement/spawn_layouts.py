@@ -1,7 +1,7 @@
 """Spawn layouts: people who start on a circle or in one half of a zone, and go to the opposite side.
 
-They reproduce the rules of CrowdNav: the angle on the circle is uniform, each coordinate gets uniform noise, and a start
-closer than the sum of the radii and 0.2 m to a start or goal of somebody else is drawn again.
+They reproduce the rules of CrowdNav: the angle on the circle is uniform, each coordinate gets uniform noise, and a
+start closer than the sum of the radii and 0.2 m to a start or goal of somebody else is drawn again.
 
 Source: Chen et al. 2019, Crowd-robot interaction, doi:10.1109/ICRA.2019.8794134, with the code of the authors.
 """

@@ -6,6 +6,7 @@ code. People and robots move at the velocity that they choose, without limits of
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from typing import Any
@@ -15,6 +16,7 @@ from crowdbot.models import ORCA
 from crowdbot.sensors import GroundTruthPeople
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.people import Spawner
+from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Mount, RecordingSpec, RobotGoal, RobotSpec, Trial
 from crowdbot.world import Omnidirectional
@@ -109,7 +111,27 @@ def _preset(layout: str, people: int, radius: float) -> Preset:
     return Preset(name, TITLES[name], make, own, f"CrowdNav: {word} crossing with {people} people")
 
 
+def attention_ladder(attention: float, people: int, limit: float) -> Trial:
+    """Return a circle of which a share of people sees the robot."""
+    trial = _crossing("circle", 10, people, True, limit, 4.0, 0.5)
+    blind = (ReactionSpec(type="ignore", share=1.0 - attention),) if attention < 1.0 else ()
+    spawners = [dataclasses.replace(one, reactions=blind) for one in trial.spawners]
+    return dataclasses.replace(trial, name="attention-ladder", spawners=tuple(spawners))
+
+
+ATTENTION = Preset(
+    "attention-ladder",
+    TITLES["attention-ladder"],
+    attention_ladder,
+    {
+        "attention": PresetOption(0.5, "share of people who see the robot", "", 0.0, 1.0),
+        "people": PresetOption(10, "people", "", 1, 60),
+        "limit": PresetOption(25.0, "duration", "s", 5.0, 600.0),
+    },
+)
+
 CROWDNAV = (
+    ATTENTION,
     *(_preset("circle", people, radius) for people, radius in ((5, 4.0), (10, 4.0), (20, 4.0))),
     *(_preset("halves", people, 4.0) for people in (5, 10, 20)),
 )
