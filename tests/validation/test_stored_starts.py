@@ -9,8 +9,10 @@ from crowdbot.core import InputError
 from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel, GroupForce, SocialForce
 from crowdbot.validation import CHECKS, ISO_CASES, RIMEA_CASES, STUDIES, validate, variant_of
 from crowdbot.validation import code_digest as digest
+from crowdbot.validation.bottleneck import bottleneck_flow
 from crowdbot.validation.components import ASSIGNED_EXITS, COUNTER_FLOW, PREMOVEMENT, SLOW_MEMBER
-from crowdbot.validation.crowd_motion import one_start
+from crowdbot.validation.corridor import corridor_crowd
+from crowdbot.validation.crowd_motion import one_start, simulate_periodic
 from crowdbot.validation.rimea import CORNER, CORRIDOR_TIME
 from crowdbot.validation.scenario import CrowdTracks
 from crowdbot.validation.statistics import bin_values, pool_bins
@@ -163,6 +165,30 @@ def test_the_time_step_of_a_first_order_model_has_no_effect_on_a_lone_walker():
     assert result["crowd"][0][0] == pytest.approx(result["crowd"][1][0], abs=0.01)
     different = TIME_STEPS.judge({**result, "flow": [[2.0, 1.9, 2.1], [1.5, 1.4, 1.6]]})
     assert different.value == "own 0.05 s, differs at 0.1 s"
+
+
+class Counted(Straight):
+    """Keeps the time steps it is asked for."""
+
+    def velocity(self, scene, dt, rng=None):
+        STEPS.append(round(dt, 9))
+        return scene.desired_velocity(dt)
+
+
+STEPS = []
+
+
+@pytest.mark.parametrize("step", [0.01, 0.02, 0.05, 0.1])
+def test_a_study_uses_its_time_step(step):
+    STEPS.clear()
+    flow = bottleneck_flow(Counted(), 1.2, 4, (0, 1), step)
+    assert len(flow) == 2
+    assert set(STEPS) == {step}
+    STEPS.clear()
+    crowd = corridor_crowd([("one-way", 0.25, 0)], 12.0, 3.0, two_way=False, spread=0.05)
+    walk = simulate_periodic(Counted(), crowd, 12.0, 1.0, np.random.default_rng(0), _quiet, step)
+    assert set(STEPS) == {step}
+    assert walk.times.tolist() == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 
 
 def test_every_case_of_the_guidelines_is_run_or_has_a_reason():
