@@ -16,6 +16,7 @@ from crowdbot.measurement import (
     fit_interaction_energy,
     measure,
     plot_measurements,
+    pool_interaction_energy,
 )
 
 
@@ -87,6 +88,22 @@ def test_people_who_keep_apart_have_energy_at_small_times():
     same = compute_time_to_collision_distribution(tracks, velocity, 0.2)
     for name in ("ttc", "count", "expected", "g", "energy"):
         assert found.table[name].to_numpy() == pytest.approx(same[name].to_numpy(), nan_ok=True)
+
+
+def test_starts_are_pooled():
+    parts = [crossing(avoid=True, rows=80, seed=seed) for seed in range(4)]
+    tables = [
+        compute_interaction_energy(one, compute_individual_speed(one, 1, border="single-sided"), 0.2).table
+        for one in parts
+    ]
+    whole = pool_interaction_energy(tables)
+    assert whole.table["count"].to_numpy() == pytest.approx(sum(one["count"].to_numpy() for one in tables))
+    assert whole.table.g.to_numpy() == pytest.approx(
+        sum(one["count"].to_numpy() for one in tables) / sum(one.expected.to_numpy() for one in tables)
+    )
+    assert whole.exponent == pytest.approx(2.0, abs=1.0)
+    with pytest.raises(InputError, match="at least two tables with the same bins"):
+        pool_interaction_energy(tables[:1])
 
 
 def test_a_measurement_shows_the_energy(tmp_path):
