@@ -46,7 +46,7 @@ class InteractionEnergy:
 
     Fields:
         table: columns ttc (middle of the bin) [s], count, expected, g, low, high (95 % interval of g), energy =
-            ln(1 / g), energy_low, energy_high, fit; NaN without values.
+            ln(1 / g), energy_low, energy_high, fit (in the bins of the fit); NaN without values.
         exponent: n of ``E(tau) = k tau^-n + c``; NaN if the energy does not rise towards small tau.
         exponent_low, exponent_high: its 95 % interval.
         strength: k [s^n], 0 without an interaction.
@@ -134,7 +134,7 @@ def _energy_of(middle: Floats, found: Floats, expected: Floats, seed: int) -> In
     known = np.asarray([one for one in fits if not np.isnan(one)])
     sure = not np.isnan(exponent) and len(known) >= 0.9 * RESAMPLES
     ends = np.percentile(known, (2.5, 97.5)) if sure else (np.nan, np.nan)
-    near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1])
+    near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1]) & (count >= FEWEST)
     fit = np.where(near, strength * middle ** -(0.0 if np.isnan(exponent) else exponent) + offset, np.nan)
     rows = table(
         ttc=middle, count=count, expected=free, g=g, low=low, high=high, energy=_energy(g),
