@@ -17,7 +17,8 @@ from crowdbot.validation import corridor
 from crowdbot.validation.bottleneck import steady_flow
 from crowdbot.validation.contact_table import compare_contacts, write_contact_page
 from crowdbot.validation.contacts import CONTACT_TRIALS, measure_contacts
-from crowdbot.validation.scenario import STEP, CrowdTracks, corridor_walls, simulate_periodic, substeps
+from crowdbot.validation.crowd_motion import simulate_periodic
+from crowdbot.validation.scenario import STEP, CrowdTracks, corridor_walls, substeps
 from crowdbot.validation.section import section_of, section_values
 from crowdbot.validation.statistics import find_steady_window, summarize_starts, text_of
 
@@ -131,12 +132,15 @@ def test_the_table_resumes_and_says_why(tmp_path):
 
 
 def test_the_corridor_has_intervals_over_starts(monkeypatch):
-    for name, value in {"STARTS": 2, "DENSITIES": (0.5, 1.0), "SECONDS": 8.0}.items():
+    for name, value in {"DENSITIES": (0.5, 1.0), "SECONDS": 8.0}.items():
         monkeypatch.setattr(corridor, name, value)
-    found = corridor.CORRIDOR.run(ORCA(), False, _quiet)
-    assert (found["starts"], found["initial_density"]) == (2, [0.5, 1.0])
-    assert all(begin is None or 0.0 <= begin < 8.0 for begin in found["steady_from"])
-    assert len(found["steady_from"]) == 2
+    rows = corridor.CORRIDOR.run(ORCA(), (0, 3), False, _quiet)
+    found = corridor.CORRIDOR.summarize(rows)
+    assert (len(rows), found["initial_density"]) == (2, [0.5, 1.0])
+    assert all(begin is None or 0.0 <= begin < 8.0 for row in found["steady_from"] for begin in row)
+    assert [len(row) for row in found["steady_from"]] == [2, 2]
+    alone = corridor.CORRIDOR.run(ORCA(), (3,), False, _quiet)
+    assert alone == rows[1:]  # a start does not depend on the others
     for low, mean, high in zip(found["low"], found["speed"], found["high"], strict=True):
         assert low <= mean <= high
     assert found["speed"] == pytest.approx([1.34] * len(found["speed"]), abs=0.1)  # ORCA has no fundamental diagram

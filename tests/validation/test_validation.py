@@ -15,25 +15,24 @@ from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel
 from crowdbot.validation import CHECKS, select_models, validate, write_page
 from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
 from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
+from crowdbot.validation.crowd_motion import deepest_overlap, simulate_periodic
 from crowdbot.validation.lanes import LANES, NARROW
 from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
 from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
-from crowdbot.validation.run import _read
 from crowdbot.validation.scenario import (
     RADIUS,
     STEP,
     CrowdTracks,
     corridor_walls,
-    deepest_overlap,
     gate,
     inside_solids,
     opening,
     share,
-    simulate_periodic,
     starts,
 )
 from crowdbot.validation.single_file import SINGLE_FILE, _overtakings
+from crowdbot.validation.store import ResultFile
 from samples import sizes
 
 
@@ -181,7 +180,8 @@ def test_jams_clogs_and_walls_are_said_in_words():
 
 
 def test_a_model_that_sees_nobody_walks_forty_metres_in_time():
-    assert CORRIDOR_TIME.judge(CORRIDOR_TIME.run(Straight(), True, _quiet)) == ("30.1 s", True, "")
+    rows = CORRIDOR_TIME.run(Straight(), (0,), True, _quiet)
+    assert CORRIDOR_TIME.judge(CORRIDOR_TIME.summarize(rows)) == ("30.1 s", True, "")
 
 
 def test_two_way_crowds_are_half_and_half():
@@ -220,8 +220,8 @@ def test_a_folder_without_recordings_is_refused(tmp_path):
 def test_half_a_file_is_no_result(tmp_path, text):
     file = tmp_path / "orca.json"
     file.write_text(text, encoding="utf-8")
-    assert _read(file) == {}
-    assert _read(tmp_path / "none.json") == {}
+    assert ResultFile(file, ORCA(), True).rows(CORRIDOR_TIME) == {}
+    assert ResultFile(tmp_path / "none.json", ORCA(), True).rows(CORRIDOR_TIME) == {}
 
 
 @pytest.fixture(scope="module")
@@ -254,7 +254,9 @@ def test_progress_is_told_for_each_model(done):
 def test_a_model_that_fails_is_told_not_hidden(done):
     verdicts = [one.verdict for one in done[1].outcomes["lost"].values()]
     assert not any(verdict.passed for verdict in verdicts)
-    assert all("positions are not finite after 0.1 s" in verdict.words for verdict in verdicts)
+    words = [one.verdict.words for name, one in done[1].outcomes["lost"].items() if name != "time-step"]
+    assert all("positions are not finite after 0.1 s" in text for text in words)
+    assert done[1].outcomes["lost"]["time-step"].verdict.words == "the model is unstable at every time step"
 
 
 @pytest.mark.parametrize("count", sizes(4, len(CHECKS)))
@@ -266,6 +268,7 @@ def test_a_rerun_reads_and_a_fresh_run_finds_the_same(done, tmp_path, monkeypatc
     assert (out / "validation" / "orca.json").stat().st_mtime_ns == before
     assert again.outcomes["orca"] == found.outcomes["orca"]
     monkeypatch.setattr("crowdbot.validation.run.CHECKS", CHECKS[:count])
+    monkeypatch.setattr("crowdbot.validation.run.STUDIES", ())
     fresh = validate(models, tmp_path, None, True)
     for check in CHECKS[:count]:
         assert fresh.outcomes["orca"][check.name].result == found.outcomes["orca"][check.name].result
@@ -273,6 +276,7 @@ def test_a_rerun_reads_and_a_fresh_run_finds_the_same(done, tmp_path, monkeypatc
 
 def test_an_interrupted_run_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr("crowdbot.validation.run.CHECKS", CHECKS[:5])
+    monkeypatch.setattr("crowdbot.validation.run.STUDIES", ())
     models, _ = select_models(["orca"])
 
     def interrupted(what, part):
@@ -294,12 +298,14 @@ def test_the_page_holds_table_words_and_plots(done):
     for picture in re.findall(r"\]\((validation/[^)]+)\)", text):
         assert 1_000 < (out / picture).stat().st_size < 80_000
     rows = [line for line in text.splitlines() if line.startswith("| orca |")]
-    assert len(rows) == 1
-    assert rows[0].count("|") == len(CHECKS) + 5
-    assert re.search(r"a one-way crowd of [23]\.\d+ people/m2 still walks at", text)
+    assert rows[0].count("|") == len(CHECKS) + 6
+    assert "* **orca**: people in single file walk at" in text
+    assert "Runs (starts and densities) with a steady state" in text
     assert all(check.criterion in text for check in CHECKS)
     assert "The verdicts mean little" in text
     assert "compares with published curves only" in text
+    assert "| anticipation-velocity" not in text
+    assert re.search(r"\| orca \| 0.05 \| single file, 1 person/m \[m/s\] \| [\d.]+ \| [\d.]+ \| 1 \|", text)
 
 
 def test_the_command_writes_the_page(done, capsys):

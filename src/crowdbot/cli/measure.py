@@ -148,10 +148,25 @@ def _summary(found: Sequence[Measurements]) -> dict[str, Any]:
         values = [one.figures.get(name, math.nan) for one in found]
         if len(values) > 1 and all(math.isfinite(value) for value in values):
             means[name] = dataclasses.asdict(mean_over_starts(values))
+    if len(found) > 1 and all("time-to-collision" in one.tables for one in found):
+        means |= _pooled_energy(found)
     return {
         "recordings": [{"name": one.name, "figures": one.figures, "notes": list(one.notes)} for one in found],
         "mean": means,
     }
+
+
+def _pooled_energy(found: Sequence[Measurements]) -> dict[str, Any]:
+    """Return the exponent of the interaction energy over all recordings, which need few pairs each."""
+    import math
+
+    from crowdbot.measurement import pool_interaction_energy
+
+    energy = pool_interaction_energy([one.tables["time-to-collision"] for one in found])
+    if math.isnan(energy.exponent) or math.isnan(energy.exponent_low):
+        return {}
+    ends = {"low": energy.exponent_low, "high": energy.exponent_high}
+    return {"energy_exponent": {"mean": energy.exponent, **ends, "starts": len(found), "pooled": True}}
 
 
 def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path, bins: float) -> list[str]:
@@ -160,7 +175,7 @@ def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path, bi
 
     import pandas as pd
 
-    from crowdbot.measurement import pool_diagrams
+    from crowdbot.measurement import pool_diagrams, pool_interaction_energy
 
     from .output import json_text
 
@@ -174,6 +189,10 @@ def _write(found: Sequence[Measurements], summary: dict[str, Any], out: Path, bi
     if len(found) > 1 and "diagram-values" in found[0].tables:
         pooled = pool_diagrams(found, bins)
         files.append((out / "diagram-pooled.csv", pooled.to_csv(index=False, lineterminator="\n")))
+    if len(found) > 1 and all("time-to-collision" in one.tables for one in found):
+        energy = pool_interaction_energy([one.tables["time-to-collision"] for one in found])
+        text = energy.table.to_csv(index=False, lineterminator="\n")
+        files.append((out / "time-to-collision-pooled.csv", text))
     files.append((out / "measurements.json", json_text(summary) + "\n"))
     for file, text in files:
         draft = file.with_suffix(".part")

@@ -17,7 +17,13 @@ from .flow import (
     mean_flow,
 )
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
-from .interaction_energy import FIT_RANGE, InteractionEnergy, compute_interaction_energy, fit_interaction_energy
+from .interaction_energy import (
+    FIT_RANGE,
+    InteractionEnergy,
+    compute_interaction_energy,
+    fit_interaction_energy,
+    pool_interaction_energy,
+)
 from .lanes import LANE_BAND, compute_lane_order, lane_order, walking_direction
 from .movement import (
     BORDERS,
@@ -99,6 +105,7 @@ __all__ = [
     "measure",
     "plot_measurements",
     "pool_diagrams",
+    "pool_interaction_energy",
     "select_rows",
     "steady_threshold",
     "walking_direction",

@@ -7,6 +7,7 @@ small tau.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,13 @@ from .rows import Floats, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["FIT_RANGE", "InteractionEnergy", "compute_interaction_energy", "fit_interaction_energy"]
+__all__ = [
+    "FIT_RANGE",
+    "InteractionEnergy",
+    "compute_interaction_energy",
+    "fit_interaction_energy",
+    "pool_interaction_energy",
+]
 
 FIT_RANGE = (0.2, 3.0)
 """Times to collision [s] of the fit; the paper finds the power law below its cut-off of about 3 s."""
@@ -39,7 +46,7 @@ class InteractionEnergy:
 
     Fields:
         table: columns ttc (middle of the bin) [s], count, expected, g, low, high (95 % interval of g), energy =
-            ln(1 / g), energy_low, energy_high, fit; NaN without values.
+            ln(1 / g), energy_low, energy_high, fit (in the bins of the fit); NaN without values.
         exponent: n of ``E(tau) = k tau^-n + c``; NaN if the energy does not rise towards small tau.
         exponent_low, exponent_high: its 95 % interval.
         strength: k [s^n], 0 without an interaction.
@@ -91,20 +98,46 @@ def compute_interaction_energy(
     found = np.stack([np.histogram(when[met & (piece == b)], edges)[0] for b in range(BLOCKS)])
     size = np.bincount(piece, minlength=BLOCKS)[:BLOCKS]
     share = expected_times(tracks, velocity, radius, edges, shuffles, seed)
-    middle = edges[:-1] + 0.5 * bin_size
-    drawn = stream(seed, "interaction energy").integers(0, BLOCKS, (RESAMPLES, BLOCKS))
-    g, count = _ratio(found.sum(axis=0), size.sum(), share), found.sum(axis=0)
-    draws = [(_ratio(found[one].sum(axis=0), size[one].sum(), share), found[one].sum(axis=0)) for one in drawn]
+    return _energy_of(edges[:-1] + 0.5 * bin_size, found, share * size[:, None], seed)
+
+
+def pool_interaction_energy(found: Sequence[pd.DataFrame], seed: int = 0) -> InteractionEnergy:
+    """Return the energy over several recordings or starts, with 95 % intervals by the bootstrap over them.
+
+    Args:
+        found: tables of :func:`compute_interaction_energy` with the same bins, one for each recording.
+        seed: seed of the bootstrap.
+
+    Raises:
+        InputError: there are fewer than two tables, or their bins differ.
+
+    >>> one = table(ttc=np.arange(0.25, 3.0, 0.1), count=np.full(28, 90), expected=np.full(28, 100.0))
+    >>> pool_interaction_energy([one, one]).table.g[0]
+    np.float64(0.9)
+    """
+    if len(found) < 2 or any(not np.array_equal(one.ttc, found[0].ttc) for one in found):
+        raise InputError("a pooled interaction energy needs at least two tables with the same bins")
+    count, expected = (np.stack([one[name].to_numpy() for one in found]) for name in ("count", "expected"))
+    return _energy_of(found[0].ttc.to_numpy(), count, expected, seed)
+
+
+def _energy_of(middle: Floats, found: Floats, expected: Floats, seed: int) -> InteractionEnergy:
+    """Return the energy of counts and expected counts ``[B, N]`` of B pieces or recordings, drawn with replacement."""
+    B = len(found)
+    drawn = stream(seed, "interaction energy").integers(0, B, (RESAMPLES, B))
+    count, free = found.sum(axis=0), expected.sum(axis=0)
+    g = _ratio(count, free)
+    draws = [(_ratio(found[one].sum(axis=0), expected[one].sum(axis=0)), found[one].sum(axis=0)) for one in drawn]
     low, high = _interval(np.stack([ratio for ratio, _ in draws]))
     exponent, strength, offset = fit_interaction_energy(middle, g, count)
     fits = [fit_interaction_energy(middle, ratio, number)[0] for ratio, number in draws]
     known = np.asarray([one for one in fits if not np.isnan(one)])
     sure = not np.isnan(exponent) and len(known) >= 0.9 * RESAMPLES
     ends = np.percentile(known, (2.5, 97.5)) if sure else (np.nan, np.nan)
-    near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1])
+    near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1]) & (count >= FEWEST)
     fit = np.where(near, strength * middle ** -(0.0 if np.isnan(exponent) else exponent) + offset, np.nan)
     rows = table(
-        ttc=middle, count=count, expected=share * size.sum(), g=g, low=low, high=high, energy=_energy(g),
+        ttc=middle, count=count, expected=free, g=g, low=low, high=high, energy=_energy(g),
         energy_low=_energy(high), energy_high=_energy(low), fit=fit,
     )  # fmt: skip
     return InteractionEnergy(rows, exponent, float(ends[0]), float(ends[1]), strength)
@@ -146,8 +179,7 @@ def fit_interaction_energy(ttc: ArrayLike, g: ArrayLike, count: ArrayLike) -> tu
     return float(EXPONENTS[best]), float(k[best]), float(mean_y - k[best] * mean_x[best])
 
 
-def _ratio(found: Floats, pairs: float, share: Floats) -> Floats:
-    expected = share * pairs
+def _ratio(found: Floats, expected: Floats) -> Floats:
     return np.where(expected > 0.0, found / np.where(expected > 0.0, expected, 1.0), np.nan)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .interaction_energy import pool_interaction_energy
 from .survey import Measurements
 
 __all__ = ["plot_measurements"]
@@ -35,6 +36,9 @@ def plot_measurements(found: Sequence[Measurements], folder: Path) -> list[Path]
         some = [one for one in found if source in one.tables and len(one.tables[source])]
         if some:
             files.append(_curves(name, x, y, draw, some, folder))
+    tables = [one.tables["time-to-collision"] for one in found if "time-to-collision" in one.tables]
+    if len(tables) > 1:
+        files.append(_pooled_energy(tables, folder))
     for name, title in PROFILES.items():
         if found and "profiles" in found[0].tables:
             files.append(_profile(found[0], name, title, folder))
@@ -101,6 +105,15 @@ def _energy(axis: Any, table: Any, label: str, color: str) -> None:
                   linewidth=0.8)  # fmt: skip
     axis.plot(near.ttc, near.fit, color=color, linewidth=1.4)
     axis.axhline(0.0, color="#9a9a9a", linewidth=0.8, linestyle="--")
+
+
+def _pooled_energy(tables: Sequence[Any], folder: Path) -> Path:
+    figure = _figure(6.0, 4.0)
+    axis = figure.subplots()
+    _energy(axis, pool_interaction_energy(tables).table, f"{len(tables)} recordings or starts", COLORS[0])
+    axis.set(xlabel="time to collision τ [s]", ylabel="energy ln 1/g(τ), with fit k τ^-n + c")
+    _finish(axis, ())
+    return _save(figure, folder / "interaction-energy-pooled.png")
 
 
 LONGEST_TIME = 4.0

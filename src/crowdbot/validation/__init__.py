@@ -1,16 +1,21 @@
 """Validation of crowd models against experiments with people and the RiMEA tests."""
 
+from .cases import ISO_CASES, RIMEA_CASES, Case
 from .contact_table import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
 from .contacts import ContactSummary, measure_contacts
 from .page import write_page
-from .run import CHECKS, CheckOutcome, Validation, select_models, validate
+from .run import CHECKS, STUDIES, CheckOutcome, Validation, select_models, validate, variant_of
 from .scenario import Check, Verdict
 
 __all__ = [
     "CHECKS",
     "CONTACT_REASONS",
     "CONTACT_SECONDS",
+    "ISO_CASES",
     "OTHER_VALUES",
+    "RIMEA_CASES",
+    "STUDIES",
+    "Case",
     "Check",
     "CheckOutcome",
     "ContactSummary",
@@ -20,6 +25,7 @@ __all__ = [
     "measure_contacts",
     "select_models",
     "validate",
+    "variant_of",
     "write_contact_page",
     "write_page",
 ]

@@ -173,9 +173,8 @@ def _leave(
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 0] > LENGTH + 2.0)
 
-    return simulate_open(
-        model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width, numbers[0]), report
-    )
+    rng = stream_of("bottleneck", "model", width, numbers[0])
+    return simulate_open(model, crowd, goals, left, seconds, rng, report, step)
 
 
 def _solids(width: float) -> list[Solid]:

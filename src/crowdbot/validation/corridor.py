@@ -89,7 +89,7 @@ def _measure(walk: CrowdTracks) -> dict[str, Any]:
 def summarize(rows: Sequence[Row]) -> dict[str, Any]:
     """Return the fundamental diagram of all starts with intervals."""
     return {
-        **pool_bins([row["bins"] for row in rows], BIN, LEAST),
+        **pool_bins([row["bins"] for row in rows], BIN, LEAST if len(rows) > 1 else 1),
         "initial_density": rows[0]["initial_density"],
         "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
         "outside": float(np.mean([row["outside"] for row in rows])),

@@ -22,7 +22,8 @@ def _steps(model: CrowdModel, step: float | None) -> tuple[float, int]:
     """Return the time between goals and walls [s], and the number of steps of the model in it."""
     if step is None:
         return STEP, substeps(model)
-    return max(STEP, step), max(1, round(STEP / step))
+    parts = max(1, round(STEP / step))
+    return parts * step, parts
 
 
 def simulate_periodic(

@@ -24,6 +24,7 @@ from .tables import (
     model_table,
     preset_table,
     replace_incomplete,
+    steady_table,
     time_step_table,
 )
 
@@ -77,6 +78,7 @@ def write_page(done: Validation, out: Path, command: str) -> Path:
             *deficiencies(shown),
             *jams(shown),
             *_sections(done),
+            *steady_table(shown),
             *case_table(shown),
             *time_step_table(shown),
             *preset_table(shown),

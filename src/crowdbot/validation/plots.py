@@ -45,7 +45,7 @@ def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel,
     found = {model: checks[name] for model, checks in done.outcomes.items() if name in checks}
     rows = max(1, -(-len(found) // COLUMNS))
     columns = max(1, min(COLUMNS, len(found)))
-    figure = Figure(figsize=(0.6 + 2.15 * columns, 1.35 + 1.75 * rows), dpi=100, layout="constrained")
+    figure = Figure(figsize=(max(7.0, 0.6 + 2.15 * columns), 1.35 + 1.75 * rows), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     people = (done.people or {}).get(name)

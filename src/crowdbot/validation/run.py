@@ -174,13 +174,11 @@ def validate(
         people = measure_recordings(data, lambda share: report("recordings", share))
         write_json(out / "people.json", people)
     files = {name: ResultFile(out / f"{name}.json", model, quick) for name, model in models.items()}
-    rounds = range(BATCH, starts + BATCH, BATCH) if compute else ()
-    for number in rounds:  # all models get their first starts before any gets more
+    wanted = 1 if quick else starts
+    for done in range(0, wanted, BATCH) if compute else ():  # all models get their first starts before any gets more
+        up_to = min(done + BATCH, wanted)
         for name, model in models.items():
-            up_to = 1 if quick else min(number, starts)
-            _complete(model, files[name], up_to, functools.partial(_part, report, name, up_to / starts))
-        if quick:
-            break
+            _complete(model, files[name], up_to, functools.partial(_part, report, name, done / wanted, up_to / wanted))
     outcomes = {name: _outcomes(file) for name, file in files.items()}
     variants = {name: variant_of(model) for name, model in models.items()}
     return Validation(outcomes, dict(skipped or {}), people, quick, variants)
@@ -217,8 +215,8 @@ def _share(report: Report, k: int, count: int, share: float) -> None:
     report((k + share) / count)
 
 
-def _part(report: Progress, name: str, whole: float, share: float) -> None:
-    report(name, whole * share)
+def _part(report: Progress, name: str, first: float, last: float, share: float) -> None:
+    report(name, first + (last - first) * share)
 
 
 def _run(check: Check, model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[dict[str, Any]]:

@@ -27,6 +27,7 @@ __all__ = [
     "model_table",
     "preset_table",
     "replace_incomplete",
+    "steady_table",
     "time_step_table",
 ]
 
@@ -62,10 +63,11 @@ def model_table(done: Validation) -> list[str]:
     for model, checks in done.outcomes.items():
         cells = [_cell(checks[c.name]) for c in CHECKS]
         passed = sum(checks[c.name].verdict.passed for c in CHECKS)
+        ran = sum(checks[c.name].starts > 0 for c in CHECKS)
         overlap = max((one.result.get("overlap", 0.0) for one in checks.values()), default=0.0)
         seconds = sum(one.seconds for one in checks.values())
         lines.append(
-            f"| {_name(done, model)} | {' | '.join(cells)} | {passed} of {len(CHECKS)} | {_starts(checks)} |"
+            f"| {_name(done, model)} | {' | '.join(cells)} | {passed} of {ran} | {_starts(checks)} |"
             f" {overlap:.2f} | {seconds:.0f} |"
         )
     if done.people:
@@ -148,7 +150,8 @@ def deficiencies(done: Validation) -> list[str]:
         same = _same(done, model)
         if same:
             words.append(f"results are identical to those of {same}, since goals are far away in all tests")
-        lines.append(f"* **{_name(done, model)}**: {'; '.join(words) or 'none found by these tests'}.")
+        nothing = "none found by these tests" if all(checks[c.name].starts for c in CHECKS) else "not all tests are run"
+        lines.append(f"* **{_name(done, model)}**: {'; '.join(words) or nothing}.")
     return [*lines, ""]
 
 
@@ -227,6 +230,33 @@ def _cases(head: str, cases: Sequence[Case]) -> list[str]:
         where = ", ".join(titles[name] for name in case.where) or "not run"
         lines.append(f"| {case.name} | {case.about} | {where} | {case.why} |")
     return [*lines, ""]
+
+
+def steady_table(done: Validation) -> list[str]:
+    """Return in how many starts a steady state is found, and from when on."""
+    names = ("single-file", "corridor", "lanes")
+    titles = {check.name: check.title for check in CHECKS}
+    lines = [
+        "## Steady states",
+        "",
+        "Runs (starts and densities) with a steady state, and the median of the time at which it begins [s]. The others"
+        " are measured in their last third.",
+        "",
+        f"| model | {' | '.join(titles[name] for name in names)} |",
+        "|---" * (len(names) + 1) + "|",
+    ]
+    for model, checks in done.outcomes.items():
+        cells = [_steady_cell(checks[name].result.get("steady_from")) for name in names]
+        lines.append(f"| {_name(done, model)} | {' | '.join(cells)} |")
+    return [*lines, ""]
+
+
+def _steady_cell(begins: Sequence[Any] | None) -> str:
+    if begins is None:
+        return "-"
+    runs = [one for row in begins for one in (row if isinstance(row, list) else [row])]
+    found = [one for one in runs if one is not None]
+    return f"{len(found)} of {len(runs)}" + (f", {np.median(found):.1f} s" if found else "")
 
 
 def time_step_table(done: Validation) -> list[str]:

@@ -97,6 +97,8 @@ def summarize(rows: Sequence[Row]) -> dict[str, Any]:
 
 def judge(result: dict[str, Any]) -> Verdict:
     """Name the steps at which a value differs from that at the model's own step."""
+    if all(value is None for name in NAMES for value in result[name]):
+        return Verdict("unstable", False, "the model is unstable at every time step")
     own = result["steps"].index(min(result["steps"], key=lambda step: abs(step - result["own"])))
     different = []
     for k, step in enumerate(result["steps"]):
