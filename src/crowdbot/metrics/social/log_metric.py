@@ -73,12 +73,13 @@ def check_log_metric(metric: LogMetric) -> None:
 
 def _log(people: int) -> RobotLog:
     """Return a log of 3 s in which people pass a robot."""
-    times = np.arange(31) * 0.1
+    times = np.linspace(0.0, 3.0, 31)
     position = np.zeros((31, people + 1, 2))
     position[:, 0, 0] = times
     for k in range(people):
         position[:, k + 1] = np.stack([4.0 - 1.2 * times, np.full(31, 0.8 + k)], axis=1)
-    velocity = np.gradient(position, 0.1, axis=0)
+    velocity = np.zeros(position.shape)
+    velocity[:, 0, 0], velocity[:, 1:, 0] = 1.0, -1.2
     heading = np.zeros((31, people + 1))
     agents = AgentLog(times, position, velocity, heading, np.full(heading.shape, 0.3), np.ones(heading.shape, bool))
     return RobotLog.of(agents, robot=0, goal=(6.0, 0.0))
