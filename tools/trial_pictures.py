@@ -137,7 +137,7 @@ def page(file: Path) -> None:
         "with which the trial equals theirs. P&G: Francis et al. 2025 (doi:10.1145/3700599). CrowdNav, social-jym,",
         "UMANS, SEAN and RVO2 are simulators.",
         "",
-        "Trials that reproduce a benchmark or the CrowdBot challenge keep its crowd model, `orca`; in all others people",
+        "Trials that reproduce a benchmark or the CrowdBot challenge keep its crowd model, `orca`; in others, people",
         "walk by the preset `people`. `--set model=orca` gives the crowd that these trials had before; for",
         "`crossing-flows`, add `--set crowd/time-horizon-walls=1`.",
         "",
