@@ -29,7 +29,7 @@ GAP = 0.01
 class PortalTransfer:
     """A portal: people in the zone are moved by (dx, dy) as soon as there is room. Robots are not moved.
 
-    A person without room at the exit waits in the zone. People who wait in a portal do not block an exit.
+    A person without room at the exit waits in the zone. People who wait at each other's exits change places.
 
     A transferred person counts as a new person with a new identity, so tracks have no jumps. The person keeps velocity
     and goal.
@@ -101,50 +101,101 @@ def _transfer(
     E, A = active.shape
     P = len(shift)
     inside, waiting = np.empty((P, A), dtype=np.bool_), np.empty(A, dtype=np.bool_)
+    chosen, stay = np.empty(A, dtype=np.int64), np.empty((A, 2))
     changed = False
     for e in range(E):
         some = False
         for a in range(A):
             waiting[a] = False
+            chosen[a] = -1
+            stay[a, 0], stay[a, 1] = position[e, a, 0], position[e, a, 1]
             for p in range(P):
+                part = ring[first[p] : first[p + 1]]
                 inside[p, a] = (
-                    active[e, a]
-                    and not external[e, a]
-                    and is_inside(ring[first[p] : first[p + 1]], position[e, a, 0], position[e, a, 1])
+                    active[e, a] and not external[e, a] and is_inside(part, position[e, a, 0], position[e, a, 1])
                 )
                 waiting[a] = waiting[a] or inside[p, a]
             some = some or waiting[a]
+            if waiting[a] and present[e, a] and _is_in_any(ring, first, old[e, a, 0], old[e, a, 1]):
+                stay[a, 0], stay[a, 1] = old[e, a, 0], old[e, a, 1]
         if not some:
             continue
+        _choose_portals(inside, waiting, shift, active[e], position[e], stay, radius[e], chosen)
         for p in range(P):
             for a in range(A):
-                if not inside[p, a]:
-                    continue
-                x, y = position[e, a, 0] + shift[p, 0], position[e, a, 1] + shift[p, 1]
-                if _is_free(x, y, a, active[e], waiting, position[e], radius[e]):
-                    position[e, a, 0], position[e, a, 1] = x, y
+                if chosen[a] == p:
+                    position[e, a, 0] += shift[p, 0]
+                    position[e, a, 1] += shift[p, 1]
                     ids[e, a] = following[e]
                     following[e] += 1
-                    waiting[a], changed = False, True
-                    for later in range(p, P):
-                        inside[later, a] = False
-        for a in range(A):
-            for p in range(P):
-                if (
-                    waiting[a]
-                    and present[e, a]
-                    and is_inside(ring[first[p] : first[p + 1]], old[e, a, 0], old[e, a, 1])
-                ):
-                    position[e, a, 0], position[e, a, 1] = old[e, a, 0], old[e, a, 1]
-                    velocity[e, a, 0], velocity[e, a, 1] = 0.0, 0.0
                     changed = True
-                    break
+        for a in range(A):
+            if waiting[a] and chosen[a] < 0 and present[e, a] and _is_in_any(ring, first, old[e, a, 0], old[e, a, 1]):
+                position[e, a, 0], position[e, a, 1] = stay[a, 0], stay[a, 1]
+                velocity[e, a, 0], velocity[e, a, 1] = 0.0, 0.0
+                changed = True
     return changed
 
 
 @kernel
+def _is_in_any(ring: Floats, first: Numbers, x: float, y: float) -> bool:
+    """Return whether x, y is in one of the portals."""
+    for p in range(len(first) - 1):  # noqa: SIM110 - kernels take no generators
+        if is_inside(ring[first[p] : first[p + 1]], x, y):
+            return True
+    return False
+
+
+@kernel
+def _choose_portals(
+    inside: Bools, waiting: Bools, shift: Floats, active: Bools, position: Floats, stay: Floats, radius: Floats,
+    chosen: Numbers,
+) -> None:  # fmt: skip
+    """Write the portal of each person who is transferred to ``chosen``; all others keep -1.
+
+    People who wait at each other's exits are transferred together. Those who stay block their place, so the set is
+    reduced until nobody is placed on anybody.
+    """
+    P, A = inside.shape
+    for p in range(P):
+        for a in range(A):
+            if inside[p, a] and chosen[a] < 0:
+                x, y = position[a, 0] + shift[p, 0], position[a, 1] + shift[p, 1]
+                if _is_free(x, y, a, active, waiting, position, radius):
+                    chosen[a] = p
+    again = True
+    while again:
+        again = False
+        for a in range(A):
+            if chosen[a] >= 0 and _is_blocked(a, chosen, waiting, shift, position, stay, radius):
+                chosen[a] = -1
+                again = True
+
+
+@kernel
+def _is_blocked(
+    agent: int, chosen: Numbers, waiting: Bools, shift: Floats, position: Floats, stay: Floats, radius: Floats
+) -> bool:
+    """Return whether the exit of an agent is taken by somebody who stays, or who is transferred there before."""
+    p = chosen[agent]
+    x, y = position[agent, 0] + shift[p, 0], position[agent, 1] + shift[p, 1]
+    for b in range(len(chosen)):
+        if b == agent or not waiting[b]:
+            continue
+        bx, by = stay[b, 0], stay[b, 1]
+        q = chosen[b]
+        if q >= 0:
+            if q > p or (q == p and b > agent):
+                continue
+            bx, by = position[b, 0] + shift[q, 0], position[b, 1] + shift[q, 1]
+        if math.hypot(bx - x, by - y) < radius[b] + radius[agent] + GAP:
+            return True
+    return False
+
+
+@kernel
 def _is_free(x: float, y: float, agent: int, active: Bools, waiting: Bools, position: Floats, radius: Floats) -> bool:
-    """Return whether an agent has room at x, y; those who wait in portals do not count."""
+    """Return whether an agent has room at x, y; those in portals do not count."""
     for b in range(len(active)):
         if b == agent or not active[b] or waiting[b]:
             continue
