@@ -6,7 +6,7 @@ import html
 import math
 from collections.abc import Sequence
 
-from .factor_effects import FactorEffect
+from .sweep_effects import FactorEffect
 
 __all__ = ["effects_svg"]
 
