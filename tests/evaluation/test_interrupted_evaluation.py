@@ -1,5 +1,6 @@
 """Evaluations that are killed at random moments, and workers that die, end with the same table."""
 
+import importlib
 import random
 import signal
 import subprocess
@@ -81,21 +82,12 @@ def test_an_evaluation_that_is_killed_20_times_ends_with_the_same_table(tmp_path
 
 
 @pytest.mark.sweep
-@pytest.mark.parametrize("cluster", [None, "local"])
-def test_a_worker_that_dies_does_not_change_the_table(tmp_path, monkeypatch, cluster):
-    if cluster is not None:
-        pytest.importorskip("ray")
-    import importlib
-
+def test_a_worker_that_dies_does_not_change_the_table(tmp_path, monkeypatch):
     monkeypatch.setattr(importlib.import_module("crowdbot.evaluation.runner"), "CHUNK", 2)
     (tmp_path / "fatal.py").write_text(FATAL)
     monkeypatch.chdir(tmp_path)
     plan = EvaluationPlan([load_trial("frontal", duration=2.0)], parse_methods("fatal.py:Fatal, orca"), seeds=range(6))
-    try:
-        found = evaluate(plan, workers=2, cluster=cluster)
-    finally:
-        if cluster is not None:
-            importlib.import_module("ray").shutdown()
+    found = evaluate(plan, workers=2)
     assert (tmp_path / "died").exists()
     alone = evaluate(plan)
     assert plain(cells_of(found)) == plain(cells_of(alone))

@@ -1,8 +1,6 @@
 """Recordings of robots: metrics of logs, trials of recordings, and where reality lies."""
 
 import json
-import os
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -120,13 +118,3 @@ def test_the_command_measures_and_simulates(clip, tmp_path, capsys):
     assert "trials and real are given" in capsys.readouterr().err
     assert main(["evaluate"]) == 2
     assert "needs a trial, or recordings" in capsys.readouterr().err
-
-
-@pytest.mark.skipif("CROWDBOT_SHARED" not in os.environ, reason="needs the recordings of CITR")
-def test_a_vehicle_of_citr():
-    stem = Path(os.environ["CROWDBOT_SHARED"], "data/citr/vci_front/front_interaction_01_traj")
-    found = load_robot_recording(
-        f"{stem}_ped_filtered.csv", f"{stem}_veh_filtered.csv", fps=29.97, radius=0.9
-    ).metrics()
-    assert 1.0 < found["mean_speed"] < 6.0
-    assert 0.0 < found["min_clearance"] < 3.0

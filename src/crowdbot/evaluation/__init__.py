@@ -2,7 +2,6 @@
 
 from .comparison import PairedComparison, correct_p_values, paired_comparison
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
-from .factor_effects import FactorEffect, factor_effects
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .job import RunRow, row_of, row_values
@@ -11,13 +10,14 @@ from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .reality import RealPlacement, place_reality, reality_svg
-from .recorded_trial import recorded_trial
 from .report import write_report
 from .requirement import Requirement, RequirementVerdict, parse_requirement
 from .result import CellResult, EvaluationResult, load_evaluation
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .statistic import Statistic, parse_statistic
+from .sweep_effects import FactorEffect, factor_effects
+from .trial_of_recording import recorded_trial
 from .worst_run import WorstRun, worst_runs
 
 __all__ = [

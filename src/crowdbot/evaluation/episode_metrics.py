@@ -53,7 +53,7 @@ def episode_log(episode: Episode) -> RobotLog:
     >>> from crowdbot.simulation import simulate
     >>> from crowdbot.trials import load_trial
     >>> episode_log(simulate(load_trial("frontal", duration=2.0), 0)).path.round(1).tolist()
-    [[0.0, 0.0], [9.0, 0.0]]
+    [[-4.5, 0.0], [4.5, 0.0]]
     """
     trial, robot = episode.trial, episode.trial.robots[0]
     ghosts = [own for own, spec in zip(episode.robots, trial.robots, strict=True) if spec.ghost]

@@ -73,7 +73,7 @@ def sweep_trials(
     count = math.prod(len(one.levels) for one in factors)
     if count > MOST_CELLS:
         raise InputError(f"the sweep has {count} combinations, at most {MOST_CELLS} are allowed")
-    found = []
+    found: list[tuple[Trial, dict[str, str]]] = []
     for row in itertools.product(*(one.levels for one in factors)):
         levels = {one.name: level for one, level in zip(factors, row, strict=True)}
         trial = load(levels)

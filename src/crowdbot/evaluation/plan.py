@@ -126,7 +126,7 @@ class EvaluationPlan:
             if again:
                 raise InputError(f"{name}: {again[0]} is there twice")
         levels = dict(self.factors)
-        trials = []
+        trials: list[Trial] = []
         for trial in self.trials:
             variants = expand_sweeps(trial, trust=self.trust)
             trials += variants

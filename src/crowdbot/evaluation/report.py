@@ -14,11 +14,11 @@ from crowdbot.core import explain_write_errors
 
 from .comparison import PairedComparison
 from .effect_plots import effects_svg
-from .factor_effects import FactorEffect, factor_effects
 from .pareto import pareto_svg
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
 from .statistic import Statistic
+from .sweep_effects import FactorEffect, factor_effects
 from .worst_run import WorstRun
 
 __all__ = ["write_report"]

@@ -162,8 +162,7 @@ def _agents(tracks: Sequence[tuple[Floats, Floats]], moments: Floats, radius: fl
         gap = times[after] - times[after - 1] if len(times) > 1 else np.zeros(len(moments))
         active[:, k] = inside & (gap <= LONGEST_GAP)
         position[:, k] = np.stack([np.interp(moments, times, place[:, axis]) for axis in range(2)], axis=1)
-    keep = active.any(axis=0)
-    keep[0] = True
+    keep = np.asarray(active.any(axis=0)) | (np.arange(len(tracks)) == 0)
     ends = np.array([place[-1] for _, place in tracks])[keep]
     position, active = position[:, keep], active[:, keep]
     step = moments[1] - moments[0]

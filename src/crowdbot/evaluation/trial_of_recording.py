@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,7 +65,7 @@ def recorded_trial(recording: RobotRecording, folder: Path, mirror: bool = True)
         place = agents.position[rows, k]
         walk = float(np.hypot(*np.diff(place, axis=0).T).sum())
         speed = max(LEAST_SPEED, walk / max(1e-9, float(times[rows[-1]] - times[rows[0]])))
-        people = {
+        people: dict[str, Any] = {
             "name": f"person-{k}",
             "zone": _square(place[0]),
             "goal": _square(recording.ends[k]),
@@ -77,9 +78,9 @@ def recorded_trial(recording: RobotRecording, folder: Path, mirror: bool = True)
             begin = round(float(times[rows[0]]), 6)
             sources.append(SourceSpec(rate=1e4, timing="regular", begin=begin, max_count=1, **people))
     spec = RobotSpec(
-        x=float(robot[0, 0]),
-        y=float(robot[0, 1]),
-        heading=_heading(robot),
+        x=round(float(robot[0, 0]), 6),
+        y=round(float(robot[0, 1]), 6),
+        heading=round(float(agents.heading[0, 0]), 6) if mirror else _heading(robot),
         radius=recording.radius,
         goal=RobotGoal(float(recording.goal[0]), float(recording.goal[1]), recording.tolerance),
         drive=DifferentialDrive(max_speed=_top_speed(agents.velocity[:, 0])),

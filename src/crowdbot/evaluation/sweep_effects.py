@@ -103,7 +103,7 @@ def _effects(
     """Return factors, levels, means and effects ``[1 + R]`` of each main effect and interaction."""
     factors = {name: list(dict.fromkeys(cell.factors[name] for cell in cells)) for name in cells[0].factors}
     all_mean = means.mean(axis=1)
-    found = []
+    found: list[tuple[tuple[str, ...], tuple[str, ...], Floats, Floats]] = []
     main: dict[tuple[str, str], Floats] = {}
     for name, levels in factors.items():
         for level in levels:
