@@ -108,7 +108,7 @@ def _preset(layout: str, people: int, radius: float) -> Preset:
             "noise": PresetOption(0.5, "largest deviation of x and y from the circle", "m", 0.0, 2.0),
         }
     make: Any = functools.partial(_crossing, layout, people)
-    return Preset(name, TITLES[name], make, own, f"CrowdNav: {word} crossing with {people} people")
+    return Preset(name, TITLES[name], make, own, f"CrowdNav: {word} crossing with {people} people", model="orca")
 
 
 def attention_ladder(attention: float, people: int, limit: float) -> Trial:
@@ -128,6 +128,7 @@ ATTENTION = Preset(
         "people": PresetOption(10, "people", "", 1, 60),
         "limit": PresetOption(25.0, "duration", "s", 5.0, 600.0),
     },
+    model="orca",
 )
 
 CROWDNAV = (
