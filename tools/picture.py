@@ -24,7 +24,7 @@ EAST, WEST, ROBOT, PATH, TRUTH = "#9ec5e8", "#f0b3a6", "#00796b", "#0072b2", "#3
 
 def draw(path: str) -> None:
     """Run the trial and write the picture."""
-    episode = run(cb, cb.load_trial("crossing-flows"))
+    episode = run(cb.load_trial("crossing-flows"))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
     busiest = int(np.argmax(future.scored.sum(axis=1)))
     now = past.dt * (past.frame[busiest, -1] - past.frame[0, 0]) / (past.frame[0, 1] - past.frame[0, 0])
@@ -37,11 +37,11 @@ def draw(path: str) -> None:
     for person in np.flatnonzero(future.scored[busiest]):
         begin = past.position[busiest, -1, person]
         for positions, style in (
-            (future.position[busiest, :, person], "k--"),
+            (future.position[busiest, :, person], "--"),
             (forecast.position[0, 0, :, person], "-"),
         ):
             line = np.concatenate([begin[None], positions])
-            axes.plot(*line.T, style, color="#333333" if style == "k--" else PATH, lw=1.3 if style == "k--" else 2)
+            axes.plot(*line.T, style, color="#333333" if style == "--" else PATH, lw=1.3 if style == "--" else 2)
     axes.set_title(
         f"crossing-flows after {episode.times[frame]:.1f} s: LiDAR returns (green), predicted paths for the next"
         f" {PREDICT * STEP:.1f} s (blue) and what then happened (dashed)",
