@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from crowdbot.core import InputError
-from crowdbot.evaluation import bootstrap_interval, correct_p_values, paired_comparison, wilson_interval
+from crowdbot.evaluation import (
+    bootstrap_interval,
+    correct_p_values,
+    paired_comparison,
+    parse_statistic,
+    wilson_interval,
+)
 
 
 @given(successes=st.integers(0, 200), more=st.integers(0, 200), level=st.sampled_from([0.8, 0.9, 0.95, 0.99]))
@@ -93,3 +99,12 @@ def test_a_confidence_out_of_range_is_refused(level: float) -> None:
 def test_more_successes_than_runs_are_refused() -> None:
     with pytest.raises(InputError, match="successes = 3 must be from 0 to the number of runs, 2"):
         wilson_interval(3, 2)
+
+
+def test_the_tail_is_the_mean_of_the_largest_values() -> None:
+    values = np.arange(100.0)
+    assert parse_statistic("cvar95:max-severity").estimate(values).value == np.mean(values[95:])
+    assert parse_statistic("cvar50:max-severity").estimate(np.array([4.0, 1.0, 3.0, 2.0])).value == 3.5
+    assert parse_statistic("cvar99:max-severity").estimate(np.array([4.0, 1.0])).value == 4.0
+    with pytest.raises(InputError, match="cvar5 to cvar99"):
+        parse_statistic("cvar:max-severity")

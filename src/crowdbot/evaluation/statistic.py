@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -25,6 +27,7 @@ RATES = {
 }
 """Names of the shares of runs, with their metric."""
 QUANTILE = re.compile(r"p(\d{1,2})")
+TAIL = re.compile(r"cvar(\d{1,2})")
 OWN = re.compile(r"(?P<kind>[a-z]\w*:)?(?P<address>[^:]*(?:\.py|/):[A-Za-z_]\w*)")
 """A metric of users, after a kind."""
 
@@ -36,7 +39,8 @@ class Statistic:
     Fields:
         name: as given, such as ``collision-rate``.
         metric: name of the metric, such as ``collision``.
-        kind: ``rate``, ``mean``, ``median``, ``max``, ``min``, or ``p5`` to ``p99``.
+        kind: ``rate``, ``mean``, ``median``, ``max``, ``min``, ``p5`` to ``p99``, or ``cvar5`` to ``cvar99``: the mean
+            of the values at or above this percentile.
         address: class of a metric of users, such as ``mine.py:TimeNear``; empty for built-in metrics.
     """
 
@@ -58,7 +62,7 @@ class Statistic:
         if not len(kept):
             return bootstrap_interval(kept, confidence=confidence)
         kept = np.where(np.isinf(kept), np.nan, kept) if np.isfinite(kept).any() else kept
-        return bootstrap_interval(kept, _FUNCTIONS.get(self.kind) or _quantile(self.kind), confidence)
+        return bootstrap_interval(kept, _FUNCTIONS.get(self.kind) or _of_percentile(self.kind), confidence)
 
 
 def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> Statistic:
@@ -66,8 +70,8 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
 
     Args:
         name: ``success-rate``, ``collision-rate``, ``timeout-rate`` or ``error-rate``; a metric, of which the mean is
-            taken; or a metric after ``median:``, ``min:``, ``max:`` or a percentile such as ``p95:``. A metric of
-            users has its address: ``mine.py:TimeNear``.
+            taken; or a metric after ``median:``, ``min:``, ``max:``, a percentile such as ``p95:`` or the mean of the
+            tail above it, ``cvar95:``. A metric of users has its address: ``mine.py:TimeNear``.
         metrics: known metrics, to refuse others.
 
     Raises:
@@ -84,8 +88,9 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     if not colon and word in RATES:
         return Statistic(name, RATES[word], "rate")
     kind = kind if colon else "mean"
-    if kind not in _FUNCTIONS and not QUANTILE.fullmatch(kind):
-        raise InputError(f"statistic {name!r}: {kind!r} is unknown; possible are {', '.join(_FUNCTIONS)} and p5 to p99")
+    if kind not in _FUNCTIONS and not (QUANTILE.fullmatch(kind) or TAIL.fullmatch(kind)):
+        kinds = f"{', '.join(_FUNCTIONS)}, p5 to p99 and cvar5 to cvar99"
+        raise InputError(f"statistic {name!r}: {kind!r} is unknown; possible are {kinds}")
     metric = word.replace("-", "_")
     if metrics is not None and metric not in metrics:
         known = [*RATES, *(one.replace("_", "-") for one in metrics)]
@@ -101,6 +106,15 @@ _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {
 }
 
 
-def _quantile(kind: str) -> Callable[[Floats], Floats]:
+def _of_percentile(kind: str) -> Callable[[Floats], Floats]:
+    """Return a percentile of each row, or the mean of its values from there on (expected shortfall)."""
+    if match := TAIL.fullmatch(kind):
+        return functools.partial(_tail_mean, share=int(match[1]) / 100.0)
     share = int(kind[1:]) / 100.0
     return lambda rows: np.asarray(np.quantile(rows, share, axis=1))
+
+
+def _tail_mean(rows: Floats, share: float) -> Floats:
+    count = rows.shape[1]
+    first = min(count - 1, math.ceil(share * count - 1e-9))
+    return np.asarray(np.sort(rows, axis=1)[:, first:].mean(axis=1))

@@ -37,7 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="each navigator as it is (own), or without and with a safety layer (both); default: own",
     )
     parser.add_argument("--robots", default="", metavar="LIST", help="robot types, separated by commas (default: own)")
-    parser.add_argument("--seeds", default="0:20", metavar="SEEDS", help="seeds, such as 0:100 (default: 0:20)")
+    parser.add_argument("--seeds", metavar="SEEDS", help="seeds, such as 0:50 (default: 0:20; with --real 0:100)")
     parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")
     parser.add_argument(
         "--require",

@@ -87,7 +87,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         trials,
         with_safety(methods) if options.safety == "both" else methods,
         [name.strip() for name in options.robots.split(",")],
-        parse_seeds(options.seeds),
+        parse_seeds(options.seeds or "0:20"),
         families=families,
         factors=levels,
     )

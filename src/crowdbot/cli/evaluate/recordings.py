@@ -98,7 +98,7 @@ def _simulate(options: argparse.Namespace) -> int:
         folder = Path(temporary) if options.out is None else options.out
         for method in parse_methods(options.navigators):
             trial = apply_values(recorded_trial(recording, folder, mirror=not method.type), settings(options))
-            plan = EvaluationPlan([trial], [method], seeds=parse_seeds(options.seeds))
+            plan = EvaluationPlan([trial], [method], seeds=parse_seeds(options.seeds or "0:100"))
             with progress(options.json) as report:
                 result = evaluate(
                     plan,
