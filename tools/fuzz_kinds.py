@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from fuzz_trials import EXTRA, NEW
 from fuzz_weights import make_weights, read_weights
+from fuzz_xacro import make_xacro, read_xacro
 from fuzzing import check_sentence, flatten_mcap
 
 from crowdbot.core import CrowdbotError
@@ -366,6 +367,7 @@ KINDS = {
     "trials": Kind("trial files with maps, areas and recordings", make_trials, read_trial, (".py",)),
     "originals": Kind("configurations, orders and trials of the simulator of 2021", make_originals, read_original),
     "robots": Kind("URDF and robot.xml", make_robots, read_robot),
+    "xacro": Kind("xacro with includes, macros and YAML: expressions are parsed", make_xacro, read_xacro),
     "meshes": Kind("STL, OBJ, PLY, GLB, DAE", make_meshes, read_meshes),
     "maps": Kind("maps of ROS, areas as WKT and GeoJSON", make_maps, read_map),
     "episodes": Kind("recorded episodes: read, repair, export, unpack", make_episodes, read_episode_file, (".py",)),

@@ -36,6 +36,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 
 from fuzz_kinds import KINDS, OUT
+from fuzz_xacro import mutate_xacro
 from fuzzing import check_sentence, mutate_arrays, mutate_bytes, mutate_text, mutate_xml
 
 from crowdbot.core import CrowdbotError, cache_root
@@ -63,6 +64,8 @@ def mutate(name: str, data: bytes, rng: random.Random) -> bytes:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
         return mutate_bytes(data, rng)
+    if ending == ".xacro":
+        return mutate_xacro(text, rng).encode("utf-8", "surrogatepass")
     if ending in XML:
         return mutate_xml(text, rng).encode("utf-8", "surrogatepass")
     part = text[: rng.choice((len(text), 4000, 400))]

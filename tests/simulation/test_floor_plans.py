@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+from crowdbot.evaluation.worst_run import _plan
 from crowdbot.simulation import DoorOrder, Simulation, simulate
 from crowdbot.trials import Door, Platform, Ramp, Stage, Stairs, Threshold, floor_plan, parse_trial
 
@@ -32,8 +33,9 @@ def test_every_part_of_the_ground_is_drawn() -> None:
         )
     )
     lines = floor_plan(stage)
-    # an outline for each part, and an arrow for the ramp and both bevels
-    assert len(lines) == (1 + 3 + 1 + 3) + 3
+    # an outline for each part, and an arrow for the ramp, both bevels and the stairs
+    assert len(lines) == (1 + 3 + 1 + 3) + 4
+    assert lines[-1].points[[0, 1, 4]].tolist() == pytest.approx(np.array([[7.652, 0], [8.348, 0], [8.348, 0]]))
     arrow = lines[1].points
     assert arrow[1].tolist() == pytest.approx([3.6, 0.0])
     assert np.isnan(arrow[2]).all()
@@ -71,3 +73,11 @@ def test_trials_episodes_and_simulations_show_ground_and_doors() -> None:
     after = _paths(simulation._repr_svg_())
     assert before[:3] == after[:3]
     assert before[3] != after[3], "the leaf has turned"
+
+
+def test_the_worst_runs_of_an_evaluation_show_ground_and_doors() -> None:
+    plan = _plan(simulate(parse_trial(TEXT.encode()), 0))
+    # ramp, shaft and head of its arrow; arc and leaf of the door
+    assert [line["color"] for line in plan] == ["#b08d57"] * 3 + ["#2a7f9e"] * 2
+    assert plan[-1]["points"] == [[3.0, -0.5], [3.0, 0.5]]
+    assert len(plan[2]["points"]) == 3

@@ -6,7 +6,9 @@ from xacro_texts import ERRORS, EXPANSIONS, HEAD
 
 from crowdbot.core import InputError, RobotError, parse_xml, parse_yaml
 from crowdbot.world import read_urdf
+from crowdbot.world.urdf import parse_robot_file
 from crowdbot.world.urdf.folders import Folders
+from crowdbot.world.urdf.whole_robots import find_whole_robots
 from crowdbot.world.xacro import expand_xacro
 
 
@@ -208,6 +210,8 @@ FOREIGN = {
         7,
         2,
     ),
+    "turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf": (1.3729096 + 2 * 0.02849894 + 0.124, 13, 2),
+    "turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle_pi.urdf": (1.3729096 + 2 * 0.02849894 + 0.124, 11, 2),
 }
 """Masses [kg] summed by hand from the files, number of links and of moving joints."""
 
@@ -220,16 +224,55 @@ def test_real_xacro_robots(urdf, name):
     assert (len(model.links), len(model.movable)) == (links, moving)
 
 
-def test_every_real_xacro_file_is_read_or_refused_in_one_sentence(urdf):
-    assert XACRO
-    read, refused = 0, []
-    for path in XACRO:
-        try:
-            read += read_urdf(path, colliders="hull").mass > 0.0
-        except RobotError as error:
-            refused += error.problems
-    assert all(":" in problem for problem in refused)
-    assert read >= 6
+END = {
+    "husky": "; it is a part of a robot, give urdf/husky.urdf.xacro",
+    "jackal": "; it is a part of a robot, give urdf/jackal.urdf.xacro",
+    "kobuki": "; it is a part of a robot, give kobuki_standalone.urdf.xacro",
+    "turtlebot3": "contains no <link>; a robot needs at least one",  # included in comments only
+}
+"""Ends of the sentences about parts of robots, by folder."""
+
+
+@pytest.mark.parametrize("path", XACRO, ids=lambda path: path.name)
+def test_every_real_xacro_file_is_a_robot_of_its_mass_or_a_part_that_names_the_robot(urdf, path):
+    name = str(path.relative_to(urdf))
+    if name in FOREIGN:
+        masses = [float(one.attributes["value"]) for one in every(parse_robot_file(path).root) if one.tag == "mass"]
+        assert read_urdf(path, colliders="hull").mass == pytest.approx(sum(masses), rel=1e-9)
+        return
+    with pytest.raises(RobotError) as caught:
+        read_urdf(path, colliders="hull")
+    assert len(caught.value.problems) == 1
+    assert str(caught.value).endswith(END[name.partition("/")[0]])
+
+
+def every(element):
+    yield element
+    for child in element.children:
+        yield from every(child)
+
+
+def test_parts_name_all_robots_that_use_them(tmp_path):
+    calls = f"{HEAD}<xacro:include filename='$(find r)/parts.xacro'/><xacro:wheel/></robot>"
+    write(tmp_path, "a.urdf.xacro", calls)
+    write(tmp_path, "b.urdf.xacro", calls)
+    write(tmp_path, "parts.xacro", f"{HEAD}<xacro:include filename='wheel.xacro'/></robot>")
+    wheel = write(tmp_path, "wheel.xacro", f"{HEAD}<xacro:macro name='wheel'><link name='w'/></xacro:macro></robot>")
+    with pytest.raises(RobotError, match=r"only defines macros \(wheel\).*give a.urdf.xacro or b.urdf.xacro$"):
+        read_urdf(wheel)
+    extra = write(tmp_path, "extra.xacro", f"{HEAD}<xacro:wheel/></robot>")  # included by an environment variable
+    with pytest.raises(RobotError, match=r"'wheel' is not defined; .* give a.urdf.xacro or b.urdf.xacro$"):
+        read_urdf(extra)
+    alone = write(tmp_path / "alone", "x.xacro", f"{HEAD}<xacro:macro name='m'><link name='w'/></xacro:macro></robot>")
+    with pytest.raises(RobotError, match="give the file that calls them$"):
+        read_urdf(alone)
+    assert read_urdf(tmp_path / "a.urdf.xacro").root == "w"
+
+
+def test_files_that_include_each_other_name_no_robot(tmp_path):
+    one = write(tmp_path, "one.xacro", f"{HEAD}<xacro:include filename='two.xacro'/></robot>")
+    write(tmp_path, "two.xacro", f"{HEAD}<xacro:include filename='one.xacro'/></robot>")
+    assert find_whole_robots(one, tmp_path) == ()
 
 
 def test_arguments_of_real_robots(urdf):

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from crowdbot.simulation import Episode, RunFailureWarning, simulate
+from crowdbot.trials import floor_plan
 
 from .job import RunRow
 from .plan import EvaluationPlan
@@ -29,7 +30,7 @@ class WorstRun(NamedTuple):
     Fields:
         cell: trial, navigator and robot.
         row: the run.
-        drawing: what the page draws: times, tracks, walls, bounds.
+        drawing: what the page draws: times, tracks, walls, ground and doors, bounds.
         same: whether the new run has the digest of the evaluated one.
     """
 
@@ -89,9 +90,21 @@ def _drawing(episode: Episode) -> dict[str, Any]:
         "times": np.round(episode.times[rows], 2).tolist(),
         "agents": tracks,
         "walls": walls,
+        "plan": _plan(episode),
         "goals": goals,
         "bounds": _bounds(episode, walls, goals),
     }
+
+
+def _plan(episode: Episode) -> list[dict[str, Any]]:
+    """Return the strokes of uneven ground and doors as values for the page."""
+    found = []
+    for line in floor_plan(episode.trial.stage):
+        gaps = np.flatnonzero(np.isnan(line.points[:, 0]))
+        for stroke in np.split(line.points, gaps):
+            points = np.round(stroke[~np.isnan(stroke[:, 0])], 2).tolist()
+            found.append({"color": line.color, "width": line.width, "points": points})
+    return found
 
 
 def _bounds(episode: Episode, walls: Sequence[Any], goals: Sequence[Any]) -> list[float]:

@@ -26,5 +26,6 @@ def trial_svg(trial: Any) -> str:
         lines.append(Path2D(np.stack([start, np.asarray(robot.goal.position)]), ROBOT_COLOR, 1.2, 0.6))
         discs.append(Disc(robot.x, robot.y, 0.3, ROBOT_COLOR))
     people = sum(spawner.count for spawner in trial.spawners) + len(trial.agents)
-    about = f"{people} people at the start, {len(trial.robots)} robots, {trial.duration:g} s"
-    return draw_svg(lines, discs, f"{trial.name}: {about}")
+    who = f"{people} {'person' if people == 1 else 'people'} at the start"
+    which = f"{len(trial.robots)} robot{'' if len(trial.robots) == 1 else 's'}"
+    return draw_svg(lines, discs, f"{trial.name}: {who}, {which}, {trial.duration:g} s")

@@ -42,6 +42,12 @@ function body(agent) {
 
 function draw() {
   pen.clearRect(0, 0, canvas.width, canvas.height);
+  for (const line of run.plan) {
+    pen.strokeStyle = line.color;
+    pen.lineWidth = 1.5 * line.width;
+    path(line.points);
+    pen.stroke();
+  }
   pen.strokeStyle = "#59636f";
   pen.lineWidth = 2;
   for (const ring of run.walls) {

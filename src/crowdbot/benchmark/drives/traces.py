@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
+from crowdbot.humans import People, names
 from crowdbot.models import ORCA
 from crowdbot.world import CommandDelay, Pending, PhysicsStage, PhysicsWorld, Robot, Twists
 
@@ -71,7 +72,7 @@ def trace_physics(robot: Robot, commands: Sequence[Twist], step: float, friction
     """Return the motion in a :class:`PhysicsWorld` without people, walls and props.
 
     Args:
-        robot: the robot.
+        robot: the robot; a rider that is no single body is the heaviest person.
         commands: command of each sample.
         step: time step of the engine [s]; a sample is a whole number of steps.
         friction: friction coefficient of the floor.
@@ -88,7 +89,10 @@ def trace_physics(robot: Robot, commands: Sequence[Twist], step: float, friction
     _steps(step)
     scene = Scene.of([[0.0, 0.0]], heading=[0.0], external=[True], radius=[robot.radius])
     stage = PhysicsStage(friction=friction)
-    world = PhysicsWorld(scene, ORCA(), {0: robot}, dt=SAMPLE, physics_dt=step, stage=stage)
+    riders, people = _rider(robot)
+    world = PhysicsWorld(
+        scene, ORCA(), {0: robot}, dt=SAMPLE, physics_dt=step, stage=stage, riders=riders, people=people
+    )
     heading, old, rows = 0.0, 0.0, []
     for command in commands:
         world.step({0: command})
@@ -97,6 +101,14 @@ def trace_physics(robot: Robot, commands: Sequence[Twist], step: float, friction
         heading, old = heading + _turned(old, float(pose.heading[0])), float(pose.heading[0])
         rows.append((*pose.position[0], heading, twist.forward[0], twist.left[0], twist.turn[0], body.tilt))
     return _trace(rows)
+
+
+def _rider(robot: Robot) -> tuple[tuple[int, ...], People | None]:
+    """Return the robots with a rider and the bodies of riders."""
+    if not robot.rider:
+        return (), None
+    people = People.of([robot.rider] if robot.rider in names() else list(names()))
+    return (0,), People.of([people.persons[int(people.mass.argmax())].name])
 
 
 def _steps(step: float) -> int:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Path2D
 
+from .elements import Stairs
+
 __all__ = ["floor_plan"]
 
 Floats = NDArray[np.float64]
@@ -22,8 +24,9 @@ HEAD = 0.25
 def floor_plan(stage: Any, shares: Mapping[str, float] | None = None) -> list[Path2D]:
     """Return the lines of uneven ground and doors of a stage, seen from above.
 
-    Parts of the ground are outlines. A slope has an arrow in the direction in which it rises. A door is a thick line at
-    its current place, with a thin line along its way: the arc of a hinged leaf, or the closed sliding leaf.
+    Parts of the ground are outlines. A slope or stairs have an arrow in the direction in which they rise. A door is a
+    thick line at its current place, with a thin line along its way: the arc of a hinged leaf, or the closed sliding
+    leaf.
 
     Args:
         stage: the stage of a trial.
@@ -42,7 +45,12 @@ def floor_plan(stage: Any, shares: Mapping[str, float] | None = None) -> list[Pa
         corners = part.corners
         found.append(Path2D(np.concatenate([corners, corners[:1]]), GROUND_COLOR, 1.0))
         if part.front != part.rear:
-            found.append(Path2D(_arrow(part), GROUND_COLOR, 1.0))
+            turn = 0.0 if part.front > part.rear else math.pi
+            arrow = _arrow(part.x, part.y, part.heading + turn, part.length, part.width)
+            found.append(Path2D(arrow, GROUND_COLOR, 1.0))
+    for one in stage.ground:
+        if isinstance(one, Stairs):
+            found.append(Path2D(_arrow(one.x, one.y, one.heading, one.steps * one.tread, one.width), GROUND_COLOR, 1.0))
     starts = {door.name: float(door.open and door.opening in ("order", "schedule")) for door in stage.doors}
     for leaf in physical.doors:
         share = (shares or {}).get(leaf.name, starts[leaf.name])
@@ -53,12 +61,11 @@ def floor_plan(stage: Any, shares: Mapping[str, float] | None = None) -> list[Pa
     return found
 
 
-def _arrow(part: Any) -> Floats:
-    """Return the line of an arrow up a slope; NaN interrupts it."""
-    ahead = np.array([math.cos(part.heading), math.sin(part.heading)])
-    ahead = ahead if part.front > part.rear else -ahead
-    aside, middle = np.array([-ahead[1], ahead[0]]), np.array([part.x, part.y])
-    tip, size = middle + 0.4 * part.length * ahead, HEAD * min(part.length, part.width)
+def _arrow(x: float, y: float, heading: float, length: float, width: float) -> Floats:
+    """Return the line of an arrow along a part of the ground; NaN interrupts it."""
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    aside, middle = np.array([-ahead[1], ahead[0]]), np.array([x, y])
+    tip, size = middle + 0.4 * length * ahead, HEAD * min(length, width)
     gap = np.full(2, np.nan)
-    rows = [middle - 0.4 * part.length * ahead, tip, gap, tip - size * (ahead + aside), tip]
+    rows = [middle - 0.4 * length * ahead, tip, gap, tip - size * (ahead + aside), tip]
     return np.stack([*rows, tip - size * (ahead - aside)])

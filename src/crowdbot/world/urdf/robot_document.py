@@ -11,6 +11,7 @@ from crowdbot.world.xacro import expand_xacro, is_xacro
 
 from .folders import Folders, robot_folder
 from .sdf import urdf_of_sdf
+from .whole_robots import find_whole_robots
 
 __all__ = ["RobotDocument", "parse_robot_file"]
 
@@ -68,15 +69,36 @@ def parse_robot_file(
         if arguments:
             raise RobotError(f"{place}: it is not a xacro file and has no argument {next(iter(arguments))[:60]!r}")
         _check_root(root, place)
+        _check_links(root, root, place, path, home, "")
         return RobotDocument(root, place, folders)
     _check_root(root, place)
-    found = expand_xacro(root, place, folders, path=path, arguments=arguments, environment=environment)
-    if found.macros and not found.root.each("link"):
-        listed = ", ".join(sorted(found.macros)[:8])
-        raise RobotError(
-            f"{place}: it only defines macros ({listed}) and contains no <link>; give the file that calls them"
-        )
+    try:
+        found = expand_xacro(root, place, folders, path=path, arguments=arguments, environment=environment)
+    except RobotError as error:
+        advice = "" if root.each("link") else _advice(path, home)
+        raise (RobotError(f"{error}{advice}") if advice else error) from None
+    _check_links(root, found.root, place, path, home, ", ".join(sorted(found.macros)[:8]))
     return RobotDocument(found.root, place, folders, found.ignored, found.arguments)
+
+
+def _check_links(root: Element, made: Element, place: str, path: Path | None, home: Path, macros: str) -> None:
+    """Raise an error if there is no link and the file belongs to another one, or only defines macros."""
+    if made.each("link"):
+        return
+    advice = _advice(path, home)
+    if macros:
+        advice = advice or "; give the file that calls them"
+        raise RobotError(f"{place}: it only defines macros ({macros}) and contains no <link>{advice}")
+    if advice:
+        raise RobotError(f"{place}:{root.line}: <robot> contains no <link>{advice}")
+
+
+def _advice(path: Path | None, home: Path) -> str:
+    """Return which file to give instead of a part of a robot, as the end of a sentence."""
+    whole = () if path is None else find_whole_robots(path, home)
+    if not whole:
+        return ""
+    return f"; it is a part of a robot, give {' or '.join(whole[:4])}"
 
 
 def _check_root(root: Element, place: str) -> None:
