@@ -25,7 +25,8 @@ from crowdbot.falsification import (
     falsify,
     find_clusters,
     fit_proposal,
-    importance_estimate,
+    mixture_estimate,
+    mixture_weights,
     parse_factor,
     parse_failure,
     parse_sampling,
@@ -171,18 +172,23 @@ def test_a_proposal_integrates_to_one_and_its_weights_are_bounded() -> None:
     assert np.exp(found.log_ratio(plain)).mean() == pytest.approx(1.0, abs=0.1)
 
 
-def test_importance_intervals_cover() -> None:
+def test_mixture_intervals_cover_with_many_and_with_few_failures() -> None:
     rng = np.random.default_rng(1)
-    shifted = Proposal(np.ones(1), np.array([[3.0]]), np.array([[0.6]]), 0.1)
-    true, hits = float(special.ndtr(-3.0)), 0
-    for _ in range(300):
-        points = shifted.draw(rng, 300)
-        low, high = importance_estimate(points[:, 0] > 3.0, np.exp(-shifted.log_ratio(points)), 10.0)[1:3]
-        hits += low <= true <= high
-    assert hits >= 275
-    none = importance_estimate(np.zeros(100, dtype=bool), np.ones(100), 10.0)
+    plain, shifted = Proposal.standard(1), Proposal(np.ones(1), np.array([[3.0]]), np.array([[0.6]]), 0.1)
+    for sizes, bound, least in (((100, 200), 3.0, 279), ((150, 3), 3.0, 279), ((300, 0), 2.5, 270)):
+        largest = sum(sizes) / (sizes[0] + 0.1 * sizes[1])
+        true, hits, values = float(special.ndtr(-bound)), 0, []
+        for _ in range(300):
+            points = np.concatenate([plain.draw(rng, sizes[0]), shifted.draw(rng, sizes[1])])
+            weights = mixture_weights([plain, shifted], sizes, points)
+            found = mixture_estimate(points[:, 0] > bound, weights, np.repeat([0, 1], sizes), largest)
+            hits += found.low <= true <= found.high
+            values.append(found.value)
+        assert hits >= least
+        assert float(np.mean(values)) == pytest.approx(true, rel=0.35)
+    none = mixture_estimate(np.zeros(100, dtype=bool), np.ones(100), np.zeros(100, dtype=int), 10.0)
     assert (none.value, none.low) == (0.0, 0.0)
-    assert none.high == pytest.approx(10.0 * (1 - 0.025 ** (1 / 100)))
+    assert none.high == pytest.approx(0.3, rel=0.01)
     assert replicate_estimate(np.array([0.1, 0.1, 0.1]), 30)[:3] == pytest.approx((0.1, 0.1, 0.1))
 
 
@@ -198,14 +204,26 @@ def test_splitting_estimates_a_known_probability(seeds: bool, bound: float) -> N
     assert float(np.mean(values)) == pytest.approx(float(special.ndtr(-bound)), rel=0.35)
 
 
-def test_cross_entropy_estimates_a_known_probability() -> None:
-    covered = []
-    for seed in range(10):
-        found = CrossEntropy().search(Line(1000, 3, 4.0), np.random.default_rng(seed))
+@pytest.mark.parametrize(("probability", "seeds"), [(1e-3, 20), (3e-5, 20)])
+def test_cross_entropy_estimates_a_known_probability(probability: float, seeds: int) -> None:
+    covered, ratios = 0, []
+    for seed in range(seeds):
+        runner = Line(1000, 3, -float(special.ndtri(probability)))
+        found = CrossEntropy().search(runner, np.random.default_rng(seed))
         assert found.estimate is not None
-        covered.append(found.estimate.low <= float(special.ndtr(-4.0)) <= found.estimate.high)
-        assert found.estimate.high / found.estimate.low < 10.0
-    assert sum(covered) >= 7
+        covered += found.estimate.low <= probability <= found.estimate.high
+        ratios.append(found.estimate.value / probability)
+        assert found.estimate.high / found.estimate.low < 3.0
+        assert np.all(found.weights > 0.0)
+    assert covered >= 0.9 * seeds
+    assert float(np.mean(ratios)) == pytest.approx(1.0, abs=0.06)
+
+
+def test_cross_entropy_without_a_failure_has_an_upper_bound() -> None:
+    found = CrossEntropy().search(Line(400, 2, 60.0), np.random.default_rng(0))
+    assert found.estimate is not None
+    assert (found.estimate.value, found.estimate.low) == (0.0, 0.0)
+    assert 3.0 / 400 < found.estimate.high < 0.1
 
 
 def test_searches_agree_with_plain_runs(space: SearchSpace, plain: FalsificationResult) -> None:

@@ -3,14 +3,14 @@
 from .cluster import FailureCluster, find_clusters
 from .cross_entropy import CrossEntropy
 from .directed import AIMS, DirectedSearch
-from .estimate import importance_estimate, replicate_estimate
+from .estimate import mixture_estimate, replicate_estimate
 from .event import describe_event
 from .factor import Factor, parse_factor
 from .failure import FAILURES, FailureCriterion, parse_failure
 from .falsifier import falsify, parse_sampling
 from .found_trial import FoundTrial, write_failures
 from .plain_sampling import PlainSampling
-from .proposal import Proposal, fit_proposal
+from .proposal import Proposal, fit_proposal, mixture_weights
 from .report import describe_rarity, factor_ranges, write_report
 from .result import FalsificationResult, FoundFailure
 from .runner import SampleRunner
@@ -45,7 +45,8 @@ __all__ = [
     "falsify",
     "find_clusters",
     "fit_proposal",
-    "importance_estimate",
+    "mixture_estimate",
+    "mixture_weights",
     "parse_factor",
     "parse_failure",
     "parse_sampling",
