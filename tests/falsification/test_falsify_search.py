@@ -22,6 +22,7 @@ from crowdbot.falsification import (
     SampleRunner,
     SearchSpace,
     Splitting,
+    collision_urgency,
     falsify,
     find_clusters,
     fit_proposal,
@@ -141,18 +142,29 @@ def test_robustness_is_positive_exactly_without_a_failure(plain: FalsificationRe
     for sample in plain.samples:
         assert sample.fails == (sample.outcome == "collision")
     metrics = {"collision": 0.0, "timeout": 1.0, "min_clearance": 0.5, "goal_progress": 0.25, "time_to_goal": math.nan}
-    assert parse_failure("timeout").robustness("timeout", metrics, 10.0) == -0.75
-    assert parse_failure("any").robustness("timeout", metrics, 10.0) == -0.75
-    assert parse_failure("collision").robustness("timeout", metrics, 10.0) == 0.5
-    assert parse_failure("time-to-goal<9").robustness("timeout", metrics, 10.0) == -1.0
-    assert parse_failure("min-clearance>=0.5").robustness("timeout", metrics, 10.0) > 0.0
-    assert parse_failure("min-clearance>0.5").robustness("timeout", metrics, 10.0) <= 0.0
+    assert parse_failure("timeout").robustness("timeout", metrics, 10.0, 0.5) == -0.75
+    assert parse_failure("any").robustness("timeout", metrics, 10.0, 0.5) == -0.75
+    assert parse_failure("collision").robustness("timeout", metrics, 10.0, 0.5) == math.exp(-0.5)
+    assert parse_failure("time-to-goal<9").robustness("timeout", metrics, 10.0, 0.5) == -1.0
+    assert parse_failure("min-clearance>=0.5").robustness("timeout", metrics, 10.0, 0.5) > 0.0
+    assert parse_failure("min-clearance>0.5").robustness("timeout", metrics, 10.0, 0.5) <= 0.0
     with pytest.raises(InputError, match='needs world="physics"'):
-        parse_failure("severity").robustness("timeout", metrics, 10.0)
+        parse_failure("severity").robustness("timeout", metrics, 10.0, 0.5)
     with pytest.raises(InputError, match="did you mean 'collision'"):
         parse_failure("colision")
     with pytest.raises(InputError, match="a metric of one run"):
         parse_failure("collision-rate<0.1@95%")
+
+
+def test_the_urgency_of_a_head_on_run_is_known() -> None:
+    text = BLIND.replace('x="0" y="3" goal="0,-3" speed="1"', 'x="5" y="Y" goal="-5,Y" speed="1"')
+    trial = parse_trial(text.replace("Y", "0").replace('duration="6"', 'duration="2"'))
+    episode = simulate(trial, 0)
+    assert episode.outcome == "timeout"
+    # 7.5 m between the circles, which close at 2 m/s: the time to collision falls from 3.75 s to 1.75 s
+    assert collision_urgency(episode) == pytest.approx(math.exp(-1.75) - math.exp(-3.75), rel=0.15)
+    passing = simulate(parse_trial(text.replace("Y", "2").replace('duration="6"', 'duration="2"')), 0)
+    assert collision_urgency(passing) == 0.0
 
 
 def test_samples_equal_single_runs(space: SearchSpace, plain: FalsificationResult) -> None:
@@ -288,22 +300,37 @@ def test_found_trials_give_the_same_digest_and_an_interrupted_search_continues(
     assert again.table() == whole.table()
 
 
-def test_a_navigator_that_raises_is_a_counted_failure_and_its_file_travels(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("raise ValueError('too shy')", "too shy"),
+        ("return Twist(float('nan'))", "nan"),
+        ("while True: pass", "did not return within 0.3 s"),
+    ],
+    ids=["raises", "nan", "hangs"],
+)
+def test_a_navigator_that_fails_is_a_counted_failure_and_its_file_travels(
+    tmp_path: Path, line: str, message: str
+) -> None:
     (tmp_path / "shy.py").write_text(
         "from dataclasses import dataclass\n"
         "from crowdbot.core import Twist\nfrom crowdbot.navigation import Navigator\n"
         "@dataclass(frozen=True)\nclass Shy(Navigator):\n    def act(self, observation):\n"
-        "        if observation.time > 1.0:\n            raise ValueError('too shy')\n        return Twist(0.1)\n"
+        f"        if observation.time > 1.0:\n            {line}\n        return Twist(0.1)\n"
     )
     text = BLIND.replace('<navigator type="straight" speed="1"/>', '<navigator type="shy.py:Shy"/>')
-    trial = parse_trial(text, folder=tmp_path)
+    trial = parse_trial(text.replace('holonomic="true"', 'holonomic="true" decision-limit="0.3"'), folder=tmp_path)
     space = SearchSpace(trial, (parse_factor(OVER[0]),))
     result = falsify(space, "collision", PlainSampling(), runs=3, folder=tmp_path / "out", keep=1)
     assert result.failures == 3
-    assert list(result.errors.values()) == [3]
-    assert "too shy" in next(iter(result.errors))
+    assert {sample.outcome for sample in result.samples} == {"error"}
+    assert sum(result.errors.values()) == 3
+    assert all(message in one.lower() for one in result.errors)
+    assert result.estimate is not None
+    assert result.estimate.value == 1.0
     assert (tmp_path / "out" / "found" / "shy.py").is_file()
-    assert result.found[0].same
+    # the digest of a hung decision names its environment, so only other errors have that of a run alone
+    assert result.found[0].same or line.startswith("while")
 
 
 def test_impossible_variants_are_counted_apart() -> None:

@@ -18,6 +18,7 @@ from .sample import Sample, SampleJob, run_samples
 from .sampling import Sampling, SamplingResult
 from .search_space import SearchSpace
 from .splitting import Splitting
+from .urgency import collision_urgency
 
 __all__ = [
     "AIMS",
@@ -39,6 +40,7 @@ __all__ = [
     "SamplingResult",
     "SearchSpace",
     "Splitting",
+    "collision_urgency",
     "describe_event",
     "describe_rarity",
     "factor_ranges",
