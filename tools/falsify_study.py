@@ -4,7 +4,8 @@
 
 The trial of seed 0, 1, 2, ... has two people who cross the way of a robot that they do not see. The first three seeds
 with fewer than 3 failures in 1000 random runs are searched with 1000 runs. The first seed with more failures is the
-check: its probability by plain runs, and by a search with a tenth of them. An interrupted study continues.
+check: its probability by searches with 1000 runs and with a tenth of the plain runs, and by plain runs. Plain runs end
+after a given time; the same command continues them, as it continues an interrupted study.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import time
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +33,8 @@ RADIUS, PEOPLE, NEAR = 4.0, 2, 0.5
 """Radius of the circle [m], number of people, and least angle between them [rad]."""
 RARE, FIRST = 3, 1000
 """A trial is taken if fewer than 3 of 1000 random runs fail."""
+STEP = 1024
+"""Plain runs between two looks at the clock."""
 
 TRIAL = """<trial name="ways-{seed}" duration="25" step="0.25">
 <crowd type="orca" neighbor-distance="10" time-horizon="5" time-horizon-walls="5"/>
@@ -73,7 +77,8 @@ def make_space(seed: int) -> SearchSpace:
 def main() -> None:
     """Run the study and print its table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--plain", type=int, default=4096, help="plain runs of the check, a multiple of 1024")
+    parser.add_argument("--plain", type=int, default=4096, help="most plain runs of the check, a multiple of 1024")
+    parser.add_argument("--minutes", type=float, default=6.0, help="time after which no more plain runs begin [min]")
     parser.add_argument("--out", type=Path, default=Path("build/falsify"), help="folder of partial results")
     parser.add_argument("--workers", type=int, default=1)
     options = parser.parse_args()
@@ -86,14 +91,24 @@ def main() -> None:
         if random.failures < RARE and len(rare) <= 3:
             _run(options, seed, "cross-entropy", FIRST, "cross-entropy")
         seed += 1
-    _run(options, frequent[0], "cross-entropy", options.plain // 10, "check")
-    _run(options, frequent[0], "plain", options.plain, "plain")
+    for runs in (FIRST, options.plain // 10):
+        _run(options, frequent[0], "cross-entropy", runs, "check")
+    begin = time.monotonic()
+    for runs in range(STEP, options.plain + 1, STEP):
+        _run(options, frequent[0], "plain", runs, "plain", "plain")
+        if time.monotonic() - begin > 60.0 * options.minutes:
+            break
 
 
-def _run(options: argparse.Namespace, seed: int, search: str, runs: int, name: str) -> FalsificationResult:
-    """Run one search and write its values; the plain runs of the check have another seed than the random ones."""
+def _run(
+    options: argparse.Namespace, seed: int, search: str, runs: int, name: str, place: str = ""
+) -> FalsificationResult:
+    """Run one search and write its values; the plain runs of the check have another seed than the random ones.
+
+    Searches that share a folder (``place``) and a name share the runs that they have in common.
+    """
     space = make_space(seed)
-    folder = options.out / f"ways-{seed}" / f"{name}-{runs}"
+    folder = options.out / f"ways-{seed}" / (place or f"{name}-{runs}")
     own = int(stream(seed, name).integers(2**31))
     sampling = PlainSampling() if search == "plain" else parse_sampling(search)
     result = falsify(space, "collision", sampling, runs=runs, seed=own, folder=folder, workers=options.workers)

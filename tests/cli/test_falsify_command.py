@@ -6,6 +6,7 @@ import json
 import os
 import random
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -65,6 +66,46 @@ def test_wrong_input_is_explained(
 ) -> None:
     assert main(["falsify", str(cross), *words]) == 2
     assert message in capsys.readouterr().err
+
+
+def _hear_ctrl_c() -> None:
+    """Undo what a shell does to programs in its background, whose children ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues(
+    cross: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], workers: str
+) -> None:
+    words = ["falsify", str(cross), *OVER, "--search", "plain", "--runs", "1024", "--keep", "1"]
+    words += ["--workers", workers, "--json", "--out"]
+    out = tmp_path / "out"
+    program = [sys.executable, "-m", "crowdbot", *words, str(out)]
+    process = subprocess.Popen(
+        program,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=_hear_ctrl_c,  # noqa: PLW1509
+    )
+    deadline = time.monotonic() + 120.0
+    while not list(out.glob("parts/*.json")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    printed, told = process.communicate(timeout=60)
+    assert (process.returncode, printed) == (130, ""), told
+    assert "the same command continues" in told
+    assert "interrupted" in told
+    assert "Traceback" not in told
+    kept = {part: part.stat().st_mtime_ns for part in out.glob("parts/*.json")}
+    assert 0 < len(kept) < 16
+    again = _finish(program)
+    assert {part: part.stat().st_mtime_ns for part in kept} == kept
+    assert len(list(out.glob("parts/*.json"))) == 16
+    words[words.index("--workers") + 1] = "1"
+    assert main([*words, str(tmp_path / "whole")]) == 0
+    assert again == json.loads(capsys.readouterr().out)
+    assert again["failures"] > 0
 
 
 @pytest.mark.sweep

@@ -8,44 +8,92 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
+from crowdbot.core import stream
 from crowdbot.evaluation import Estimate
 
-__all__ = ["importance_estimate", "replicate_estimate"]
+__all__ = ["mixture_estimate", "replicate_estimate"]
 
 Floats = NDArray[np.float64]
 FEW = 5
-"""Least number of failures for an interval from their weights."""
+"""Least number of failures for a bootstrap."""
+REPLICATES = 4000
+"""Replicates of the bootstrap."""
 
 
-def importance_estimate(
-    fails: NDArray[np.bool_], weights: Floats, largest: float, confidence: float = 0.95
+def mixture_estimate(
+    fails: NDArray[np.bool_],
+    weights: Floats,
+    groups: NDArray[np.int64],
+    largest: float,
+    confidence: float = 0.95,
 ) -> Estimate:
-    """Return the failure probability of importance sampling, with the interval of the weighted mean.
+    """Return the failure probability from the runs of several proposals, each weighted by the mixture of all.
 
-    The probability is the mean of the weights of failures. Its interval is symmetric on the logarithm (delta method),
-    which keeps it above 0. With fewer than 5 failures, the interval is that of a binomial proportion (Clopper-Pearson)
-    whose upper end is scaled by the largest possible weight, which is conservative.
+    The probability is the sum of the weights of failures over the number of runs. With 5 failures and more, its
+    interval holds those of two methods: the bootstrap of runs within their proposals (bias-corrected and accelerated),
+    and the gamma interval of weighted Poisson counts, which assumes one more failure with the largest weight seen. With
+    fewer failures, the gamma interval assumes one with the largest possible weight; without a failure its lower end is
+    0, and its upper end is the rule of three: 3 of the smallest expected number of runs that see a failure.
 
     Args:
         fails: ``[N]`` which runs fail.
-        weights: ``[N]`` standard normal density over the proposal.
+        weights: ``[N]`` standard normal density over the mixture of the proposals.
+        groups: ``[N]`` index of the proposal of each run.
         largest: bound of the weights.
         confidence: level of the interval.
 
-    >>> importance_estimate(np.arange(1000) < 10, np.full(1000, 0.1), 1.0).value
+    Source: weights: Veach & Guibas 1995, doi:10.1145/218380.218498; Owen & Zhou 2000,
+    doi:10.1080/01621459.2000.10473909; gamma interval: Fay & Feuer 1997,
+    doi:10.1002/(SICI)1097-0258(19970415)16:7<791::AID-SIM500>3.0.CO;2-#; bootstrap: Efron 1987,
+    doi:10.1080/01621459.1987.10478410; no failure: Hanley & Lippman-Hand 1983, doi:10.1001/jama.1983.03330370053031.
+
+    >>> mixture_estimate(np.arange(1000) < 10, np.full(1000, 0.1), np.zeros(1000, dtype=int), 1.0).value
     0.001
+    >>> print(mixture_estimate(np.zeros(1000, dtype=bool), np.ones(1000), np.zeros(1000, dtype=int), 1.0))
+    0 [0, 0.003]
     """
     count, hits = len(fails), int(np.sum(fails))
-    values = np.where(fails, weights, 0.0)
-    mean = float(values.mean())
-    if hits < FEW:
-        tail = 0.5 - confidence / 2.0
-        high = min(1.0, largest * float(stats.beta.ppf(1.0 - tail, hits + 1, count - hits)))
-        low = 0.0 if hits == 0 else float(stats.beta.ppf(tail, hits, count - hits + 1)) * float(weights[fails].min())
-        return Estimate(mean, min(low, mean), max(high, mean), count)
-    error = float(values.std(ddof=1)) / math.sqrt(count)
-    factor = math.exp(float(special.ndtri(0.5 + confidence / 2.0)) * error / mean)
-    return Estimate(mean, mean / factor, min(1.0, mean * factor), count)
+    if hits == 0:
+        return Estimate(0.0, 0.0, min(1.0, -math.log(1.0 - confidence) * largest / count), count)
+    values = weights[fails] / count
+    mean = float(values.sum())
+    low, high = _gamma_interval(values, float(values.max()) if hits >= FEW else largest / count, confidence)
+    if hits >= FEW:
+        least, most = _bootstrap_interval(values, groups[fails], np.bincount(groups), confidence)
+        low, high = min(low, least), max(high, most)
+    return Estimate(mean, min(low, mean), min(1.0, max(high, mean)), count)
+
+
+def _gamma_interval(values: Floats, extra: float, confidence: float) -> tuple[float, float]:
+    """Return the interval of a sum of weighted Poisson counts; ``extra`` is the weight of a count not seen."""
+    mean, square = float(values.sum()), float(np.sum(values**2))
+    tail = 0.5 - confidence / 2.0
+    low = square / mean * special.gammaincinv(mean**2 / square, tail)
+    mean, square = mean + extra, square + extra**2
+    return float(low), float(square / mean * special.gammaincinv(mean**2 / square, 1.0 - tail))
+
+
+def _bootstrap_interval(
+    values: Floats, groups: NDArray[np.int64], sizes: NDArray[np.int64], confidence: float
+) -> tuple[float, float]:
+    """Return the bootstrap interval of the sum of values of failures ``[F]`` in groups of runs of given sizes."""
+    rng = stream(0, "bootstrap")
+    mean, sums = float(values.sum()), np.zeros(REPLICATES)
+    cube = square = 0.0
+    for group in np.unique(groups):
+        own, size = values[groups == group], int(sizes[group])
+        shares = np.append(np.full(len(own), 1.0 / size), max(0.0, 1.0 - len(own) / size))
+        sums += rng.multinomial(size, shares, size=REPLICATES)[:, :-1] @ own
+        away = np.append(own, 0.0) - own.sum() / size
+        times = np.append(np.ones(len(own)), size - len(own))
+        cube, square = cube + float(times @ away**3), square + float(times @ away**2)
+    slope = cube / (6.0 * square**1.5) if square > 0.0 else 0.0
+    below = float(np.mean(sums < mean) + 0.5 * np.mean(sums == mean))
+    shift = float(special.ndtri(np.clip(below, 1.0 / REPLICATES, 1.0 - 1.0 / REPLICATES)))
+    bend = float(special.ndtri(0.5 + confidence / 2.0))
+    ends = [special.ndtr(shift + (shift + z) / (1.0 - slope * (shift + z))) for z in (-bend, bend)]
+    low, high = np.quantile(sums, ends)
+    return float(low), float(high)
 
 
 def replicate_estimate(values: Floats, runs: int, confidence: float = 0.95) -> Estimate:

@@ -26,21 +26,23 @@ class FailureCriterion:
     ============= ======================================= =============================== ===========================
     kind          failure                                 robustness without a failure    robustness of a failure
     ============= ======================================= =============================== ===========================
-    collision     a person, robot or wall is touched      smallest clearance [m]          -impact speed [m/s]
+    collision     a person, robot or wall is touched      exp(-urgency / 1 s)             -impact speed [m/s]
     timeout       the goal is not reached in time         rest of the time [s]            -share of the way left
     severity      an impact above the limit (physics)     1 - severity                    1 - severity
     any           the goal is not reached                 the smaller of the first two    of its kind
     a requirement the requirement does not hold           distance to its bound           distance to its bound
     ============= ======================================= =============================== ===========================
 
+    The urgency is that of :func:`collision_urgency`. The smallest clearance to a wall [m] counts where it is smaller.
+
     Fields:
         kind: one of :data:`FAILURES`, or ``requirement``.
         requirement: the requirement on a metric of one run.
 
-    >>> clearance = {"collision": 0.0, "min_clearance": 0.3, "min_wall_clearance": float("inf")}
-    >>> parse_failure("collision").robustness("success", clearance, 40.0)
-    0.3
-    >>> parse_failure("min-clearance>0.5").robustness("success", clearance, 40.0)
+    >>> clearance = {"collision": 0.0, "min_clearance": 0.3, "min_wall_clearance": 0.2}
+    >>> parse_failure("collision").robustness("success", clearance, 40.0, 0.5)
+    0.2
+    >>> parse_failure("min-clearance>0.5").robustness("success", clearance, 40.0, 0.5)
     -0.2
     """
 
@@ -52,13 +54,14 @@ class FailureCriterion:
         """The criterion as text that :func:`parse_failure` reads."""
         return self.kind if self.requirement is None else self.requirement.text
 
-    def robustness(self, outcome: str, metrics: Mapping[str, float], duration: float) -> float:
+    def robustness(self, outcome: str, metrics: Mapping[str, float], duration: float, urgency: float) -> float:
         """Return the robustness of a run.
 
         Args:
             outcome: outcome of the episode.
             metrics: its metrics.
             duration: duration of the trial [s].
+            urgency: urgency of the run [s].
 
         Raises:
             InputError: the runs do not have the metric.
@@ -73,9 +76,9 @@ class FailureCriterion:
             severity = metrics["max_severity"]
             return 1.0 if math.isnan(severity) else 1.0 - severity
         if self.kind == "collision":
-            return _clearance(metrics)
+            return _margin_of_contact(metrics, urgency)
         rest = _rest(metrics, duration)
-        return rest if self.kind == "timeout" else min(_clearance(metrics), rest)
+        return rest if self.kind == "timeout" else min(_margin_of_contact(metrics, urgency), rest)
 
     @staticmethod
     def _margin(requirement: Requirement, metrics: Mapping[str, float]) -> float:
@@ -90,12 +93,12 @@ class FailureCriterion:
         return SAFE if margin == 0.0 and requirement.comparison.endswith("=") else margin
 
 
-def _clearance(metrics: Mapping[str, float]) -> float:
+def _margin_of_contact(metrics: Mapping[str, float], urgency: float) -> float:
     if metrics["collision"] > 0.5:
         speed = metrics.get("max_impact_speed", 0.0)
         return -max(SAFE, 0.0 if math.isnan(speed) else speed)
-    gaps = [metrics.get(name, math.inf) for name in ("min_clearance", "min_wall_clearance")]
-    return max(SAFE, min(math.inf if math.isnan(gap) else gap for gap in gaps))
+    wall = metrics.get("min_wall_clearance", math.inf)
+    return max(SAFE, min(math.exp(-urgency), math.inf if math.isnan(wall) else wall))
 
 
 def _rest(metrics: Mapping[str, float], duration: float) -> float:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-__all__ = ["Proposal", "fit_proposal"]
+__all__ = ["Proposal", "fit_proposal", "mixture_weights"]
 
 Floats = NDArray[np.float64]
 STEPS = 40
@@ -69,6 +70,20 @@ class Proposal:
         scaled = (points[:, None, :] - self.means) / self.deviations
         log = 0.5 * (points[:, None, :] ** 2 - scaled**2) - np.log(self.deviations)
         return np.asarray(np.log(self.shares) + log.sum(axis=2))
+
+
+def mixture_weights(proposals: Sequence[Proposal], counts: Sequence[int], points: Floats) -> Floats:
+    """Return ``[N]`` the standard normal density over the mixture of proposals, by their numbers of runs.
+
+    This is the balance heuristic of Veach & Guibas 1995, doi:10.1145/218380.218498.
+
+    >>> mixture_weights([Proposal.standard(1)], [10], np.zeros((2, 1))).tolist()
+    [1.0, 1.0]
+    """
+    there = [(one, count) for one, count in zip(proposals, counts, strict=False) if count]
+    shares = np.array([count for _, count in there]) / sum(count for _, count in there)
+    logs = np.array([one.log_ratio(points) for one, _ in there])
+    return np.asarray(np.exp(-special.logsumexp(logs, axis=0, b=shares[:, None])))
 
 
 def fit_proposal(

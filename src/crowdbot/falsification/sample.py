@@ -19,6 +19,7 @@ from .event import describe_event
 from .factor import Factor
 from .failure import parse_failure
 from .search_space import SearchSpace
+from .urgency import collision_urgency
 
 __all__ = ["Sample", "SampleJob", "read_samples", "run_samples", "write_samples"]
 
@@ -152,7 +153,8 @@ def _sample(job: SampleJob, k: int, row: Episode | str, duration: float) -> Samp
     point, seed = job.points[k], job.seeds[k]
     if isinstance(row, str):
         return Sample(point, seed, "invalid", math.inf, message=row)
-    robustness = parse_failure(job.failure).robustness(row.outcome, row.metrics, row.trial.duration or duration)
+    time, urgency = row.trial.duration or duration, collision_urgency(row)
+    robustness = parse_failure(job.failure).robustness(row.outcome, row.metrics, time, urgency)
     event = describe_event(row) if robustness <= 0.0 else ""
     message = "" if row.failure is None else str(row.failure)
     return Sample(point, seed, row.outcome, float(robustness), row.digest, event, message)

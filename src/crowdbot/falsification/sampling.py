@@ -21,8 +21,8 @@ class SamplingResult(NamedTuple):
 
     Fields:
         estimate: the probability of a failure, or None for a search that only finds failures.
-        weights: ``[N]`` weight of each sample as a draw from the distributions of the factors; 0 for samples that only
-            explore.
+        weights: ``[N]`` weight of each sample as a draw from the distributions of the factors; 0 for samples that do
+            not count.
         levels: thresholds of the robustness that the search has passed.
     """
 
