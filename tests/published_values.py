@@ -74,7 +74,9 @@ def navigation() -> dict[str, Any]:
     from crowdbot import navigation
     from crowdbot.core import builtin_classes
 
-    return {"navigators": made(builtin_classes(navigation, navigation.Navigator))}
+    kinds = builtin_classes(navigation, navigation.Navigator)
+    del kinds["process"]  # needs an address or a command
+    return {"navigators": made(kinds)}
 
 
 def calibration() -> dict[str, Any]:

@@ -133,7 +133,7 @@ def test_a_branch_keeps_what_orders_have_changed(tmp_path: Path) -> None:
             running.step(orders.get(running.simulation.tick, ()))
     whole = read_episode(tmp_path / "a.mcap")
     assert branch(tmp_path / "a.mcap", at=1.0).digest == whole.digest
-    other = branch(tmp_path / "a.mcap", at=1.0, changes={"crowd/time-horizon": 3}, out=tmp_path / "b.mcap")
+    other = branch(tmp_path / "a.mcap", at=1.0, changes={"crowd/headway-time-gap": 1.2}, out=tmp_path / "b.mcap")
     assert other.trial.robots[0].drive.max_speed == 0.1
     assert replay(tmp_path / "b.mcap").equal
 

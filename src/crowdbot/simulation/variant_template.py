@@ -44,7 +44,7 @@ class VariantTemplate(WorldTemplate):
 
     >>> from crowdbot.simulation import Simulation
     >>> from crowdbot.trials import apply_values, load_trial
-    >>> trial = load_trial("frontal")
+    >>> trial = load_trial("frontal", model="orca")
     >>> variants = [apply_values(trial, {"crowd/time-horizon": horizon}) for horizon in (1, 2, 4)]
     >>> simulation = Simulation(VariantTemplate(variants), seeds=[7, 7, 7])
     >>> for _ in range(60):

@@ -49,7 +49,7 @@ def parse_trial(
     Traceback (most recent call last):
     crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s and at most 86400 s
     trial:1: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'?; it takes neighbor-distance, \
-max-neighbors, time-horizon, time-horizon-walls, max-speed, name
+max-neighbors, time-horizon, time-horizon-walls, max-speed, reciprocal, name
     """
     try:
         data = text.encode() if isinstance(text, str) else text

@@ -194,7 +194,8 @@ def variant_of(model: CrowdModel) -> str:
     values = [(one.name, getattr(model, one.name)) for one in dataclasses.fields(model) if one.init]
     texts = [f"{name.replace('_', ' ')} {value}" for name, value in values if isinstance(value, str)]
     texts += [name.replace("_", " ") for name, value in values if value is True]
-    texts += [f"no {name.replace('_', ' ')}" for name, value in values if value is False]
+    usual = {one.name for one in dataclasses.fields(model) if one.default is True}
+    texts += [f"no {name.replace('_', ' ')}" for name, value in values if value is False and name in usual]
     return ", ".join(texts)
 
 

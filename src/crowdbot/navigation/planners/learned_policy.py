@@ -82,8 +82,8 @@ def policy_inputs(
 class PolicyNavigator(Navigator):
     """Moves as a small neural network that was trained in simulated crowds by reinforcement learning.
 
-    The network knows the nearest 20 people within 10 m, with their velocities and radii, and returns a velocity. It is
-    invariant to rotations and to the order of people. A velocity that would bring the robot closer than a margin to a
+    The network knows the nearest 20 people within 10 m, with their velocities and radii, and returns a velocity; with
+    nobody there, the robot goes straight. It is invariant to rotations and to the order of people. A velocity that would bring the robot closer than a margin to a
     person who keeps walking straight is replaced by a near one that does not. The network does not know walls: with
     walls, or with a drive that cannot move sideways, :func:`dynamic_window_twist` selects a twist near its velocity.
 
@@ -152,6 +152,7 @@ class PolicyNavigator(Navigator):
         velocity, numbers = np.zeros((len(batch), 2)), drive_numbers(batch.limits, self.speed)
         layers: Any = read_policy(self.file)
         apply_network(asking, inputs.own, inputs.people, inputs.present, velocity, *layers)
+        velocity[inputs.present == 0] = (numbers[0], 0.0)  # towards the waypoint
         limit_velocities(asking, batch.pose, batch.goal, batch.waypoint, inputs.axis, numbers, velocity)
         if batch.limits.holonomic and not len(wall_arrays(batch.walls).segments):
             if self.horizon > 0.0:

@@ -45,10 +45,10 @@ class SlipControl:
         drive: the drive.
 
     >>> control = SlipControl(SkidSteerDrive(track=0.4, wheelbase=0.4))
-    >>> state = control.step(control.first, Twist(0.0, 1.0), Twist(0.0, 0.5), 0.005)
+    >>> state = control.step(control.first, Twist(0.0, 1.0), Twist(), 0.005)
     >>> turning = Twists.of(Twist(0.0, 1.0), 1)
     >>> state[0] > 1.0, round(control.wheels(control.first, turning, turning, 0.005).turn, 2)
-    (True, 1.99)
+    (True, 2.0)
     """
 
     drive: SkidSteerDrive

@@ -120,7 +120,7 @@ class SkidSteerDrive(WheeledDrive):
 
         >>> drive, turning = SkidSteerDrive(track=0.4, wheelbase=0.4), Twists.of(Twist(0.0, 1.0), 1)
         >>> drive.slide(turning, turning, 0.05).round(3).tolist()
-        [[-0.397, 0.397, 0.0]]
+        [[-0.4, 0.4, 0.0]]
         """
         out, middle = np.empty((len(after.turn), 3)), before.left + before.turn * self.wheels_x
         body = np.array([self.friction * GRAVITY, self.center_height, self._gyration])
@@ -153,5 +153,6 @@ class SkidSteerDrive(WheeledDrive):
         slower = Twists(wanted.forward * share, wanted.turn * share, still)
         _, after = super().step(pose, Twists(twist.forward, twist.turn, still), slower, dt)
         left = self.slide(twist, after, dt)[:, 2] - after.turn * self.wheels_x
+        left[(after.forward == 0.0) & (after.turn == 0.0)] = 0.0  # tyres that stand do not creep
         after = Twists.of_columns(np.stack([after.forward, after.turn, left]))
         return integrate_twist(pose, after, dt), after
