@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pettingzoo")
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
 from crowdbot.core import InputError, Twist
@@ -39,8 +37,10 @@ def two_robots(duration: float = 6.0, **values: Any) -> Trial:
 def test_the_official_checks_pass() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        parallel_api_test(parallel_env(two_robots(3.0)), num_cycles=80)
+        env = parallel_env(two_robots(3.0))
+        parallel_api_test(env, num_cycles=80)
         parallel_seed_test(lambda: parallel_env(two_robots(3.0)), num_cycles=20)
+    assert len(env.possible_agents) == 2
 
 
 def test_an_episode_has_the_bytes_of_a_run() -> None:
