@@ -15,7 +15,7 @@ from space_trials import LEAN, room
 from trial_texts import FLOW, GOOD
 
 CHANGES: list[dict[str, Any]] = [
-    {"crowd/headway-time-gap": 1.2},
+    {"crowd/time-horizon": 1},
     {"robot/x": -3.0, "robot/heading": 0.4},
     {"robot/goal/x": 2.0, "robot/goal/tolerance": 0.3},
     {"spawner[east]/zone": "-5,-1 -4,-1 -4,1 -5,1", "spawner[west]/speed": "1.1"},
@@ -67,8 +67,8 @@ def test_variants_are_restarted_selected_and_put_with_their_own_values() -> None
 
 
 def test_a_sweep_over_a_model_runs_as_one_simulation() -> None:
-    trial = dataclasses.replace(load_trial("frontal", duration=1.0), sweeps=())
-    text = '<sweep path="crowd/headway-time-gap" values="0.8 1 1.2"/>'
+    trial = dataclasses.replace(load_trial("frontal", duration=1.0, model="orca"), sweeps=())
+    text = '<sweep path="crowd/time-horizon" values="1 2 3"/>'
     many = expand_sweeps(
         dataclasses.replace(trial, sweeps=parse_trial(GOOD.replace("</trial>", text + "</trial>")).sweeps)
     )

@@ -83,9 +83,10 @@ class PolicyNavigator(Navigator):
     """Moves as a small neural network that was trained in simulated crowds by reinforcement learning.
 
     The network knows the nearest 20 people within 10 m, with their velocities and radii, and returns a velocity; with
-    nobody there, the robot goes straight. It is invariant to rotations and to the order of people. A velocity that would bring the robot closer than a margin to a
-    person who keeps walking straight is replaced by a near one that does not. The network does not know walls: with
-    walls, or with a drive that cannot move sideways, :func:`dynamic_window_twist` selects a twist near its velocity.
+    nobody there, the robot goes straight. It is invariant to rotations and to the order of people. A velocity that
+    would bring the robot closer than a margin to a person who keeps walking straight is replaced by a near one that
+    does not. The network does not know walls: with walls, or with a drive that cannot move sideways,
+    :func:`dynamic_window_twist` selects a twist near its velocity.
 
     Fields:
         speed: largest speed [m/s], limited by the drive.
