@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import run_saved_jobs, source_digest
-from crowdbot.trials import code_references, trial_xml
+from crowdbot.core import run_saved_jobs
+from crowdbot.trials import code_digest, trial_xml
 
 from .failure import FailureCriterion
 from .sample import Sample, SampleJob, read_samples, run_samples, write_samples
@@ -54,7 +54,7 @@ class SampleRunner:
         self._folder, self._workers, self._cluster = folder, workers, cluster
         self._progress = progress
         self._xml = trial_xml(space.trial)
-        self._files = _code_files(self._xml, space.trial.folder)
+        self._code = code_digest(self._xml, space.trial.folder)
 
     @property
     def remaining(self) -> int:
@@ -101,14 +101,6 @@ class SampleRunner:
     def _key(self, job: SampleJob) -> str:
         """Return a name for the samples of a job, which changes with everything that they depend on."""
         found = hashlib.blake2b(digest_size=12)
-        parts = (source_digest(), job.xml, repr(job.factors), job.failure, repr(job.points), repr(job.seeds))
-        for part in parts:
+        for part in (self._code, repr(job.factors), job.failure, repr(job.points), repr(job.seeds)):
             found.update(part.encode() + b"\0")
-        for name, content in self._files:
-            found.update(name.encode() + b"\0" + content)
         return found.hexdigest()
-
-
-def _code_files(xml: str, folder: Path | None) -> list[tuple[str, bytes]]:
-    place = folder or Path.cwd()
-    return [(name, (place / name).read_bytes()) for name in code_references({"trial": xml}, place)]
