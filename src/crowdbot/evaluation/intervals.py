@@ -31,9 +31,11 @@ class Estimate(NamedTuple):
     runs: int
 
     def __str__(self) -> str:
-        """Return the value and the interval."""
+        """Return the value and the interval, if there is one."""
         if math.isnan(self.value):
             return "-"
+        if math.isnan(self.low):
+            return f"{self.value:.3g}"
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
 

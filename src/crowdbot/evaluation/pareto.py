@@ -11,8 +11,8 @@ from .result import CellResult
 __all__ = ["pareto_front", "pareto_svg"]
 
 WIDTH, HEIGHT, MARGIN = 720, 380, 56
-NEAR = 20.0
-"""Distance of two points below which their labels are drawn one below the other."""
+LETTER, LINE, DOT = 6.3, 14.0, 8.0
+"""Width of a letter of a label, height of a line, and half of the width of a point."""
 
 
 def pareto_front(points: Sequence[tuple[float, ...]]) -> list[int]:
@@ -51,7 +51,7 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
         return HEIGHT - MARGIN - (HEIGHT - 1.6 * MARGIN) * share
 
     parts = [_axes(fastest, slowest, x_of, y_of)]
-    labels: list[tuple[float, float]] = []
+    labels = [(x_of(time.value) - DOT, x_of(time.value) + DOT, y_of(share.value) + 4.0) for _, share, time in rows]
     for k, (cell, success, time) in enumerate(rows):
         collisions = cell.estimate("collision-rate").value
         x, y = x_of(time.value), y_of(success.value)
@@ -63,13 +63,21 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
         parts.append(
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="hsl({hue:.0f} 60% 50%)" stroke="{edge}" stroke-width="2"/>'
         )
-        level = sum(math.hypot(x - other[0], y - other[1]) < NEAR for other in labels)
-        labels.append((x, y))
-        label = html.escape(", ".join(filter(None, (cell.trial, cell.method, cell.robot))))
-        side = ("end", -10) if x > WIDTH / 2 else ("start", 10)
-        parts.append(f'<text x="{x + side[1]:.1f}" y="{y + 4 + 14 * level:.1f}" text-anchor="{side[0]}">{label}</text>')
+        label = ", ".join(filter(None, (cell.trial, cell.method, cell.robot)))
+        anchor, shift = ("end", -10) if x > WIDTH / 2 else ("start", 10)
+        left = x + shift - (LETTER * len(label) if anchor == "end" else 0.0)
+        line = _free_line(labels, left, left + LETTER * len(label), y + 4.0)
+        labels.append((left, left + LETTER * len(label), line))
+        parts.append(f'<text x="{x + shift:.1f}" y="{line:.1f}" text-anchor="{anchor}">{html.escape(label)}</text>')
     body = "".join(parts)
     return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Success and time to the goal">{body}</svg>'
+
+
+def _free_line(labels: Sequence[tuple[float, float, float]], left: float, right: float, line: float) -> float:
+    """Return the first line from ``line`` down on which a label from ``left`` to ``right`` covers no other."""
+    while any(left < other[1] and other[0] < right and abs(line - other[2]) < LINE for other in labels):
+        line += LINE
+    return line
 
 
 def _best(rows: Sequence[tuple[CellResult, object, object]]) -> set[int]:

@@ -45,7 +45,7 @@ def write_report(result: FalsificationResult, space: SearchSpace, path: Path) ->
         summary=_summary(result),
         runs_plot=runs_svg(result),
         clusters=_clusters(result),
-        factors_plot=factors_svg(result),
+        factors_plot=_factors(result),
         runs="".join(f"<option value='{k}'>{html.escape(title)}</option>" for k, title in enumerate(titles)),
         found=_found(result),
         errors=_errors(result),
@@ -54,6 +54,11 @@ def write_report(result: FalsificationResult, space: SearchSpace, path: Path) ->
     with explain_write_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(page, encoding="utf-8")
+
+
+def _factors(result: FalsificationResult) -> str:
+    """Return the section with the factors of failures, empty without any."""
+    return f"<section><h2>Factors of the failures</h2>{factors_svg(result)}</section>" if result.failures else ""
 
 
 def describe_rarity(result: FalsificationResult) -> str:
