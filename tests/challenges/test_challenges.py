@@ -30,7 +30,10 @@ from crowdbot.challenges import (
 from crowdbot.challenges.board import sort_entries
 from crowdbot.core import CrowdbotError, InputError, UnknownName
 from crowdbot.evaluation import RunRow
+from crowdbot.navigation.process.sandbox import sandbox_problem
 
+SANDBOX = sandbox_problem() is None
+"""Whether this system has a sandbox; without one, only own code can be run."""
 CODE = """
 from dataclasses import dataclass
 from crowdbot.navigation import Navigator
@@ -81,12 +84,16 @@ def crowdbot(*words: object) -> subprocess.CompletedProcess[str]:
 
 def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: Path) -> None:
     file = tmp_path / "small.toml"
-    done = crowdbot("run", file, folder, "--out", tmp_path / "entry")
+    own = () if SANDBOX else ("--no-sandbox",)
+    done = crowdbot("run", file, folder, "--out", tmp_path / "entry", *own)
     assert done.returncode == 0, done.stderr
     assert "1 [0.342, 1]" in done.stdout
     done = crowdbot("pack", file, folder, "--entry", tmp_path / "entry" / "entry.json", "--out", tmp_path / "s.zip")
     assert done.returncode == 0, done.stderr
     done = crowdbot("verify", file, tmp_path / "s.zip", "--out", tmp_path / "again")
+    if not SANDBOX:
+        assert (done.returncode, "sandbox=false runs the code without one" in done.stderr) == (2, True)
+        return
     assert done.returncode == 0, done.stderr
     assert "verified  yes: all digests are equal" in done.stdout
     assert load_entry(tmp_path / "again" / "entry.json").verified
@@ -108,13 +115,15 @@ def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: 
 
 def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
     challenge = load_challenge(tmp_path / "small.toml")
-    entry, _, _ = enter(challenge, load_submission(folder))
+    entry, _, _ = enter(challenge, load_submission(folder), sandbox=SANDBOX)
     values = json.loads(entry.text())
     values["runs"]["frontal"][1]["metrics"]["time_to_goal"] = 1.0
     claimed = load_entry(json.dumps(values).encode(), challenge)
     assert entry_differences(claimed, entry) == ["frontal, seed 1: same digest, other metrics"]
     values["runs"]["frontal"][0]["digest"] = "0" * 32
     pack_submission(load_submission(folder), tmp_path / "s.zip", {"entry.json": json.dumps(values).encode()})
+    if not SANDBOX:
+        return
     done = crowdbot("verify", tmp_path / "small.toml", tmp_path / "s.zip", "--out", tmp_path / "again")
     assert done.returncode == 1
     assert "differs   frontal, seed 0: success 000000000000 claimed" in done.stdout
@@ -123,6 +132,10 @@ def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
 
 def test_code_that_looks_for_the_seeds_fails(folder: Path, tmp_path: Path) -> None:
     write_description(folder, navigator="mine.py:Curious", name="curious")
+    if not SANDBOX:
+        with pytest.raises(InputError, match="sandbox=false runs the code without one"):
+            enter(load_challenge(tmp_path / "small.toml"), load_submission(folder))
+        return
     entry, _, _ = enter(load_challenge(tmp_path / "small.toml"), load_submission(folder))
     assert [row.outcome for row in entry.runs["frontal"]] == ["error", "error"]
     assert "Permission denied" in entry.runs["frontal"][0].message
