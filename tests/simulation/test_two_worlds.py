@@ -47,7 +47,7 @@ def test_every_builtin_trial_runs_in_both_worlds_and_is_recorded(name: str, tmp_
     for world in WORLDS:
         trial = short(name, world)
         done = record(trial, out=f"{tmp_path}/{world}")
-        assert done.steps == trial.ticks
+        assert done.steps == trial.ticks or done.outcome in ("collision", "success")
         read = read_episode(f"{tmp_path}/{world}/episode.mcap")
         assert ('world="physics"' in read.metadata["trial"]) == (world == "physics")
         assert read.digest == done.digest

@@ -19,10 +19,11 @@ KEPT = {
     "delayed-circle",
     "circle-with-standing",
     "pedestrian-obstruction",
+    "static-crowd",
     "attention-ladder",
     *(name for name in builtin_trials() if name.startswith(("challenge-", "crowdnav-"))),
 }
-"""Trials that reproduce a benchmark or the CrowdBot challenge, and one with people who step aside while they stand."""
+"""Trials that reproduce a benchmark or the CrowdBot challenge, and two with people who step aside while they stand."""
 BUSY = ("two-way", "crossing-flows", "random-goals", "perpendicular-flow", "crowd-against-crowd")
 
 

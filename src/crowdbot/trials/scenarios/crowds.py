@@ -334,6 +334,7 @@ CROWDS = (
         static_crowd,
         {"density": PresetOption(0.25, "density of people", "1/m2", 0.0, 1.5), "groups": GROUPS},
         "social-jym: robot crowding; CrowdBot: static crowd",
+        model="orca",  # people who stand step aside
     ),
     Preset(
         "random-goals",
