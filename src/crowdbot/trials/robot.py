@@ -38,7 +38,7 @@ from .robots.joint_target import JointTarget, joint_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
-from .robots.safety import SafetySpec, guarded, safety_problems
+from .robots.safety import SafetySpec, safety_problems
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
@@ -302,7 +302,7 @@ class RobotSpec:
     @functools.cached_property
     def controller(self) -> Navigator:
         """The navigator that decides, behind the safety layer of the robot."""
-        return guarded(self.navigator, self.safety)
+        return self.navigator if self.safety is None else self.safety.layer().around(self.navigator)
 
     @property
     def rider_kind(self) -> str:

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.navigation import ExternalNavigator, Navigator, SafetyLayer
+from crowdbot.navigation import ExternalNavigator, SafetyLayer
 from crowdbot.trials.fields import attribute, check
 
-__all__ = ["SafetySpec", "guarded", "safety_problems"]
+__all__ = ["SafetySpec", "safety_problems"]
 
 DEFAULT = SafetyLayer()
 
@@ -57,11 +57,6 @@ class SafetySpec:
     def layer(self) -> SafetyLayer:
         """Return the safety layer."""
         return SafetyLayer(**{field.name: getattr(self, field.name) for field in dataclasses.fields(self)})
-
-
-def guarded(navigator: Navigator, safety: SafetySpec | None) -> Navigator:
-    """Return the navigator that decides: behind the safety layer, if there is one."""
-    return navigator if safety is None else safety.layer().around(navigator)
 
 
 def safety_problems(safety: Any, navigator: Any) -> Iterator[str]:
