@@ -42,6 +42,7 @@ def test_it_writes_data_and_a_card(tmp_path: Path) -> None:
         (("frontal", "--sensors", "hokuyo"), "unknown sensor preset 'hokuyo'"),
         (("frontal", "--seeds", "5:1"), "the range '5:1' must have 1 to"),
         (("nowhere",), "nowhere"),
+        (("flo",), "there is no trial or recipe 'flo', did you mean 'flow'?"),
     ],
 )
 def test_wrong_input_is_told(tmp_path: Path, words: tuple[str, ...], message: str) -> None:

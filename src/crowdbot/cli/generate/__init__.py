@@ -98,8 +98,13 @@ def make_plan(options: argparse.Namespace) -> GenerationPlan:
 
 
 def _load(options: argparse.Namespace, name: str, values: dict[str, str]) -> Trial:
-    from crowdbot.trials import load_trial
+    from crowdbot.core import InputError, did_you_mean
+    from crowdbot.generation import RECIPES
+    from crowdbot.trials import builtin_trials, load_trial
 
+    hint = did_you_mean(name, RECIPES)
+    if hint and name not in builtin_trials() and not Path(name).exists():
+        raise InputError(f"there is no trial or recipe {name!r}{hint}")
     return load_trial(name, trust=options.trust, **(values | settings(options)))
 
 
