@@ -32,12 +32,14 @@ from .port import RobotPort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
 from .transport import Transport
+from .transports import TRANSPORTS, open_transport
 from .verbs.definitions import SERVICES, interface_store, request_kind, response_kind
 
 __all__ = [
     "MODES",
     "QUALITIES",
     "SERVICES",
+    "TRANSPORTS",
     "BridgeClock",
     "BridgeRun",
     "Inbox",
@@ -54,6 +56,7 @@ __all__ = [
     "fields_of",
     "interface_store",
     "message_of",
+    "open_transport",
     "plain_fields",
     "request_kind",
     "response_kind",

@@ -25,6 +25,7 @@ from .clock import BridgeClock, Pace
 from .port import RobotPort, steered_trial
 from .run_control import PAUSED, PLAYING, RunControl
 from .transport import Transport
+from .verbs.results import FAILED, result
 
 __all__ = ["BridgeRun", "run_bridge"]
 
@@ -103,9 +104,13 @@ class BridgeRun:
                 summary = self._run_once(number)
                 following = self.control.restart
                 if following is None or self.stop.asked:
-                    return summary
+                    break
                 number += 1
                 self.trial = steered_trial(following)
+            self.control.finish_restart("the run has ended")
+            for call in self.port.inbox.close():
+                call.answer(result(FAILED, "the run has ended"))
+        return summary
 
     def _run_once(self, number: int) -> RunSummary:
         chosen = self.trial.seed if self.seed is None else int(self.seed)
@@ -138,7 +143,6 @@ class BridgeRun:
         port, control = self.port, self.control
         self.pace.restart()
         port.begin(running.simulation)
-        port.inbox.expect_commands()
         control.finish_restart()
         while running.outcome is None:
             port.serve(running.simulation)
@@ -151,7 +155,6 @@ class BridgeRun:
                 port.report("error", f"{type(order).__name__}: {reason}")
             running.refusals.clear()
             port.publish(running.simulation)
-            port.inbox.expect_commands()
             control.note_step()
             if self.clock.mode == "paced" and (remark := self.pace.note_step()):
                 port.report("warning", remark)
