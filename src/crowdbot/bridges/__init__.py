@@ -28,6 +28,7 @@ from .clock import MODES, BridgeClock, Pace
 from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
+from .latency import CommandLatency, LatencySummary
 from .port import RobotPort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
@@ -42,8 +43,10 @@ __all__ = [
     "TRANSPORTS",
     "BridgeClock",
     "BridgeRun",
+    "CommandLatency",
     "Inbox",
     "InputTopic",
+    "LatencySummary",
     "OutputTopic",
     "Pace",
     "QualityOfService",
