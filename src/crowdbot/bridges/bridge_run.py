@@ -22,7 +22,7 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, check_trial
 
 from .clock import BridgeClock, Pace
-from .port import RobotPort, steered_trial
+from .port import BridgePort, steered_trial
 from .run_control import PAUSED, PLAYING, RunControl
 from .transport import Transport
 from .verbs.results import FAILED, result
@@ -87,7 +87,7 @@ class BridgeRun:
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
         self.control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
-        self.port = RobotPort(self.trial, transports, self.control, follows_clock=clock.mode == "follow")
+        self.port = BridgePort(self.trial, transports, self.control, follows_clock=clock.mode == "follow")
         self.note = note or (lambda text: None)
         self.stop = StopRequest()
         self.pace = Pace(trial.step, clock.rate)
@@ -100,6 +100,9 @@ class BridgeRun:
             self.stop = stack.enter_context(catch_interrupt())
             stack.callback(self.port.stop)
             self.port.start()
+            if self.port.transports:
+                names = ", ".join(one.name for one in self.port.transports)
+                self.note(f"trial {self.trial.name} is open to {names}; Ctrl-C ends the run")
             while True:
                 summary = self._run_once(number)
                 following = self.control.restart
@@ -111,9 +114,9 @@ class BridgeRun:
             for call in self.port.inbox.close():
                 call.answer(result(FAILED, "the run has ended"))
         latency = self.port.inbox.latency.summary()
-        if latency.count:
+        if latency.commands:
             self.note(
-                f"{self.port.inbox.count.received} messages received; {latency.count} commands answered a step after"
+                f"{self.port.inbox.count.received} messages received; {latency.commands} commands answered a step after"
                 f" {1e3 * latency.median:.1f} ms (median), {1e3 * latency.p99:.1f} ms (99 %)"
             )
         return summary
