@@ -1,0 +1,4 @@
+// The tabs, in the order of the page; crowdbot.web.tabs has the desks behind them.
+import { simulator } from "./simulator/tab.mjs";
+
+export const tabs = [simulator];

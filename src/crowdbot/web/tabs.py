@@ -1,0 +1,9 @@
+"""The tabs of the app, in the order of the page."""
+
+from __future__ import annotations
+
+from .desk import Desk
+
+__all__ = ["DESKS"]
+
+DESKS: tuple[type[Desk], ...] = ()
