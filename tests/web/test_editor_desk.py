@@ -152,3 +152,32 @@ def unknown(element, kind, table):
     yield from ((element.tag, one) for one in element.attributes if one not in known)
     for one in element.children:
         yield from unknown(one, table[kind["children"][one.tag]], table)
+
+
+def test_a_picture_of_a_floor_plan_becomes_the_stage(desk, session):
+    from PIL import Image
+
+    picture = Image.new("L", (80, 40), 255)
+    picture.paste(0, (38, 0, 42, 25))  # a wall from above
+    picture.save(session.workspace.folder / "plan.png")
+    name = desk.floor("plan.png", 0.1)
+    state = desk.change([{"path": [0], "name": "map", "value": name}], desk.greet()["revision"])
+    assert state["problems"] == []
+    (ring,) = state["rings"]
+    x, y = zip(*ring, strict=True)
+    assert (min(x), max(x), min(y), max(y)) == pytest.approx((3.8, 4.2, 1.5, 4.0), abs=0.11)
+
+
+@pytest.mark.parametrize(
+    ("data", "size", "sentence"),
+    [
+        (b"no picture", 0.1, "plan.png is not a PNG or JPEG picture"),
+        (b"", 0.1, "plan.png is not a PNG or JPEG picture"),
+        (b"no picture", 0.0, "size of a pixel = 0 m: expected 0.001 to 10 m"),
+        (b"no picture", float("nan"), "size of a pixel = nan m"),
+    ],
+)
+def test_other_pictures_are_refused(desk, session, data, size, sentence):
+    (session.workspace.folder / "plan.png").write_bytes(data)
+    with pytest.raises(InputError, match=sentence):
+        desk.floor("plan.png", size)

@@ -115,6 +115,22 @@ def test_text_and_elements_follow_each_other_in_two_windows(editor, browser, app
     other.close()
 
 
+def test_ways_follow_an_edit_of_a_wall(editor):
+    page = editor
+    text = (
+        '<trial name="t" duration="9"><stage><wall points="2,-3 2,3"/></stage><crowd type="orca"/>'
+        '<agent x="0" y="0" goal="4,0"/></trial>'
+    )
+    page.get_by_label("XML of the trial").fill(text)
+    page.get_by_role("button", name="Places").click()
+    ways = "crowdbot._views.get('editor').tab.model.people?.ways[0].length"
+    page.wait_for_function(f"() => {ways} > 2")
+    page.get_by_role("option", name="wall").click()
+    page.keyboard.press("Delete")
+    page.wait_for_function(f"() => {ways} === 2")
+    assert page.evaluate(ways) == 2
+
+
 def test_the_keyboard_alone_is_enough(editor):
     page = editor
     page.get_by_role("listbox", name="Elements").focus()

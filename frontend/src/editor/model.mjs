@@ -9,6 +9,7 @@ export class EditorModel extends EventTarget {
     this.table = null;
     this.chosen = [];
     this.people = null;
+    this.places = false;
     connection.on("editor.state", (state) => this.take(state));
   }
 
@@ -17,8 +18,9 @@ export class EditorModel extends EventTarget {
     if (this.state && state.revision < this.state.revision) return;
     this.state = state;
     this.chosen = this.chosen.filter((path) => this.node(path));
-    this.people = null;
+    if (!this.places) this.people = null;
     this.emit("state");
+    if (this.places && !state.problems.length) this.preview();
   }
 
   emit(name) {
@@ -72,9 +74,19 @@ export class EditorModel extends EventTarget {
     if (state) this.take(state);
   }
 
-  /** Where people start and walk. */
+  /** Shows where people start and walk, also after each edit, or hides it. */
+  async showPlaces(places) {
+    this.places = places;
+    if (places) return this.preview();
+    this.people = null;
+    this.emit("people");
+  }
+
   async preview() {
-    this.people = await this.call("preview");
+    const revision = this.state.revision;
+    const people = await this.call("preview");
+    if (revision !== this.state.revision || !this.places) return;
+    this.people = people;
     this.emit("people");
   }
 }

@@ -17,14 +17,15 @@ export async function openSources(model, app, opened) {
   filter.addEventListener("input", () => {
     for (const row of list.children) row.hidden = !row.textContent.includes(filter.value);
   });
-  const upload = h("input", { type: "file", multiple: true, accept: ".xml,.yaml,.pgm,.png,.wkt,.geojson", onchange: () => send(upload.files, app, model, start) });
+  const chosen = h("input", { type: "file", multiple: true, accept: ".xml,.yaml,.pgm,.wkt,.geojson", onchange: () => send(chosen.files, app, start) });
   const dialog = openDialog(
     "Open a trial",
     h(
       "div",
       {},
       h("ul", { class: "sources" }, button("Empty trial", null, {}), sources.files.map((name) => button(name, "file of this session", { file: name }))),
-      field("Trials (.xml), ROS maps (.yaml with its picture), areas (.wkt, .geojson)", upload),
+      field("Trials (.xml), ROS maps (.yaml with its picture), areas (.wkt, .geojson)", chosen),
+      floor(app, model, () => dialog.close()),
       sources.maps.length ? maps(sources.maps, model, () => dialog.close()) : null,
       h("h3", {}, "Built-in trials"),
       filter,
@@ -34,17 +35,44 @@ export async function openSources(model, app, opened) {
   );
 }
 
-function maps(names, model, close) {
-  const use = async (name) => {
+/** Makes a map the stage of the trial. */
+async function useMap(name, model) {
+  const stage = model.state.tree.children.findIndex((one) => one.tag === "stage");
+  if (stage < 0) await model.edit("insert", { path: [], xml: "<stage/>", position: 0 });
+  await model.edit("change", { changes: [{ path: [Math.max(stage, 0)], name: "map", value: name }] });
+}
+
+function floor(app, model, close) {
+  const size = h("input", { type: "number", min: "0.001", max: "10", step: "0.001", value: "0.05" });
+  const picture = h("input", { type: "file", accept: ".png,.jpg,.jpeg" });
+  const use = async () => {
+    const [name] = await upload(picture.files, app);
+    const map = name && (await model.call("floor", { picture: name, resolution: Number(size.value) }));
+    if (!map) return;
     close();
-    const stage = model.state.tree.children.findIndex((one) => one.tag === "stage");
-    if (stage < 0) await model.edit("insert", { path: [], xml: "<stage/>", position: 0 });
-    await model.edit("change", { changes: [{ path: [Math.max(stage, 0)], name: "map", value: name }] });
+    await useMap(map, model);
+  };
+  return h(
+    "fieldset",
+    {},
+    h("legend", {}, "Stage from a picture of a floor plan: dark pixels are walls"),
+    field("Picture (.png, .jpg)", picture),
+    field("Size of a pixel [m]", size),
+    h("button", { type: "button", onclick: use }, "Use as stage"),
+  );
+}
+
+function maps(names, model, close) {
+  const use = (name) => {
+    close();
+    return useMap(name, model);
   };
   return h("ul", { class: "sources" }, names.map((name) => h("li", {}, h("button", { type: "button", class: "link", onclick: () => use(name) }, `Use the map ${name} as stage`))));
 }
 
-async function send(files, app, model, start) {
+/** Sends files to the folder of the app and returns their names there. */
+async function upload(files, app) {
+  const names = [];
   for (const file of files) {
     const url = `api/${app.connection.session}/upload?${new URLSearchParams({ name: file.name })}`;
     const done = await attempt(async () => {
@@ -52,9 +80,16 @@ async function send(files, app, model, start) {
       if (!answer.ok) throw new Error((await answer.text()).trim());
       return answer.json();
     });
-    if (!done) return;
-    say(`${done.name} is in the folder of the app`);
-    if (done.name.endsWith(".xml")) await start({ file: done.name });
+    if (!done) break;
+    names.push(done.name);
+  }
+  return names;
+}
+
+async function send(files, app, start) {
+  for (const name of await upload(files, app)) {
+    say(`${name} is in the folder of the app`);
+    if (name.endsWith(".xml")) await start({ file: name });
   }
 }
 

@@ -50,6 +50,7 @@ class EditorTab {
     const button = (text, action, more = {}) => h("button", { type: "button", onclick: action, ...more }, text);
     this.undo = button("Undo", () => this.model.step("undo"));
     this.redo = button("Redo", () => this.model.step("redo"));
+    this.places = button("Places", () => this.togglePlaces(), { title: "Show where people start and walk", "aria-pressed": "false" });
     this.run = button("Run", () => this.runTrial(), { class: "main" });
     return h(
       "span",
@@ -58,10 +59,16 @@ class EditorTab {
       button("Save", () => saveAs(this.model)),
       this.undo,
       this.redo,
-      button("Places", () => this.model.preview(), { title: "Show where people start and walk" }),
+      this.places,
       button("Whole view", () => this.view.fit()),
       this.run,
     );
+  }
+
+  togglePlaces() {
+    const places = !this.model.places;
+    this.places.setAttribute("aria-pressed", String(places));
+    return this.model.showPlaces(places);
   }
 
   tools() {

@@ -15,6 +15,7 @@ from crowdbot.web.desk import Desk, DeskWindows
 from .agents_of_spawner import agents_of_spawner, spawner_of_agents
 from .edit_history import EditHistory
 from .element_table import element_table
+from .floor_picture import map_of_picture
 from .trial_preview import problems_at_elements, read_trial, start_and_ways
 from .xml_document import XmlDocument, XmlNode
 
@@ -157,6 +158,19 @@ class EditorDesk(Desk):
         """Return where people start and the ways around walls to their goals."""
         trial = self._whole()
         return start_and_ways(trial, trial.seed if seed is None else seed)
+
+    @command
+    def floor(self, picture: str, resolution: float) -> str:
+        """Make a map of a picture of a floor plan; return the name of its file for ``map`` of the stage.
+
+        Args:
+            picture: PNG or JPEG file of the session.
+            resolution: size of a pixel [m].
+        """
+        path = self.session.workspace.readable(picture)
+        if not path.is_relative_to(self.session.workspace.folder):
+            raise InputError(f"file {picture!r} is outside the folder of the app")
+        return map_of_picture(path, resolution).relative_to(self.session.workspace.folder).as_posix()
 
     @command
     def save(self, file: str) -> dict[str, Any]:
