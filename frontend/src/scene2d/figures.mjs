@@ -71,14 +71,16 @@ export function drawRobots(context, state, look, pixel, mark) {
 export const OVERLAYS = [
   { name: "ranges", under: true, draw: drawCones },
   { name: "goals", under: true, draw: drawGoals },
-  { name: "scans", under: false, draw: drawScans },
+  { name: "scans", under: false, draw: (...all) => drawScans("scan", 3, ...all) },
+  { name: "clouds", under: false, draw: (...all) => drawScans("cloud", 1.5, ...all) },
   { name: "forces", under: false, draw: drawForces },
 ];
 
-function drawScans(context, state, look, pixel) {
-  context.fillStyle = look.scan;
-  for (const { points } of state.scans()) {
-    for (let k = 0; k < points.length; k += 3) context.fillRect(points[k] - 1.5 * pixel, points[k + 1] - 1.5 * pixel, 3 * pixel, 3 * pixel);
+function drawScans(kind, size, context, state, look, pixel) {
+  context.fillStyle = look[kind];
+  const side = size * pixel;
+  for (const { points } of state.scans(kind)) {
+    for (let k = 0; k < points.length; k += 3) context.fillRect(points[k] - 0.5 * side, points[k + 1] - 0.5 * side, side, side);
   }
 }
 
