@@ -116,7 +116,7 @@ class ExperimentsTab {
         "div",
         { class: "row" },
         can("abort") ? h("button", { type: "button", onclick: () => this.askAbort() }, "Abort") : null,
-        h("button", { type: "button", onclick: () => this.call("leave") }, over ? "New session" : "Close; continue later"),
+        h("button", { type: "button", onclick: () => this.call("leave") }, over ? "New session" : "Leave for now"),
         h("button", { type: "button", onclick: () => this.showAnswers() }, "Answers"),
       ),
       h("p", {}, h("a", { href: this.participantAddress(), target: "_blank", rel: "noopener" }, "Window for the participant")),
