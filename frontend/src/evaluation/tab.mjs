@@ -99,8 +99,16 @@ class EvaluationTab {
     if (!table) return;
     this.table = table;
     this.chosen = null;
-    this.statistic = Math.min(3, table.statistics.length - 1);
+    this.statistic = this.mostKnown();
     this.show();
+  }
+
+  /** The statistic that is not a rate and that most runs have. */
+  mostKnown() {
+    const { statistics, cells } = this.table;
+    const count = (i) => cells.flatMap((cell) => cell.runs).filter((run) => run.values[i] !== null).length;
+    const known = statistics.map((name, i) => (name.endsWith("-rate") ? 0 : count(i)));
+    return known.indexOf(Math.max(...known));
   }
 
   show() {

@@ -97,7 +97,7 @@ class EvaluationDesk(Desk):
             "command": request.command if request else " ".join(map(str, result.provenance.get("command", []))),
             "statistics": list(names),
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
-            "comparisons": [_sentence(one) for one in result.compare()],
+            "comparisons": [_sentence(one) for one in result.compare() if not math.isnan(one.p_value)],
             "report": (self._folder(name) / "report.html").is_file(),
             "watch": request is not None,
         }
