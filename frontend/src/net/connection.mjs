@@ -1,0 +1,94 @@
+// Connection: commands to the server, events and state frames back. Connects again when the server or the net was away.
+import { decodeFrame } from "./state_frame.mjs";
+
+const RETRY = [250, 500, 1000, 2000];
+
+export class Connection extends EventTarget {
+  /** @param {string} session name of the session */
+  constructor(session) {
+    super();
+    this.session = session;
+    this.open = false;
+    this._calls = new Map();
+    this._frames = new Map();
+    this._number = 0;
+    this._failures = 0;
+    this._connect();
+  }
+
+  /** Calls a command such as "simulator.open" and returns its result; rejects with the sentence of the server. */
+  call(address, args = {}) {
+    return new Promise((resolve, reject) => {
+      if (!this.open) return reject(new Error("the server is not connected"));
+      const id = ++this._number;
+      this._calls.set(id, { resolve, reject });
+      this._socket.send(JSON.stringify({ id, call: address, args }));
+    });
+  }
+
+  /** Calls listener(data) at each event such as "simulator.status"; returns a function that ends it. */
+  on(event, listener) {
+    const wrap = (one) => listener(one.detail);
+    this.addEventListener(event, wrap);
+    return () => this.removeEventListener(event, wrap);
+  }
+
+  /** Sets the function that draws the frames of a channel; it may return a promise. */
+  draw(channel, listener) {
+    this._frames.set(channel, listener);
+  }
+
+  /** Address of a file of a desk. */
+  address(desk, path, query = {}) {
+    const words = new URLSearchParams(query).toString();
+    return `api/${this.session}/${desk}/${path}${words ? `?${words}` : ""}`;
+  }
+
+  _connect() {
+    const url = new URL(`api/${this.session}/socket`, location.href);
+    url.protocol = url.protocol.replace("http", "ws");
+    const socket = new WebSocket(url);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.open = true;
+      this._failures = 0;
+      this._emit("connected");
+    };
+    socket.onmessage = (message) => this._receive(message.data);
+    socket.onclose = () => this._lost();
+    this._socket = socket;
+  }
+
+  async _receive(data) {
+    if (typeof data !== "string") {
+      const frame = decodeFrame(data);
+      try {
+        await this._frames.get(frame.channel)?.(frame);
+      } finally {
+        if (this._socket.readyState === WebSocket.OPEN) {
+          this._socket.send(JSON.stringify({ drawn: frame.sequence }));
+        }
+      }
+      return;
+    }
+    const message = JSON.parse(data);
+    if (message.event) return this._emit(message.event, message.data);
+    const call = this._calls.get(message.id);
+    this._calls.delete(message.id);
+    if ("error" in message) call?.reject(new Error(message.error));
+    else call?.resolve(message.result);
+  }
+
+  _lost() {
+    this.open = false;
+    for (const { reject } of this._calls.values()) reject(new Error("the connection to the server was lost"));
+    this._calls.clear();
+    this._emit("lost");
+    const wait = RETRY[Math.min(this._failures++, RETRY.length - 1)];
+    setTimeout(() => this._connect(), wait);
+  }
+
+  _emit(event, data) {
+    this.dispatchEvent(new CustomEvent(event, { detail: data }));
+  }
+}

@@ -1,0 +1,121 @@
+// App: the frame of the page: header, tabs, theme, connection state, keys, address.
+import { Connection } from "../net/connection.mjs";
+import { messageRegion, openDialog } from "./dialog.mjs";
+import { fill, h } from "./dom.mjs";
+import { Keys, keyName } from "./keys.mjs";
+
+export class App {
+  /** @param {Array} tabs modules with {name, title, mount(root, app, state)}; mount returns {show?, hide?, greet?} */
+  constructor(root, tabs) {
+    this.tabs = tabs;
+    this.keys = new Keys();
+    this.address = new URLSearchParams(location.hash.slice(1));
+    this.connection = new Connection(this.address.get("session") ?? "main");
+    this._views = new Map();
+    this._layout(root);
+    this._listen();
+    this.select(this.address.get("tab") ?? tabs[0].name);
+  }
+
+  /** Shows a tab. */
+  select(name) {
+    const tab = this.tabs.find((one) => one.name === name) ?? this.tabs[0];
+    for (const one of this.tabs) {
+      const chosen = one === tab;
+      const button = this._buttons.get(one.name);
+      button.setAttribute("aria-selected", String(chosen));
+      button.tabIndex = chosen ? 0 : -1;
+      this._panels.get(one.name).hidden = !chosen;
+      if (!chosen) this._views.get(one.name)?.hide?.();
+    }
+    if (!this._views.has(tab.name)) {
+      this._views.set(tab.name, tab.mount(this._panels.get(tab.name), this));
+      if (this._greeting) this._views.get(tab.name).greet?.(this._greeting.desks[tab.name] ?? {});
+    }
+    this.keys.active = tab.name;
+    this.remember({ tab: tab.name });
+    this._views.get(tab.name).show?.();
+  }
+
+  /** Writes values into the address of the page, so that a link shows the same; null removes one. */
+  remember(values) {
+    for (const [name, value] of Object.entries(values)) {
+      if (value === null || value === undefined) this.address.delete(name);
+      else this.address.set(name, String(value));
+    }
+    history.replaceState(null, "", `#${this.address}`);
+  }
+
+  /** "dark" or "light". */
+  get theme() {
+    return document.documentElement.dataset.theme;
+  }
+
+  _layout(root) {
+    this._buttons = new Map();
+    this._panels = new Map();
+    for (const { name, title } of this.tabs) {
+      this._buttons.set(
+        name,
+        h("button", { role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, onclick: () => this.select(name) }, title),
+      );
+      this._panels.set(name, h("section", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: true }));
+    }
+    this._status = h("span", { class: "connection", role: "status" }, "connecting");
+    const bar = h("nav", { role: "tablist", "aria-label": "Tabs" }, [...this._buttons.values()]);
+    bar.addEventListener("keydown", (event) => this._moveTab(event));
+    fill(
+      root,
+      h(
+        "header",
+        {},
+        h("h1", {}, "crowdbot"),
+        bar,
+        this._status,
+        h("button", { type: "button", onclick: () => this._toggleTheme() }, "Theme"),
+        h("button", { type: "button", "aria-label": "Keys", onclick: () => this._showKeys() }, "?"),
+      ),
+      h("main", {}, [...this._panels.values()]),
+      messageRegion,
+    );
+    const stored = this.address.get("theme") ?? localStorage.getItem("theme");
+    const system = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    document.documentElement.dataset.theme = stored ?? system;
+    this.keys.add(null, [["?", "Show the keys", () => this._showKeys()]]);
+  }
+
+  _listen() {
+    this.connection.on("connected", () => this._tellConnection("connected", ""));
+    this.connection.on("lost", () => this._tellConnection("not connected, trying again", "lost"));
+    this.connection.on("hello", (greeting) => {
+      this._greeting = greeting;
+      for (const [name, view] of this._views) view.greet?.(greeting.desks[name] ?? {});
+    });
+  }
+
+  _tellConnection(text, kind) {
+    this._status.textContent = text;
+    this._status.className = `connection ${kind}`;
+  }
+
+  _moveTab(event) {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const names = this.tabs.map((one) => one.name);
+    const next = names[(names.indexOf(this.keys.active) + step + names.length) % names.length];
+    this.select(next);
+    this._buttons.get(next).focus();
+  }
+
+  _toggleTheme() {
+    const theme = this.theme === "dark" ? "light" : "dark";
+    document.documentElement.dataset.theme = theme;
+    localStorage.setItem("theme", theme);
+    document.dispatchEvent(new CustomEvent("theme", { detail: theme }));
+  }
+
+  _showKeys() {
+    const rows = this.keys.list().map(([key, text]) => h("tr", {}, h("td", {}, h("kbd", {}, keyName(key))), h("td", {}, text)));
+    openDialog("Keys", h("table", {}, h("tbody", {}, rows)));
+  }
+}

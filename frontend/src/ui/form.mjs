@@ -1,0 +1,42 @@
+// Forms made from the tables of the server.
+import { field, h } from "./dom.mjs";
+
+/**
+ * Makes the fields of a form. Each row of the table is
+ * {name, label, kind: "number"|"whole"|"text"|"choice"|"switch", value, unit?, low?, high?, step?, choices?, note?}.
+ * Returns {element, values()}.
+ */
+export function makeForm(rows, onchange = () => {}) {
+  const controls = rows.map((row) => [row, control(row)]);
+  for (const [, one] of controls) one.addEventListener("change", onchange);
+  const element = h(
+    "div",
+    { class: "form" },
+    controls.map(([row, one]) => field(row.unit ? `${row.label} [${row.unit}]` : row.label, one, row.note)),
+  );
+  const values = () => Object.fromEntries(controls.map(([row, one]) => [row.name, read(row, one)]));
+  return { element, values };
+}
+
+function control(row) {
+  if (row.kind === "choice") {
+    return h(
+      "select",
+      { name: row.name },
+      row.choices.map((one) => {
+        const [value, text] = Array.isArray(one) ? one : [one, one];
+        return h("option", { value, selected: value === row.value }, text);
+      }),
+    );
+  }
+  if (row.kind === "switch") return h("input", { name: row.name, type: "checkbox", checked: row.value === true });
+  if (row.kind === "text") return h("input", { name: row.name, type: "text", value: row.value ?? "" });
+  const step = row.step ?? (row.kind === "whole" ? 1 : "any");
+  return h("input", { name: row.name, type: "number", value: row.value ?? "", min: row.low, max: row.high, step });
+}
+
+function read(row, one) {
+  if (row.kind === "switch") return one.checked;
+  if (row.kind === "number" || row.kind === "whole") return one.value === "" ? null : Number(one.value);
+  return one.value;
+}

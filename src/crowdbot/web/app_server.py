@@ -1,0 +1,209 @@
+"""AppServer: the HTTP server of the app."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import re
+import ssl
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from importlib import resources
+from pathlib import Path
+
+from aiohttp import WSCloseCode, web
+
+from crowdbot.core import CrowdbotError
+
+from .access import COOKIE, AccessPolicy
+from .app_session import AppSession
+from .desk import Desk
+from .window import Window
+from .workspace import Workspace
+
+__all__ = ["AppServer"]
+
+POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
+    "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+SANDBOX = (
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+)
+"""Policy of a page with scripts of its own: without access to the app or the net."""
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+MESSAGE = 4 << 20
+"""Largest message of a window [B]."""
+SESSIONS = 40
+"""Sessions at the same time."""
+WINDOWS = 100
+"""Windows of all sessions."""
+NAME = re.compile(r"[A-Za-z0-9_-]{1,40}\Z")
+STATIC = {
+    "": ("index.html", "text/html"),
+    "app.js": ("app.js", "text/javascript"),
+    "app.css": ("app.css", "text/css"),
+    "icon.svg": ("icon.svg", "image/svg+xml"),
+    "licenses.txt": ("licenses.txt", "text/plain"),
+}
+
+
+class AppServer:
+    """The server of the app: pages, files of the desks, and a WebSocket for each window.
+
+    Args:
+        desks: a class for each tab.
+        folder: the sessions read and write files in subfolders of this folder; the session ``main`` uses it itself.
+        host: address to listen on.
+        port: port; 0 takes a free one.
+        access: who may use the server (default: loopback without a token, elsewhere a random token).
+        readable: more folders whose files may be read.
+        tls: certificate of the server for HTTPS.
+
+    Attributes:
+        url: address of the page, with the token if one is needed; set while the server runs.
+
+    >>> import tempfile
+    >>> async def main():
+    ...     async with AppServer((), Path(tempfile.mkdtemp()), port=0).running() as server:
+    ...         return server.url.startswith("http://127.0.0.1:")
+    >>> asyncio.run(main())
+    True
+    """
+
+    def __init__(
+        self,
+        desks: Sequence[type[Desk]],
+        folder: Path,
+        host: str = "127.0.0.1",
+        port: int = 8700,
+        access: AccessPolicy | None = None,
+        readable: tuple[Path, ...] = (),
+        tls: ssl.SSLContext | None = None,
+    ) -> None:
+        self.desks, self.folder, self.host, self.port = tuple(desks), folder, host, port
+        self.access = access or AccessPolicy(host)
+        self.readable, self.tls = readable, tls
+        self.sessions: dict[str, AppSession] = {}
+        self.url = ""
+        self._sockets: set[web.WebSocketResponse] = set()
+
+    @contextlib.asynccontextmanager
+    async def running(self) -> AsyncIterator[AppServer]:
+        """Serve inside the block.
+
+        Raises:
+            OSError: the port is in use.
+        """
+        runner = web.AppRunner(self.application(), access_log=None, shutdown_timeout=2.0)
+        await runner.setup()
+        try:
+            site = web.TCPSite(runner, self.host, self.port, ssl_context=self.tls)
+            await site.start()
+            host, port = runner.addresses[0][:2]
+            shown = f"[{host}]" if ":" in host else host
+            token = f"?token={self.access.token}" if self.access.needs_token else ""
+            self.url = f"{'https' if self.tls else 'http'}://{shown}:{port}/{token}"
+            yield self
+        finally:
+            for socket in list(self._sockets):
+                await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
+            await runner.cleanup()
+            for session in self.sessions.values():
+                await asyncio.get_running_loop().run_in_executor(None, session.close)
+            self.sessions.clear()
+
+    def application(self) -> web.Application:
+        """Return the aiohttp application."""
+        app = web.Application(middlewares=[self._guard], client_max_size=MESSAGE)
+        app.router.add_get("/api/{session}/socket", self._socket)
+        app.router.add_get("/api/{session}/{desk}/{path:.+}", self._resource)
+        app.router.add_post("/api/{session}/upload", self._upload)
+        app.router.add_get("/{name:[^/]*}", self._static)
+        return app
+
+    @web.middleware
+    async def _guard(
+        self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
+    ) -> web.StreamResponse:
+        given = request.query.get("token")
+        refusal = self.access.refusal(request.host, request.headers.get("Origin"), given or request.cookies.get(COOKIE))
+        response: web.StreamResponse
+        if refusal is not None:
+            response = web.Response(status=403, text=refusal + "\n")
+        else:
+            try:
+                response = await handler(request)
+            except web.HTTPException as error:
+                response = web.Response(status=error.status, text=(error.text or error.reason) + "\n")
+            except CrowdbotError as error:
+                response = web.Response(status=400, text=f"{error}\n")
+        if not response.prepared:
+            for header, value in HEADERS.items():
+                response.headers.setdefault(header, value)
+            if given is not None and refusal is None and self.access.needs_token:
+                response.set_cookie(COOKIE, given, httponly=True, samesite="Strict", secure=self.tls is not None)
+        return response
+
+    async def _static(self, request: web.Request) -> web.StreamResponse:
+        name = request.match_info["name"]
+        if name not in STATIC:
+            raise web.HTTPNotFound(text=f"page {name!r:.80} does not exist")
+        file, kind = STATIC[name]
+        data = resources.files("crowdbot").joinpath("assets", "web", file).read_bytes()
+        response = web.Response(body=data, content_type=kind, charset="utf-8", headers={"Cache-Control": "no-cache"})
+        response.enable_compression()
+        return response
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        session = self._session(request)
+        if len(self._sockets) >= WINDOWS:
+            raise web.HTTPServiceUnavailable(text=f"more than {WINDOWS} windows are open")
+        if request.headers.get("Origin") is None and self.access.needs_token and "token" not in request.query:
+            raise web.HTTPForbidden(text="the request has no origin and no token")
+        socket = web.WebSocketResponse(max_msg_size=MESSAGE, heartbeat=20.0, compress=False)
+        await socket.prepare(request)
+        self._sockets.add(socket)
+        try:
+            await Window(session, socket).serve()
+        finally:
+            self._sockets.discard(socket)
+        return socket
+
+    async def _resource(self, request: web.Request) -> web.StreamResponse:
+        session, path = self._session(request), request.match_info["path"]
+        try:
+            found = await session.resource(request.match_info["desk"], path, dict(request.query))
+        except KeyError:
+            raise web.HTTPNotFound(text=f"file {path!r:.80} does not exist") from None
+        response = web.Response(body=found.data, headers={"Cache-Control": "no-cache"})
+        response.content_type = found.kind
+        if found.sandbox:
+            response.headers["Content-Security-Policy"] = SANDBOX
+        if found.name is not None:
+            name = re.sub(r"[^A-Za-z0-9._-]", "-", found.name)
+            response.headers["Content-Disposition"] = f'attachment; filename="{name}"'
+        return response
+
+    async def _upload(self, request: web.Request) -> web.StreamResponse:
+        session, name = self._session(request), Path(request.query.get("name", "")).name
+        path = session.workspace.writable(name)
+        data = await request.read()
+        await asyncio.get_running_loop().run_in_executor(None, path.write_bytes, data)
+        return web.json_response({"name": name})
+
+    def _session(self, request: web.Request) -> AppSession:
+        name = request.match_info["session"]
+        if not NAME.match(name):
+            raise web.HTTPBadRequest(text="the name of a session has 1 to 40 letters, digits, - or _")
+        if name not in self.sessions:
+            if len(self.sessions) >= SESSIONS:
+                raise web.HTTPServiceUnavailable(text=f"more than {SESSIONS} sessions are open")
+            folder = self.folder if name == "main" else self.folder / "sessions" / name
+            space = Workspace(folder, self.readable)
+            self.sessions[name] = AppSession(name, space, self.desks, asyncio.get_running_loop())
+        return self.sessions[name]

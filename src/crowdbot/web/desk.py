@@ -1,0 +1,74 @@
+"""Desk: the state behind one tab of the app."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Protocol
+
+from .state_frame import StateFrame
+from .workspace import Workspace
+
+__all__ = ["Desk", "DeskWindows", "Resource"]
+
+
+class DeskWindows(Protocol):
+    """What a desk knows of its session: the windows that show it and the folder that it may use."""
+
+    name: str
+    """Name of the session."""
+    workspace: Workspace
+    """Files of the session."""
+
+    def tell(self, event: str, data: Any) -> None:
+        """Send an event ``desk.name`` with JSON data to all windows, from any thread."""
+
+    def show(self, frame: StateFrame) -> None:
+        """Send a state frame to all windows, from any thread; a slow window gets the newest of each channel."""
+
+
+class Resource:
+    """A file that a desk makes for the browser, such as the meshes of the bodies.
+
+    Args:
+        data: content.
+        kind: media type.
+        name: name of the file if it is to be saved, or None to show it.
+        sandbox: whether it is a page with scripts of its own, which the browser then keeps apart from the app.
+    """
+
+    def __init__(
+        self, data: bytes, kind: str = "application/octet-stream", name: str | None = None, sandbox: bool = False
+    ) -> None:
+        self.data, self.kind, self.name, self.sandbox = data, kind, name, sandbox
+
+
+class Desk:
+    """The state and the commands behind one tab of the app, of one session.
+
+    A desk has no logic of its own: its methods marked with :func:`crowdbot.web.command` call the same functions as the
+    command line. Commands of one desk run one after the other in a thread. A desk sends events and state frames to all
+    windows of its session.
+
+    Args:
+        session: the windows and the folder of the session.
+    """
+
+    name: ClassVar[str]
+    """Name in the address of its commands: ``name.command``."""
+
+    def __init__(self, session: DeskWindows) -> None:
+        self.session = session
+
+    def greet(self) -> dict[str, Any]:
+        """Return the state that a new window needs, JSON."""
+        return {}
+
+    def resource(self, path: str, query: dict[str, str]) -> Resource:
+        """Return a file for ``GET /api/SESSION/DESK/path``.
+
+        Raises:
+            KeyError: there is no such file.
+        """
+        raise KeyError(path)
+
+    def close(self) -> None:
+        """Stop runs, threads and processes of the desk."""

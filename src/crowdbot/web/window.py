@@ -1,0 +1,130 @@
+"""Window: one browser window, connected by a WebSocket."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from dataclasses import replace
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from crowdbot.core import CrowdbotError, InputError
+
+from .app_session import AppSession
+from .state_frame import StateFrame
+
+__all__ = ["CREDIT", "Window"]
+
+CREDIT = 2
+"""State frames that may be on their way to a window at the same time."""
+EVENTS = 1000
+"""Events that may wait for a window; a window that is further behind is closed and connects again."""
+CALLS = 32
+"""Commands of one window that may run at the same time."""
+
+
+class Window:
+    """One browser window of a session.
+
+    Text messages are JSON. The window calls commands with ``{"id": 1, "call": "desk.command", "args": {...}}`` and gets
+    ``{"id": 1, "result": ...}`` or ``{"id": 1, "error": "sentence"}``. It confirms each state frame with
+    ``{"drawn": sequence}``; no more than two unconfirmed frames are sent, so that a slow window sees the newest state
+    and never slows the run.
+
+    Args:
+        session: the session that the window shows.
+        socket: the open WebSocket.
+    """
+
+    def __init__(self, session: AppSession, socket: web.WebSocketResponse) -> None:
+        self.session, self._socket = session, socket
+        self._sent = self._drawn = 0
+        self._frames: dict[str, StateFrame] = {}
+        self._events: list[str] = []
+        self._wake = asyncio.Event()
+        self._calls: set[asyncio.Task[None]] = set()
+
+    def tell(self, event: str, data: Any) -> None:
+        """Send an event."""
+        self._put({"event": event, "data": data})
+
+    def show(self, frame: StateFrame) -> None:
+        """Send a frame when the window has drawn the frames before; replaces one of the same channel that waits."""
+        self._frames[frame.channel] = frame
+        self._wake.set()
+
+    async def serve(self) -> None:
+        """Exchange messages until the window is closed."""
+        writer = asyncio.create_task(self._write())
+        self.session.windows.add(self)
+        try:
+            self.tell("hello", {"session": self.session.name, "desks": self.session.greet()})
+            async for message in self._socket:
+                if message.type != WSMsgType.TEXT:
+                    break
+                if not self._receive(message.data):
+                    break
+        finally:
+            self.session.windows.discard(self)
+            for task in (writer, *self._calls):
+                task.cancel()
+            await asyncio.gather(writer, *self._calls, return_exceptions=True)
+            await self._socket.close()
+
+    def _receive(self, text: str) -> bool:
+        """Handle a message; False if it is not one of ours."""
+        try:
+            message = json.loads(text)
+        except (ValueError, RecursionError):
+            return False
+        if not isinstance(message, dict):
+            return False
+        if isinstance(message.get("drawn"), int):
+            self._drawn = max(self._drawn, min(message["drawn"], self._sent))
+            self._wake.set()
+            return True
+        address, arguments, number = message.get("call"), message.get("args", {}), message.get("id")
+        if not isinstance(address, str) or not isinstance(arguments, dict) or not isinstance(number, int):
+            return False
+        if len(self._calls) >= CALLS:
+            self._put({"id": number, "error": f"more than {CALLS} commands are running; wait for one of them"})
+            return True
+        task = asyncio.create_task(self._call(number, address, arguments))
+        self._calls.add(task)
+        task.add_done_callback(self._calls.discard)
+        return True
+
+    async def _call(self, number: int, address: str, arguments: dict[str, Any]) -> None:
+        try:
+            answer: dict[str, Any] = {"id": number, "result": await self.session.call(address, arguments)}
+        except CrowdbotError as error:
+            answer = {"id": number, "error": str(error)}
+        except OSError as error:
+            answer = {"id": number, "error": f"{error.filename or 'file'}: {error.strerror or error}"}
+        except Exception as error:  # a bug must reach the user, and the server must go on
+            what = f"{type(error).__name__}: {error}"
+            answer = {"id": number, "error": f"{address}: {what}; this is a bug in crowdbot or in your code"}
+        self._put(answer)
+
+    def _put(self, message: dict[str, Any]) -> None:
+        try:
+            self._events.append(json.dumps(message, allow_nan=False))
+        except ValueError as error:
+            raise InputError(f"message to a window is not JSON: {error}") from None
+        self._wake.set()
+
+    async def _write(self) -> None:
+        while True:
+            await self._wake.wait()
+            self._wake.clear()
+            if len(self._events) > EVENTS:
+                await self._socket.close(code=1013, message=b"the window is too slow")
+                return
+            events, self._events = self._events, []
+            for text in events:
+                await self._socket.send_str(text)
+            while self._frames and self._sent - self._drawn < CREDIT:
+                frame = self._frames.pop(next(iter(self._frames)))
+                self._sent += 1
+                await self._socket.send_bytes(replace(frame, sequence=self._sent).encode(), compress=0)

@@ -1,0 +1,243 @@
+"""The server: commands, events, state frames with credit, access, files, limits."""
+
+import asyncio
+import contextlib
+import json
+import time
+
+import aiohttp
+import numpy as np
+import pytest
+
+from crowdbot.core import InputError
+from crowdbot.web import CREDIT, AccessPolicy, AppServer, Desk, Resource, StateFrame, command
+
+
+class Counter(Desk):
+    """Counts."""
+
+    name = "counter"
+
+    def __init__(self, session):
+        super().__init__(session)
+        self.count = 0
+
+    def greet(self):
+        return {"count": self.count}
+
+    @command
+    def add(self, step: int = 1) -> int:
+        self.count += step
+        self.session.tell("counter.count", {"count": self.count})
+        return self.count
+
+    @command
+    def fail(self, kind: str) -> None:
+        if kind == "input":
+            raise InputError("the value is wrong")
+        raise ZeroDivisionError("a bug")
+
+    @command
+    def burst(self, count: int) -> None:
+        for number in range(count):
+            self.session.show(StateFrame("count", float(number), {"n": np.array([number], dtype=np.int32)}))
+            time.sleep(0.001)
+
+    @command
+    def save(self, name: str, text: str) -> str:
+        path = self.session.workspace.writable(name)
+        path.write_text(text)
+        return self.session.workspace.readable(name).read_text()
+
+    def resource(self, path, query):
+        if path != "double.bin":
+            raise KeyError(path)
+        return Resource(query["text"].encode() * 2, name="double.bin")
+
+
+def serve(tmp_path, talk, **options):
+    """Run ``talk(server, client)`` against a running server and return its result."""
+
+    async def main():
+        server = AppServer((Counter,), tmp_path / "files", port=0, **options)
+        async with server.running(), aiohttp.ClientSession() as client:
+            return await asyncio.wait_for(talk(server, client), 30)
+
+    return asyncio.run(main())
+
+
+@contextlib.asynccontextmanager
+async def window(server, client, session="main", **options):
+    """Open a window and return its socket and greeting."""
+    async with client.ws_connect(server.url + f"api/{session}/socket", **options) as socket:
+        yield socket, await socket.receive_json()
+
+
+async def ask(socket, call, number=1, **arguments):
+    await socket.send_json({"id": number, "call": call, "args": arguments})
+    while True:
+        answer = await socket.receive_json()
+        if answer.get("id") == number:
+            return answer
+
+
+def test_a_window_calls_commands_and_all_windows_get_the_events(tmp_path):
+    async def talk(server, client):
+        async with window(server, client) as (one, greeting), window(server, client) as (two, _):
+            answer = await ask(one, "counter.add", step=3)
+            event = await two.receive_json()
+            async with window(server, client) as (_, later), window(server, client, "other") as (_, other):
+                return greeting, answer, event, later, other
+
+    greeting, answer, event, later, other = serve(tmp_path, talk)
+    assert greeting == {"event": "hello", "data": {"session": "main", "desks": {"counter": {"count": 0}}}}
+    assert answer == {"id": 1, "result": 3}
+    assert event == {"event": "counter.count", "data": {"count": 3}}
+    assert later["data"]["desks"] == {"counter": {"count": 3}}
+    assert other["data"]["desks"] == {"counter": {"count": 0}}  # a session has its own desks
+
+
+@pytest.mark.parametrize(
+    ("call", "arguments", "sentence"),
+    [
+        ("counter.fail", {"kind": "input"}, "the value is wrong"),
+        ("counter.fail", {"kind": "bug"}, "ZeroDivisionError: a bug; this is a bug in crowdbot or in your code"),
+        ("counter.ad", {}, "command 'ad' does not exist, did you mean 'add'?"),
+        ("countr.add", {}, "tab 'countr' does not exist, did you mean 'counter'?"),
+        ("counter.add", {"step": "3"}, "add: step = '3': expected a whole number"),
+        ("counter.add", {"steps": 3}, "add: argument 'steps' is unknown"),
+        ("counter.fail", {}, "fail: argument 'kind' is missing"),
+        ("counter.resource", {}, "command 'resource' does not exist"),
+        ("counter.__init__", {}, "command '__init__' does not exist"),
+        ("counter.save", {"name": "../../x", "text": "a"}, "file '../../x' is outside the folder of the app"),
+        ("counter.save", {"name": "/etc/x", "text": "a"}, "file '/etc/x' is outside the folder of the app"),
+        ("counter.save", {"name": "", "text": "a"}, "name of a file = ''"),
+    ],
+)
+def test_wrong_calls_are_answered_with_a_sentence(tmp_path, call, arguments, sentence):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            wrong = await ask(socket, call, **arguments)
+            right = await ask(socket, "counter.add", number=2)
+            return wrong, right
+
+    wrong, right = serve(tmp_path, talk)
+    assert sentence in wrong["error"]
+    assert right["result"] == 1  # the window goes on
+
+
+@pytest.mark.parametrize("text", ["", "[", "[]", "7", '"x"', '{"id": "1", "call": "counter.add"}', "[" * 100_000])
+def test_a_window_that_sends_other_text_is_closed(tmp_path, text):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            await socket.send_str(text)
+            message = await socket.receive()
+        async with window(server, client) as (socket, _):
+            return message.type, (await ask(socket, "counter.add"))["result"]
+
+    closed, answer = serve(tmp_path, talk)
+    assert closed in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED)
+    assert answer == 1
+
+
+def test_a_slow_window_gets_the_newest_frame_and_never_more_than_its_credit(tmp_path):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            await socket.send_json({"id": 1, "call": "counter.burst", "args": {"count": 200}})
+            frames = []
+            while True:
+                message = await socket.receive()
+                if message.type == aiohttp.WSMsgType.BINARY:
+                    frames.append(StateFrame.decode(message.data))
+                else:
+                    break
+            assert json.loads(message.data) == {"id": 1, "result": None}
+            await socket.send_json({"drawn": frames[-1].sequence})
+            return frames, StateFrame.decode((await socket.receive()).data)
+
+    frames, last = serve(tmp_path, talk)
+    assert len(frames) <= CREDIT
+    assert last.arrays["n"].tolist() == [199]
+
+
+def test_files_of_desks_and_of_the_page(tmp_path):
+    async def talk(server, client):
+        answers = []
+        for path in (
+            "",
+            "app.js",
+            "api/main/counter/double.bin?text=ab",
+            "api/main/counter/none",
+            "x/../../etc/passwd",
+        ):
+            async with client.get(server.url + path) as answer:
+                answers.append((answer.status, answer.headers, await answer.read()))
+        return answers
+
+    page, script, double, missing, outside = serve(tmp_path, talk)
+    assert page[0] == script[0] == 200
+    assert "default-src 'self'" in page[1]["Content-Security-Policy"]
+    assert double[::2] == (200, b"abab")
+    assert missing[::2] == (404, b"file 'none' does not exist\n")
+    assert outside[0] == 404
+
+
+@pytest.mark.parametrize(
+    ("headers", "sentence"),
+    [
+        ({"Origin": "https://example.org"}, "requests from https://example.org are refused"),
+        ({"Host": "example.org"}, "the server answers on the loopback address only, not as example.org"),
+        ({"Origin": "null"}, "requests from null are refused"),
+    ],
+)
+def test_other_sites_are_refused(tmp_path, headers, sentence):
+    async def talk(server, client):
+        async with client.get(server.url + "api/main/socket", headers=headers) as answer:
+            return answer.status, await answer.text()
+
+    status, text = serve(tmp_path, talk)
+    assert status == 403
+    assert sentence in text
+
+
+def test_beyond_loopback_a_token_is_needed(tmp_path):
+    async def talk(server, client):
+        base, _, token = server.url.partition("?token=")
+        answers = []
+        for query in ("", "?token=wrong", f"?token={token}", ""):  # the last one has the cookie
+            async with client.get(base.replace("0.0.0.0", "127.0.0.1") + query) as answer:
+                answers.append(answer.status)
+        return answers, token
+
+    jar = {"host": "0.0.0.0", "access": AccessPolicy("0.0.0.0", "secret-token")}
+
+    async def main():
+        server = AppServer((Counter,), tmp_path / "files", port=0, **jar)
+        async with server.running(), aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as client:
+            return await talk(server, client)
+
+    answers, token = asyncio.run(main())
+    assert token == "secret-token"
+    assert answers == [403, 403, 200, 200]
+
+
+def test_links_that_lead_outside_are_refused(tmp_path):
+    (tmp_path / "secret.txt").write_text("secret")
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / "link").symlink_to(tmp_path)
+
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            return await ask(socket, "counter.save", name="link/secret.txt", text="x")
+
+    assert "outside the folder" in serve(tmp_path, talk)["error"]
+    assert (tmp_path / "secret.txt").read_text() == "secret"
+
+
+def test_uploads_are_kept_by_their_last_name(tmp_path):
+    async def talk(server, client):
+        async with client.post(server.url + "api/main/upload?name=../../tracks.csv", data=b"id,x") as answer:
+            return await answer.json()
+
+    assert serve(tmp_path, talk) == {"name": "tracks.csv"}
+    assert (tmp_path / "files" / "tracks.csv").read_bytes() == b"id,x"
