@@ -6,6 +6,7 @@ const FIELD = 45;
 const WIDE = 75;
 /** Largest distance of the first view [m], so that people are seen. */
 const FARTHEST = 24;
+const NEARER = 17;
 
 export class Views {
   constructor(canvas) {
@@ -62,7 +63,7 @@ export class Views {
   }
 
   /** Shows all of a description, from above or from the side. */
-  overview({ bounds: [x0, y0, x1, y1] }, above = false) {
+  overview({ bounds: [x0, y0, x1, y1], focus }, above = false) {
     const middle = new THREE.Vector3(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.6);
     const pitch = above ? 1.05 : 0.62;
     const yaw = x1 - x0 >= y1 - y0 ? -0.5 * Math.PI : Math.PI;
@@ -80,7 +81,13 @@ export class Views {
       }
       this._look(middle, way, far);
       this._center(middle, corners);
-      this._look(middle, way, above ? far : Math.min(far, FARTHEST));
+      this._away = far;
+    }
+    if (!above && this._away > FARTHEST) {
+      middle.set(focus[0], focus[1], 0.8);
+      this._look(middle, way, NEARER);
+    } else {
+      this._look(middle, way, this._away);
     }
     this.controls.target.copy(middle);
     this.controls.update();
