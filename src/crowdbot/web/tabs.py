@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from .desk import Desk
+from .editor import EditorDesk
+from .experiments import ExperimentDesk
 
 __all__ = ["DESKS"]
 
-DESKS: tuple[type[Desk], ...] = ()
+DESKS: tuple[type[Desk], ...] = (EditorDesk, ExperimentDesk)
