@@ -27,7 +27,11 @@ from .trial_preview import trial_preview
 
 __all__ = ["FIRST", "SimulatorDesk"]
 
-FIRST: tuple[str, dict[str, str], int] = ("random-goals", {"robot/type": "pepper", "end/collision": "false"}, 1)
+FIRST: tuple[str, dict[str, str], int] = (
+    "random-goals",
+    {"robot/type": "pepper", "robot/default-sensors": "false", "end/collision": "false"},
+    1,
+)
 """Trial, values and seed that a new session shows: a robot among walking people."""
 HISTORY = 1500
 """Instants of the live values that a new window gets."""
@@ -213,6 +217,10 @@ class SimulatorDesk(SteeringDesk):
         player = self._any()
         found: dict[str, Any] = player.do(player.view.description)
         return found
+
+    @command
+    def ping(self) -> None:
+        """Do nothing, to measure the latency."""
 
     @command
     def show_frame(self) -> None:
