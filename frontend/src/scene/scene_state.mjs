@@ -59,11 +59,12 @@ export class SceneState {
     poseBones({ count: this.people, who, pelvis, bones, body, scale, heads: this.heads, parents: this.parents }, out, stride);
   }
 
-  /** Returns [{number, sensor, points}] with the end points x, y, z of the beams of the planar scanners. */
-  scans() {
+  /** Returns [{number, sensor, points}] with the end points x, y, z of the beams of scanners; kind "scan" or "cloud". */
+  scans(kind) {
     if (!this.frame) return [];
     const found = [];
     this.description.sensors.forEach((sensor, number) => {
+      if (sensor.kind !== kind) return;
       const ranges = this.frame.arrays[`scan${number}`];
       const cloud = this.frame.arrays[`cloud${number}`];
       if (ranges) found.push({ number, sensor, points: scanPoints(ranges, this.frame.arrays[`pose${number}`], sensor) });

@@ -9,6 +9,8 @@ const ROW = 4 * (2 * BONES + 2);
 const PIXELS = [190, 64];
 const MOST = [16, 80];
 const UNIT = 1e-4;
+/** Bones of the feet. */
+const FEET = [22, 26];
 
 export class Crowd {
   /** @param {Array} meshes decoded frames "bodies/LEVEL.bin", from the finest */
@@ -80,6 +82,26 @@ export class Crowd {
     }
     this._boneMap.value.needsUpdate = true;
     this._state = state;
+    this._raised = state.description.stage.ground.length > 0;
+  }
+
+  /** Height [m] of the ground under a person: that of the lower ankle, less its height at rest. */
+  _ground(i) {
+    if (!this._raised) return 0;
+    const state = this._state;
+    const { body, scale } = state.description.people;
+    const who = state.frame.arrays.who[i];
+    let low = Infinity;
+    for (const bone of FEET) {
+      const at = i * ROW + 8 * bone;
+      const head = 3 * (BONES * body[who] + bone);
+      const [a, b, c] = state.heads.subarray(head, head + 3);
+      const [x, y, z, w, , , shift] = this.bones.subarray(at, at + 7);
+      const size = scale[who];
+      const height = 2 * (x * z - w * y) * a + 2 * (y * z + w * x) * b + (1 - 2 * (x * x + y * y)) * c;
+      low = Math.min(low, shift + size * (height - c));
+    }
+    return Math.max(0, low);
   }
 
   /** Chooses the level of detail of everybody for a camera; hidden is an id that is not drawn. */
@@ -102,7 +124,7 @@ export class Crowd {
       const pixels = (1.7 * focal) / Math.max(away, 0.1);
       const level = pixels > PIXELS[0] && rank < MOST[0] ? 0 : pixels > PIXELS[1] && rank < MOST[1] ? 1 : 2;
       this._levels[level].geometry.attributes.slot.array[this.counts[level]++] = i;
-      shade.array.set([pelvis[3 * i], pelvis[3 * i + 1], Math.max(0, pelvis[3 * i + 2] - 1.15), 0.42], 4 * rank);
+      shade.array.set([pelvis[3 * i], pelvis[3 * i + 1], this._ground(i), 0.42], 4 * rank);
     });
     this._levels.forEach((mesh, level) => {
       mesh.geometry.instanceCount = this.counts[level];

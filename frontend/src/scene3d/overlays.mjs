@@ -6,7 +6,7 @@ const SIDES = 14;
 
 /** Overlays by name of the layer: each {object, update(state, look)}. */
 export function overlays() {
-  return { scans: scans(), ranges: ranges(), forces: forces(), goals: goals() };
+  return { scans: scans("scan", 5), clouds: scans("cloud", 2.5), ranges: ranges(), forces: forces(), goals: goals() };
 }
 
 function lines(width = 1) {
@@ -30,24 +30,36 @@ function fill(geometry, points, size) {
   geometry.setDrawRange(0, size / 3);
 }
 
-function scans() {
-  const object = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ size: 4, sizeAttenuation: false }));
+function scans(kind, size) {
+  const object = new THREE.Points(new THREE.BufferGeometry(), roundPoints(size));
   object.frustumCulled = false;
   return {
     object,
     update(state, look) {
-      const parts = state.scans().map((one) => one.points);
-      const size = parts.reduce((sum, one) => sum + one.length, 0);
-      const points = new Float32Array(size);
+      const parts = state.scans(kind).map((one) => one.points);
+      const total = parts.reduce((sum, one) => sum + one.length, 0);
+      const points = new Float32Array(total);
       let at = 0;
       for (const part of parts) {
         points.set(part, at);
         at += part.length;
       }
-      object.material.color.set(look.scan);
-      fill(object.geometry, points, size);
+      object.material.color.set(look[kind]);
+      fill(object.geometry, points, total);
     },
   };
+}
+
+/** Points that are discs. */
+function roundPoints(size) {
+  const material = new THREE.PointsMaterial({ size, sizeAttenuation: false, alphaTest: 0.5 });
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <alphatest_fragment>",
+      "if (length(gl_PointCoord - 0.5) > 0.5) discard;",
+    );
+  };
+  return material;
 }
 
 function ranges() {

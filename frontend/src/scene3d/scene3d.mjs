@@ -58,6 +58,7 @@ export class Scene3D {
       if (!this._layers.has(name)) this._layers.set(name, { name, title, visible: name === "scans" });
     }
     this._showLayers();
+    this._resize();
     if (moved) this._views.overview(description);
   }
 
@@ -203,13 +204,13 @@ export class Scene3D {
   }
 
   _build() {
-    this._sun = new THREE.DirectionalLight("#fff4e4", 2);
+    this._sun = new THREE.DirectionalLight("#fff8ef", 2);
     this._sun.castShadow = true;
     this._sun.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
     this._sun.shadow.bias = -0.0006;
     this._sun.shadow.normalBias = 0.03;
     this._sun.shadow.radius = 4;
-    this._dome = new THREE.HemisphereLight("#f4f8ff", "#8d8778", 1.4);
+    this._dome = new THREE.HemisphereLight("#f6f9ff", "#b9bcc0", 1.4);
     this._stage = new Stage();
     this._robots = new Robots();
     this._overlays = overlays();
@@ -253,7 +254,8 @@ export class Scene3D {
 
   _showLayers() {
     const shown = (name) => this._layers.get(name)?.visible ?? false;
-    for (const name of ["walls", "props", "zones", "grid"]) this._stage.parts[name].visible = shown(name);
+    for (const name of ["walls", "props", "zones"]) this._stage.parts[name].visible = shown(name);
+    this._stage.grid = shown("grid");
     this._robots.group.visible = shown("robots");
     for (const [name, one] of Object.entries(this._overlays)) one.object.visible = shown(name);
     if (this._crowd) {

@@ -9,7 +9,7 @@ export class Stage {
   constructor() {
     this.group = new THREE.Group();
     this.parts = {};
-    for (const name of ["floor", "grid", "walls", "props", "zones"]) {
+    for (const name of ["floor", "walls", "props", "zones"]) {
       this.parts[name] = new THREE.Group();
       this.group.add(this.parts[name]);
     }
@@ -64,6 +64,10 @@ export class Stage {
     });
   }
 
+  set grid(on) {
+    if (this._grid) this._grid.shown.value = on ? 1 : 0;
+  }
+
   set shadows(on) {
     this.group.traverse((one) => {
       if (one.userData.casts) one.castShadow = on;
@@ -88,17 +92,12 @@ export class Stage {
   }
 
   _floor([x0, y0, x1, y1], look) {
-    const size = 60 + 2 * Math.max(x1 - x0, y1 - y0);
-    const floor = new THREE.Mesh(
-      new THREE.PlaneGeometry(size, size),
-      new THREE.MeshLambertMaterial({ color: look.floor }),
-    );
+    const size = 120 + 2 * Math.max(x1 - x0, y1 - y0);
+    this._grid = floorMaterial(look);
+    const floor = new THREE.Mesh(new THREE.PlaneGeometry(size, size), this._grid.material);
     floor.position.set(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0);
     floor.receiveShadow = true;
     this.parts.floor.add(floor);
-    for (const [step, color, lift] of [[1, look.line, 0.002], [10, look.line10, 0.003]]) {
-      this.parts.grid.add(gridLines(floor.position, 0.5 * size, step, color, lift));
-    }
   }
 
   _walls({ walls, height }, look) {
@@ -117,7 +116,7 @@ export class Stage {
       if (!wall.inner) caps.push(...flat(ring, height));
     }
     if (!sides.length) return;
-    this.parts.walls.add(surface(sides, new THREE.MeshLambertMaterial({ color: look.wall, side: THREE.FrontSide }), true));
+    this.parts.walls.add(surface(sides, new THREE.MeshLambertMaterial({ color: look.wall }), true));
     if (caps.length) this.parts.walls.add(surface(caps, new THREE.MeshLambertMaterial({ color: look.wallTop }), false));
     const edges = new THREE.BufferGeometry();
     edges.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
@@ -150,15 +149,36 @@ function boardRing([[ax, ay], [bx, by]]) {
   return [[ax - nx, ay - ny], [bx - nx, by - ny], [bx + nx, by + ny], [ax + nx, ay + ny]];
 }
 
-function gridLines(middle, half, step, color, lift) {
-  const points = [];
-  const [x0, x1] = [step * Math.ceil((middle.x - half) / step), step * Math.floor((middle.x + half) / step)];
-  const [y0, y1] = [step * Math.ceil((middle.y - half) / step), step * Math.floor((middle.y + half) / step)];
-  for (let x = x0; x <= x1; x += step) points.push(x, y0, lift, x, y1, lift);
-  for (let y = y0; y <= y1; y += step) points.push(x0, y, lift, x1, y, lift);
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
-  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color }));
+/** A floor with smooth lines every metre and every ten metres. */
+function floorMaterial(look) {
+  const material = new THREE.MeshLambertMaterial({
+    color: look.floor, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8,
+  });
+  const shown = { value: 1 };
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, {
+      gridShown: shown, gridLine: { value: new THREE.Color(look.line) }, gridLine10: { value: new THREE.Color(look.line10) },
+    });
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nvarying vec2 vPlace;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(position, 1.0)).xy;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", `#include <common>
+        varying vec2 vPlace;
+        uniform float gridShown;
+        uniform vec3 gridLine, gridLine10;
+        float gridAt(float step, float width) {
+          vec2 at = vPlace / step;
+          vec2 slope = fwidth(at);
+          vec2 near = abs(fract(at - 0.5) - 0.5) / max(slope, vec2(1e-6));
+          vec2 line = clamp(width - near, 0.0, 1.0) * clamp(0.45 / max(slope, vec2(1e-6)) - 0.8, 0.0, 1.0);
+          return max(line.x, line.y);
+        }`)
+      .replace("#include <color_fragment>", `#include <color_fragment>
+        diffuseColor.rgb = mix(diffuseColor.rgb, gridLine, gridShown * gridAt(1.0, 1.0));
+        diffuseColor.rgb = mix(diffuseColor.rgb, gridLine10, gridShown * gridAt(10.0, 1.4));`);
+  };
+  return { material, shown };
 }
 
 function groundMesh({ corners, heights }, look) {
@@ -175,7 +195,7 @@ function zoneMeshes(zone, look) {
   const color = look[zone.kind];
   const fill = surface(
     flat(zone.points, 0.006),
-    new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.13, depthWrite: false }),
+    new THREE.MeshBasicMaterial({ color, transparent: true, opacity: zone.kind === "start" ? 0.05 : 0.14, depthWrite: false }),
     false,
   );
   fill.receiveShadow = false;

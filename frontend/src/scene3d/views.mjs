@@ -7,7 +7,7 @@ const WIDE = 75;
 
 export class Views {
   constructor(canvas) {
-    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.05, 600);
+    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.1, 500);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = 0.495 * Math.PI;

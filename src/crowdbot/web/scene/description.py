@@ -41,7 +41,7 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
     >>> from crowdbot.trials import load_trial
     >>> found = scene_description(Simulation(load_trial("frontal"), posed=True))
     >>> found["robots"][0]["type"], found["people"]["kind"], found["stage"]["height"]
-    ('cylinder', ['man-28'], 2.5)
+    ('cylinder', ['man-72'], 2.5)
     """
     motion = people or worlds_of(simulation.world)[0].people
     trial = simulation.trial

@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 LAYERS = {
     "scans": "Laser returns",
+    "clouds": "Points of laser scanners in space",
     "ranges": "Sonar and infrared cones",
     "forces": "Contact forces",
     "goals": "Goals of people and robots",
@@ -43,7 +44,7 @@ def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: Pe
     relative to the rest shape, in units of 1/32767; ``bots`` [R] row of a robot in the description; ``botplace``
     [R, 5]; ``links`` [L, 7] position and quaternion of the links with shapes of these robots, one robot after the
     other; ``doors`` [D]; ``props`` [P, 7] pose of movable props, and ``propnum`` [P] their numbers. Layers add:
-    ``scan0``, ``pose0``, ... for each scanner of the description; ``cones``; ``forces`` [F, 6] point [m] and
+    ``scanK`` and ``poseK`` for scanner K of the description; ``cloudK`` [M, 3]; ``cones``; ``forces`` [F, 6] point [m] and
     vector [N]; ``goals`` [N, 2].
 
     Args:
@@ -130,11 +131,19 @@ def _sensors(simulation: Simulation, kinds: tuple[type, ...]) -> list[tuple[int,
 
 def _scans(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
     found = Arrays()
-    for number, robot, sensor in _sensors(simulation, (Lidar2D, Lidar3D)):
+    for number, robot, sensor in _sensors(simulation, (Lidar2D,)):
         reading = sensor.reading(0)
         if reading is not None and scene.active[0, robot.agent]:
-            make = scan_array if isinstance(sensor.mount.sensor, Lidar2D) else cloud_array
-            found |= make(number, reading, sensor)
+            found |= scan_array(number, reading, sensor)
+    return found
+
+
+def _clouds(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
+    found = Arrays()
+    for number, robot, sensor in _sensors(simulation, (Lidar3D,)):
+        reading = sensor.reading(0)
+        if reading is not None and scene.active[0, robot.agent]:
+            found |= cloud_array(number, reading)
     return found
 
 
@@ -157,5 +166,6 @@ def _goals(simulation: Simulation, scene: Any, agents: NDArray[np.int64]) -> Arr
 
 
 MAKERS: dict[str, Callable[[Simulation, Any, NDArray[np.int64]], Arrays]] = {
-    "scans": _scans, "ranges": _ranges, "forces": _forces, "goals": _goals,
+    "scans": _scans,
+    "clouds": _clouds, "ranges": _ranges, "forces": _forces, "goals": _goals,
 }  # fmt: skip

@@ -26,7 +26,7 @@ def scan_array(number: int, reading: Any, sensor: Any) -> dict[str, NDArray[Any]
     return {f"scan{number}": _millimetres(reading.ranges[0]), f"pose{number}": _pose(reading.pose, sensor)}
 
 
-def cloud_array(number: int, reading: Any, sensor: Any) -> dict[str, NDArray[Any]]:
+def cloud_array(number: int, reading: Any) -> dict[str, NDArray[Any]]:
     """Return ``cloudK`` ``[N, 3]`` [m]: the points of a scan in space, in the world."""
     points = reading.points(in_world=True)[0].reshape(-1, 3)
     points = points[np.isfinite(points[:, 0])]
