@@ -1,4 +1,5 @@
 // Picture: the canvas of the simulator: the scene, the preview while it is prepared, clicks.
+import { Scene2D } from "../scene2d/scene2d.mjs";
 import { Scene3D } from "../scene3d/scene3d.mjs";
 import { h } from "../ui/dom.mjs";
 import { say } from "../ui/dialog.mjs";
@@ -21,11 +22,11 @@ export class Picture {
     this._loading = null;
     this._awake = 0;
     this._shown = true;
-    this.canvas = h("canvas", { class: "stage", tabindex: "0", role: "img", "aria-label": "Picture of the simulation" });
+    this.place = h("div", { class: "stage-place" });
     this.overlay = h("canvas", { class: "preview", "aria-hidden": "true", hidden: true });
     this.note = h("p", { class: "picture-note", role: "status" });
-    this.element = h("div", { class: "picture" }, this.canvas, this.overlay, this.note);
-    this._make();
+    this.element = h("div", { class: "picture" }, this.place, this.overlay, this.note);
+    this._make(app.address.get("view") ?? "3d");
     this._listen();
     requestAnimationFrame(() => this._tick());
   }
@@ -69,14 +70,29 @@ export class Picture {
     this.wake();
   }
 
-  _make() {
+  /** Shows the scene in space ("3d") or from above ("2d"). */
+  setView(view) {
+    if (view === this.view) return;
+    this.scene.dispose();
+    this._make(view);
+    this.app.remember({ view });
+    this.app.connection.call("simulator.show_frame").catch(() => {});
+  }
+
+  _make(view) {
+    this.canvas = h("canvas", { class: "stage", tabindex: "0", role: "img", "aria-label": "Picture of the simulation" });
+    this.place.replaceChildren(this.canvas);
+    const resource = (path, query) => this.app.connection.address("simulator", path, query);
+    this.view = view === "2d" ? "2d" : "3d";
     try {
-      this.scene = new Scene3D(this.canvas, (path, query) => this.app.connection.address("simulator", path, query));
-      this.scene.setTheme(this.app.theme);
+      this.scene = this.view === "2d" ? new Scene2D(this.canvas, resource) : new Scene3D(this.canvas, resource);
     } catch (error) {
-      this.scene = null;
-      say(`The picture needs WebGL: ${error.message}`, "error");
+      say(`The picture in space needs WebGL, so the one from above is shown: ${error.message}`, "error");
+      return this._make("2d");
     }
+    this.scene.setTheme(this.app.theme);
+    this._listenCanvas();
+    return this.wake();
   }
 
   _listen() {
@@ -85,6 +101,9 @@ export class Picture {
       this.wake();
     });
     new ResizeObserver(() => this.wake()).observe(this.element);
+  }
+
+  _listenCanvas() {
     let down = null;
     for (const name of ["pointermove", "wheel", "keydown"]) this.canvas.addEventListener(name, () => this.wake(), { passive: true });
     this.canvas.addEventListener("pointerdown", (event) => {

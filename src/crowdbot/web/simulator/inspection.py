@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError, builtin_name
+from crowdbot.core import builtin_name
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import Navigator
 from crowdbot.simulation import RobotControl, Simulation

@@ -170,8 +170,8 @@ class LiveRun:
         self._set_state("failed")
 
     def _set_state(self, state: str) -> None:
-        self.state = state
         self._measure()
+        self.state = state
         self._tell(self)
 
     def _advance(self) -> bool:
@@ -188,7 +188,7 @@ class LiveRun:
             return False
         self.compiling = False
         self.view.show(always=self.loop.paused)
-        if self.view.is_status_due():
+        if self.view.is_status_due() or self.loop.paused:
             self._measure()
             self._tell(self)
         return True
@@ -236,9 +236,6 @@ class LiveRun:
         self._queue += orders
         if not self._advance():
             self.loop.ended.set()
-        else:
-            self._measure()
-            self._tell(self)
 
     def _measure(self) -> None:
         run, tally = self._run, self._statistics

@@ -12,7 +12,13 @@ from crowdbot.benchmark import builtin_names
 from crowdbot.core import CrowdbotError, InputError
 from crowdbot.recording import branch
 from crowdbot.trials import (
-    PRESETS, Trial, add_element, expand_sweeps, load_trial, trial_remarks, trial_titles,
+    PRESETS,
+    Trial,
+    add_element,
+    expand_sweeps,
+    load_trial,
+    trial_remarks,
+    trial_titles,
 )  # fmt: skip
 from crowdbot.web.command import command
 from crowdbot.web.desk import DeskWindows, Resource
@@ -28,7 +34,7 @@ from .trial_preview import trial_preview
 __all__ = ["FIRST", "SimulatorDesk"]
 
 FIRST: tuple[str, dict[str, str], int] = (
-    "random-goals",
+    "two-way",
     {"robot/type": "pepper", "robot/default-sensors": "false", "end/collision": "false"},
     1,
 )

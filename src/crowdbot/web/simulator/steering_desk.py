@@ -13,6 +13,7 @@ from crowdbot.simulation import AddElementOrder, Order, ParameterOrder, Simulati
 from crowdbot.trials import RobotSpec
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk
+from crowdbot.world import worlds_of
 
 from .held_control import SOURCE, HeldAvatar, HeldVelocity
 from .inspection import inspect_agent, people_rows
@@ -65,18 +66,16 @@ class SteeringDesk(Desk):
     def add_robot(
         self, type: str, x: float, y: float, goal_x: float, goal_y: float, navigator: str = "orca"
     ) -> str:  # fmt: skip
-        """Add a robot of a built-in type, and return its name."""
+        """Add a robot of a built-in type, and return its name.
+
+        It has the sensors of its type if the people of the trial have limbs for them, otherwise a planar laser scanner.
+        """
         run = self._live()
-
-        def free_name() -> str:
-            names = {robot.name for robot in run.simulation.trial.robots}
-            names |= {one.robot.name for one in run.simulation.former_robots}
-            return next(name for k in range(1, 1000) if (name := f"added{k}") not in names)
-
-        name: str = run.do(free_name)
+        name, limbs = run.do(lambda: _free_name(run.simulation))
+        scan = "" if limbs else '<sensor type="lidar2d"/>'
         xml = (
-            f'<robot name="{name}" type={quoteattr(type)} x="{x:g}" y="{y:g}">'
-            f'<goal x="{goal_x:g}" y="{goal_y:g}"/><navigator type={quoteattr(navigator)}/></robot>'
+            f'<robot name="{name}" type={quoteattr(type)} x="{x:g}" y="{y:g}" default-sensors="{str(limbs).lower()}">'
+            f'<goal x="{goal_x:g}" y="{goal_y:g}"/><navigator type={quoteattr(navigator)}/>{scan}</robot>'
         )
         run.order(AddElementOrder(xml=xml, source=SOURCE))
         return name
@@ -136,6 +135,13 @@ class SteeringDesk(Desk):
         if not isinstance(player, LiveRun):
             raise InputError("a recorded episode cannot be steered; branch it, or open its trial")
         return player
+
+
+def _free_name(simulation: Simulation) -> tuple[str, bool]:
+    """Return a new name of a robot, and whether people have limbs."""
+    names = {robot.name for robot in simulation.trial.robots} | {one.robot.name for one in simulation.former_robots}
+    name = next(name for k in range(1, 1000) if (name := f"added{k}") not in names)
+    return name, worlds_of(simulation.world)[0].people is not None
 
 
 def _robot(simulation: Simulation, name: str) -> RobotSpec:
