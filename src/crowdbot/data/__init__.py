@@ -11,7 +11,7 @@ from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
     from .example import example_windows
-    from .file_formats import FORMATS, load
+    from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .forecast import Forecast
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
@@ -28,7 +28,7 @@ __getattr__, __dir__ = lazy_exports(
     __name__,
     {
         "example": ["example_windows"],
-        "file_formats": ["FORMATS", "load"],
+        "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
         "forecast": ["Forecast"],
         "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
         "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
@@ -47,6 +47,7 @@ __all__ = [
     "FORMATS",
     "MCAP_MAGIC",
     "PROTOCOLS",
+    "TIME_BASES",
     "UCY_TO_METRES",
     "Forecast",
     "McapError",
@@ -57,6 +58,7 @@ __all__ = [
     "RowRateError",
     "Trajectories",
     "Windows",
+    "detect_format",
     "example_windows",
     "fill_gaps",
     "has_summary",

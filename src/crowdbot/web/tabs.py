@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from .desk import Desk
+from .prediction import PredictionDesk
 
 __all__ = ["DESKS"]
 
-DESKS: tuple[type[Desk], ...] = ()
+DESKS: tuple[type[Desk], ...] = (PredictionDesk,)
