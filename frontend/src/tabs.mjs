@@ -1,4 +1,5 @@
 // The tabs, in the order of the page; crowdbot.web.tabs has the desks behind them.
+import { prediction } from "./prediction/tab.mjs";
 import { simulator } from "./simulator/tab.mjs";
 
-export const tabs = [simulator];
+export const tabs = [simulator, prediction];

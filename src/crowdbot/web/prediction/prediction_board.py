@@ -104,20 +104,25 @@ class PredictionBoard:
         """The tracks of the open recording."""
         return self.recording.rest
 
-    def open(self, path: Path, options: Mapping[str, Any]) -> None:
+    def open(self, path: Path, options: Mapping[str, Any], name: str) -> None:
         """Open a recording; results of the recording before are dropped, the predictors stay.
+
+        Args:
+            path: the file.
+            options: options of the recording; None or an empty word takes the default.
+            name: name of the file in the folder of the session.
 
         Raises:
             InputError: the file cannot be read, an option is not allowed, or there is no window.
         """
         recording = recording_of(path, options)
-        name = recording.format or detect_format(path)
+        found = recording.format or detect_format(path)
         windows = recording.windows
         if len(windows[0]) > MOST_WINDOWS:
             raise InputError(f"{path.name} has {len(windows[0])} windows, more than {MOST_WINDOWS}; use every n-th one")
         same = self.setup is not None and self.setup.recording.path == recording.path
-        self.setup, self._format, self._inputs = PredictionSetup(recording), name, {CLEAN: windows}
-        self._facts = self._fixed_facts()
+        self.setup, self._format, self._inputs = PredictionSetup(recording), found, {CLEAN: windows}
+        self._facts = {**self._fixed_facts(), "path": name}
         if not same:
             self.background, self.degradation = None, None
         for member in self.members:

@@ -79,7 +79,7 @@ class PredictionDesk(Desk):
         self._must_rest()
         path = self.session.workspace.readable(file)
         try:
-            self.board.open(path, options or {})
+            self.board.open(path, options or {}, file)
         except InputError as error:
             raise InputError(str(error).replace(str(path), file)) from None
         return self._changed()
@@ -93,7 +93,7 @@ class PredictionDesk(Desk):
         path = self.session.workspace.writable(f"examples/{name}.parquet")
         with resources.as_file(resources.files("crowdbot").joinpath("assets", "recordings", path.name)) as source:
             shutil.copyfile(source, path)
-        self.board.open(path, {})
+        self.board.open(path, {}, f"examples/{path.name}")
         return self._changed()
 
     @command
