@@ -9,8 +9,13 @@ const SVG = "http://www.w3.org/2000/svg";
 export function makePredictorPanel(store) {
   const list = h("ul", { class: "predictors", "aria-label": "List of predictors" });
   const input = h("div", {});
+  const notes = new Map();
+  store.on("progress", ({ key, input: name, ...state }) => {
+    const text = name === "degraded" ? `degraded: ${stateOf(state)}` : stateOf(state);
+    if (name && state.state !== "done") fill(notes.get(key) ?? h("small"), text);
+  });
   store.on("board", () => {
-    fill(list, store.board.predictors.length ? store.board.predictors.map((one) => row(store, one)) : h("li", { class: "hint" }, "none yet"));
+    fill(list, store.board.predictors.length ? store.board.predictors.map((one) => row(store, one, notes)) : h("li", { class: "hint" }, "none yet"));
     fill(input, inputRow(store));
   });
   return h(
@@ -40,17 +45,18 @@ export function sample(slot, input = "clean") {
   return svg;
 }
 
-function row(store, one) {
+function row(store, one, notes) {
   const { clean, degraded } = one.results;
   const words = [clean && stateOf(clean), degraded && `degraded: ${stateOf(degraded)}`].filter(Boolean);
   const shown = h("input", { type: "checkbox", checked: !store.hidden.has(one.key), "aria-label": `Draw ${one.label}` });
   shown.addEventListener("change", () => store.hide(one.key, !shown.checked));
+  notes.set(one.key, h("small", {}, words.join("; ") || "not run yet"));
   return h(
     "li",
     {},
     shown,
     sample(one.slot),
-    h("span", { class: "name", title: one.name }, one.label, h("small", {}, words.join("; ") || "not run yet")),
+    h("span", { class: "name", title: one.name }, one.label, notes.get(one.key)),
     one.calibrated && h("button", { type: "button", "aria-label": `Parameters of ${one.label}`, onclick: () => openParameters(store, one.key) }, "Fit…"),
     h("button", { type: "button", "aria-label": `Remove ${one.label}`, onclick: () => store.call("remove", { key: one.key }) }, "×"),
   );

@@ -47,8 +47,8 @@ export function makeRunPanel(store) {
     named = "";
     for (const { key, input, lines: rows } of found) append(labelOf(store, key, input), rows);
   });
-  store.on("lines", ({ key, lines: rows }) => {
-    append(labelOf(store, key), rows);
+  store.on("lines", ({ key, input, lines: rows }) => {
+    append(labelOf(store, key, input), rows);
     if (follow.checked && rows.length) store.go(store.recording.frames.indexOf(rows.at(-1)[0]));
   });
   store.on("progress", ({ share }) => {

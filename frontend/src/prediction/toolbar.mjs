@@ -9,7 +9,7 @@ const LAYERS = [
   ["predicted", "Predicted"],
   ["density", "Density"],
   ["walls", "Walls"],
-  ["background", "Picture"],
+  ["background", "Ground"],
   ["ids", "Numbers"],
 ];
 
@@ -52,7 +52,6 @@ function actions(store, scene) {
     ["people.csv", "Results by person as CSV", () => fetchFile(store, "people.csv")],
     ["frames.parquet", "Results by frame as Parquet", () => fetchFile(store, "frames.parquet")],
   ];
-
 }
 
 async function copyCommand(store, command) {

@@ -54,7 +54,8 @@ class PredictionRun:
     def cancel(self) -> None:
         """End the run; the results so far are kept."""
         self._cancelled = True
-        self._process.terminate()
+        with contextlib.suppress(ValueError):  # it has ended and is closed
+            self._process.terminate()
         self.join()
 
     def join(self, timeout: float | None = 20.0) -> bool:
@@ -74,15 +75,14 @@ class PredictionRun:
         except (EOFError, OSError):
             if not self._cancelled:
                 problem = "the worker process of the run has died (out of memory?)"
-        finally:
-            self._process.join()
-            self._process.close()
-            self._pipe.close()
         for member in self.task.members:
             with contextlib.suppress(KeyError):
                 self._results[member.key].stop(self._cancelled)
         self._ended = True
         self._tell("ended", {"problem": problem, "cancelled": self._cancelled})
+        self._process.join()
+        self._process.close()
+        self._pipe.close()
 
     def _take(self, kind: str, key: str, content: Any) -> None:
         if kind in ("share", "fit", "problem"):
@@ -96,7 +96,8 @@ class PredictionRun:
         elif kind == "part":
             for part in content:
                 found.add(part)
-            self._tell("lines", {"key": key, "lines": [line for part in content for line in found.lines(part)]})
+            name = "clean" if self.task.degradation is None else "degraded"
+            self._tell("lines", {"key": key, "input": name, "lines": [line for part in content for line in found.lines(part)]})
         elif kind == "score":
             found.finish(content)
             self._done += 1
@@ -107,4 +108,6 @@ class PredictionRun:
             found.fail(content)
             self._done += 1
         share = (self._done + (found.share if kind in ("begin", "part") else 0.0)) / self._total
-        self._tell("progress", {"key": key, "share": share, "state": found.state})
+        name = "clean" if self.task.degradation is None else "degraded"
+        counts = {"done": found.count, "windows": len(found.past), "state": found.state, "problem": found.problem}
+        self._tell("progress", {"key": key, "share": share, "input": name, **counts})
