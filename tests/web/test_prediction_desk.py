@@ -54,7 +54,11 @@ def test_the_lists_are_those_of_the_command_line(desk, capsys):
         missing = set(known) - {one["name"] for one in tables[kind]}
         assert missing <= {"simulated", "mixture", "weighted-sum"}, kind
         assert all(one["about"].startswith(known[one["name"]]) for one in tables[kind])
-    assert all(row["kind"] in ("number", "whole", "switch", "choice", "text") for one in tables["models"] for row in one["parameters"])
+    assert all(
+        row["kind"] in ("number", "whole", "switch", "choice", "text")
+        for one in tables["models"]
+        for row in one["parameters"]
+    )
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -93,7 +97,7 @@ def test_each_frame_has_a_line_with_cost_iterations_and_time(desk):
     (log,) = desk("log")
     assert log["key"] == key
     assert [line[0] for line in log["lines"]] == desk.desk.greet()["recording"]["frames"]
-    frame, people, cost, evaluations, seconds, ade = log["lines"][5]
+    _, people, cost, evaluations, seconds, ade = log["lines"][5]
     assert (people > 0, cost > 0, evaluations, seconds > 0, ade > 0) == (True, True, 20, True, True)
     sent = [line for data in desk.events("lines") for line in data["lines"]]
     assert sent == log["lines"]
@@ -103,7 +107,9 @@ def test_each_frame_has_a_line_with_cost_iterations_and_time(desk):
 def test_degraded_input_gives_the_numbers_of_crowdbot_degrade(desk, capsys):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "constant-velocity"})
-    assert desk("degrade", name="gaussian-noise", values={"sd": 0.1})["degradation"]["text"] == "gaussian-noise(sd=0.1 m)"
+    assert (
+        desk("degrade", name="gaussian-noise", values={"sd": 0.1})["degradation"]["text"] == "gaussian-noise(sd=0.1 m)"
+    )
     desk.run(seed=1)
     rows = {row["input"]: row for row in desk("results")["table"]["rows"]}
     results = desk.desk.greet()["predictors"][0]["results"]
@@ -137,17 +143,20 @@ def test_a_person_has_errors_and_the_fit_of_the_frame(desk):
     desk("example", name="bottleneck")
     desk("add", settings=ORCA)
     desk.run()
-    past, future = desk.desk.board.windows()
+    _, future = desk.desk.board.windows()
     index = 4
     id = int(future.id[index][future.scored[index]][0])
     found = desk("person", index=index, id=id)
     (row,) = found["results"]
     fit = {one["name"]: one for one in row["parameters"]}
-    assert found["scored"] and fit["time_horizon"]["given"] == 3.0 and fit["radius"]["unit"] == "m"
+    assert found["scored"]
+    assert (fit["time_horizon"]["given"], fit["radius"]["unit"]) == (3.0, "m")
     series = desk("series", variable="ade", person=id)["rows"][0]["values"]
     assert series[index] == row["ade"]
     assert np.mean([one for one in series if one is not None]) == pytest.approx(row["mean_ade"])
-    assert desk("series", variable="time_horizon", person=id)["rows"][0]["values"][index] == fit["time_horizon"]["value"]
+    assert (
+        desk("series", variable="time_horizon", person=id)["rows"][0]["values"][index] == fit["time_horizon"]["value"]
+    )
     with pytest.raises(InputError, match="person 999 is not in this frame"):
         desk("person", index=index, id=999)
 
@@ -181,7 +190,8 @@ def test_time_base_units_and_rows_can_be_corrected(desk):
     assert second["summary"]["mean_speed"] == pytest.approx(first["summary"]["mean_speed"] * 2 / 100)
     desk("add", settings={"predictor": "constant-velocity"})
     assert desk("command_line") == (
-        "crowdbot predict --data files/two.csv --fps 5.0 --units cm --observe 4 --predict 6 --predictor constant-velocity"
+        "crowdbot predict --data files/two.csv --fps 5.0 --units cm --observe 4 --predict 6"
+        " --predictor constant-velocity"
     )
 
 
@@ -252,7 +262,10 @@ def test_hostile_files_and_names_are_refused(desk, tmp_path):
     [
         ({"predictor": "own.py:Mine"}, "unknown predictor 'own.py:Mine'"),
         ({"predictor": "simulated", "model": "own.py:Mine"}, "unknown model"),
-        ({"predictor": "social-ways", "values": {"checkpoint": "/etc/passwd"}}, "checkpoint = '/etc/passwd' is unknown"),
+        (
+            {"predictor": "social-ways", "values": {"checkpoint": "/etc/passwd"}},
+            "checkpoint = '/etc/passwd' is unknown",
+        ),
         ({"predictor": "anchor-net", "values": {"file": "/etc/passwd"}}, "has no parameter 'file'"),
         ({"predictor": "kalman", "values": {"speed": "fast"}}, "kalman speed: 'fast' is not a number"),
         ({"predictor": "simulated", "values": {"time_horizon": -1}}, "time_horizon = -1"),
@@ -278,7 +291,13 @@ def test_the_same_predictor_is_added_once(desk):
 
 
 def test_the_words_of_a_choice_make_the_same_predictor():
-    settings = {**ORCA, "free": ["radius"], "patience": 5, "tolerance": 0.01, "values": {"radius": 0.3, "time_horizon": 1.0}}
+    settings = {
+        **ORCA,
+        "free": ["radius"],
+        "patience": 5,
+        "tolerance": 0.01,
+        "values": {"radius": 0.3, "time_horizon": 1.0},
+    }
     choice = PredictorChoice.of(settings)
     from argparse import ArgumentParser
 
@@ -305,7 +324,11 @@ def test_a_picture_is_put_on_the_ground(desk):
     picture = Image.open(io.BytesIO(desk.desk.resource("background.png", {}).data))
     assert picture.size == (1600, 800)
     assert picture.getpixel((800, 400)) == (0, 128, 0)
-    for text, message in (("1 2 3", "has 9 numbers"), ("a", "expected nine numbers"), ("1 0 0 0 1 0 -0.01 0 1", "horizon")):
+    for text, message in (
+        ("1 2 3", "has 9 numbers"),
+        ("a", "expected nine numbers"),
+        ("1 0 0 0 1 0 -0.01 0 1", "horizon"),
+    ):
         with pytest.raises(InputError, match=message):
             desk("background", file="ground.png", homography=text)
     (desk.folder / "no.png").write_bytes(b"\x89PNG\r\n\x1a\nnothing")

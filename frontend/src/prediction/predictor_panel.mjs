@@ -11,8 +11,8 @@ export function makePredictorPanel(store) {
   const input = h("div", {});
   const notes = new Map();
   store.on("progress", ({ key, input: name, ...state }) => {
-    const text = name === "degraded" ? `degraded: ${stateOf(state)}` : stateOf(state);
-    if (name && state.state !== "done") fill(notes.get(key) ?? h("small"), text);
+    if (!name || state.state === "done" || !notes.has(key)) return;
+    fill(notes.get(key), name === "degraded" ? `degraded: ${stateOf(state)}` : stateOf(state));
   });
   store.on("board", () => {
     fill(list, store.board.predictors.length ? store.board.predictors.map((one) => row(store, one, notes)) : h("li", { class: "hint" }, "none yet"));
@@ -57,7 +57,7 @@ function row(store, one, notes) {
     shown,
     sample(one.slot),
     h("span", { class: "name", title: one.name }, one.label, notes.get(one.key)),
-    one.calibrated && h("button", { type: "button", "aria-label": `Parameters of ${one.label}`, onclick: () => openParameters(store, one.key) }, "Fit…"),
+    one.calibrated && h("button", { type: "button", "aria-label": `Fit… of ${one.label}`, onclick: () => openParameters(store, one.key) }, "Fit…"),
     h("button", { type: "button", "aria-label": `Remove ${one.label}`, onclick: () => store.call("remove", { key: one.key }) }, "×"),
   );
 }

@@ -4,7 +4,7 @@ import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 
 export function makeRecordingPanel(store, root) {
-  const facts = h("dl", { class: "facts" });
+  const facts = h("div", {}, h("p", {}, "none is open"));
   const correct = h("button", { type: "button", onclick: () => openOptions(store), disabled: true }, "Time base, units…");
   const ground = h("button", { type: "button", onclick: () => openBackground(store), disabled: true }, "Background…");
   const element = h(
@@ -18,7 +18,7 @@ export function makeRecordingPanel(store, root) {
   store.on("board", () => {
     const { recording } = store;
     correct.disabled = ground.disabled = !recording;
-    fill(facts, recording ? factRows(recording) : h("dd", {}, "none is open"));
+    fill(facts, recording ? h("dl", { class: "facts" }, factRows(recording)) : h("p", {}, "none is open"));
   });
   listenForDrops(store, root);
   return element;

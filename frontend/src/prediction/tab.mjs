@@ -26,6 +26,8 @@ export const prediction = {
     addKeys(app, store, scene, transport);
     listen(app, store);
     return {
+      store,
+      scene,
       hide: () => transport.pause(),
       show: () => scene.draw(),
       greet: (state) => greet(store, state),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
+    from .degrade import Degradation, DegradedTracks
     from .example import example_windows
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .forecast import Forecast
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
+        "degrade": ["Degradation", "DegradedTracks"],
         "example": ["example_windows"],
         "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
         "forecast": ["Forecast"],
@@ -49,6 +51,8 @@ __all__ = [
     "PROTOCOLS",
     "TIME_BASES",
     "UCY_TO_METRES",
+    "Degradation",
+    "DegradedTracks",
     "Forecast",
     "McapError",
     "McapOpcode",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import types
 import typing
 from collections.abc import Mapping
@@ -10,7 +11,7 @@ from typing import Any
 
 from crowdbot import calibration, models, prediction
 from crowdbot.core import InputError, Parameter, builtin_classes, did_you_mean, parameters, required_fields
-from crowdbot.data import FORMATS, PROTOCOLS, TIME_BASES, degrade
+from crowdbot.data import FORMATS, PROTOCOLS, TIME_BASES, Degradation
 
 __all__ = ["builtin_kinds", "form_rows", "scheme_tables", "written_values"]
 
@@ -41,10 +42,10 @@ def builtin_kinds(kind: str) -> dict[str, type]:
         "costs": (calibration, calibration.Cost),
         "searches": (calibration, calibration.Search),
         "predictors": (prediction, prediction.Predictor),
-        "degradations": (degrade, degrade.Degradation),
+        "degradations": (importlib.import_module("crowdbot.data.degrade"), Degradation),
     }
     found = builtin_classes(*rooms[kind])
-    late = {name for name, one in found.items() if kind == "goals" and (one.knows_future or one.learns)}  # type: ignore[attr-defined]
+    late = {name for name, one in found.items() if kind == "goals" and (one.knows_future or one.learns)}
     return {name: one for name, one in found.items() if name in late or not required_fields(one)}
 
 

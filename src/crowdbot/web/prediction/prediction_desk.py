@@ -18,7 +18,7 @@ from .form_rows import scheme_tables
 from .prediction_board import CLEAN, DEGRADED, BoardMember, PredictionBoard
 from .prediction_results import clean_json
 from .prediction_run import PredictionRun
-from .prediction_setup import DegradationChoice
+from .prediction_setup import DegradationChoice, PredictionSetup
 from .result_tables import frame_table, horizon_rows, person_table, score_table, variable_names, variable_rows
 from .scene_frame import window_frame
 
@@ -66,11 +66,8 @@ class PredictionDesk(Desk):
         space = self.session.workspace
         names = [one for one in space.files() if not one.startswith(("sessions/", "examples/"))]
         facts = [(space.folder / name).stat() for name in names]
-        rows = [
-            {"name": name, "bytes": one.st_size, "changed": one.st_mtime}
-            for name, one in zip(names, facts, strict=True)
-        ]
-        rows.sort(key=lambda row: -row["changed"])
+        newest = sorted(zip(names, facts, strict=True), key=lambda pair: -pair[1].st_mtime)
+        rows = [{"name": name, "bytes": one.st_size, "changed": one.st_mtime} for name, one in newest]
         return {"files": rows[:RECENT], "examples": [{"name": n, "about": a} for n, a in EXAMPLES.items()]}
 
     @command
@@ -251,8 +248,9 @@ class PredictionDesk(Desk):
         return Resource(data, "image/gif", f"frame-{frame}.gif")
 
     @property
-    def _setup(self) -> Any:
+    def _setup(self) -> PredictionSetup:
         _ = self.board.recording
+        assert self.board.setup is not None
         return self.board.setup
 
     def _members(self) -> list[BoardMember]:

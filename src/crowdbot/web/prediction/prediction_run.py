@@ -97,7 +97,9 @@ class PredictionRun:
             for part in content:
                 found.add(part)
             name = "clean" if self.task.degradation is None else "degraded"
-            self._tell("lines", {"key": key, "input": name, "lines": [line for part in content for line in found.lines(part)]})
+            self._tell(
+                "lines", {"key": key, "input": name, "lines": [line for part in content for line in found.lines(part)]}
+            )
         elif kind == "score":
             found.finish(content)
             self._done += 1

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, from_attributes
-from crowdbot.data import Recording
-from crowdbot.data.degrade import Degradation
+from crowdbot.data import Degradation, Recording
 
 from .form_rows import builtin_kinds, written_values
 from .predictor_choice import PredictorChoice

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from crowdbot.benchmark import FrameResults, WindowResults, predict_windows
 from crowdbot.calibration import RecordingCalibration
 from crowdbot.core import CrowdbotError, InputError, stream
-from crowdbot.data import Recording, Windows
-from crowdbot.data.degrade import Degradation, DegradedTracks
+from crowdbot.data import Degradation, DegradedTracks, Recording, Windows
 from crowdbot.metrics import PersonErrors, Score
 from crowdbot.prediction import PredictorSpec, Simulated, degraded_windows
 
