@@ -1,5 +1,7 @@
 // The tabs, in the order of the page; crowdbot.web.tabs has the desks behind them.
+import { editor } from "./editor/tab.mjs";
+import { experiments } from "./experiments/tab.mjs";
 import { prediction } from "./prediction/tab.mjs";
 import { simulator } from "./simulator/tab.mjs";
 
-export const tabs = [simulator, prediction];
+export const tabs = [simulator, prediction, editor, experiments];

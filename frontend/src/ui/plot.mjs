@@ -53,7 +53,7 @@ export function makePlot(element, { title, x, series, height = HEIGHT, points = 
       stroke: themeColour("--ink"),
       grid: { stroke: themeColour("--line"), width: 0.5 },
       ticks: { stroke: themeColour("--line"), width: 0.5 },
-      size: 42,
+      size: 54,
     });
     const units = [...new Set(series.map((one) => one.unit ?? ""))].filter(Boolean);
     plot = new uPlot(

@@ -1,6 +1,7 @@
 """Human bodies: walking animation, capsules for contacts and range sensors, skins for cameras."""
 
 from .activities import ACTIVITIES
+from .asset import LEVELS, shapes
 from .body_pose import BodyPose
 from .body_reach import reach_poses
 from .effective_mass import limb_chain, striking_mass
@@ -14,11 +15,12 @@ from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
 from .seat import CHAIR, WHEELCHAIR, Seat
 from .uneven import ankle_positions, stand_on_ground
-from .wardrobe import Outfit, outfit
+from .wardrobe import Outfit, outfit, region_colors, worn_parts
 
 __all__ = [
     "ACTIVITIES",
     "CHAIR",
+    "LEVELS",
     "LIMBS",
     "REGIONS",
     "WHEELCHAIR",
@@ -45,6 +47,9 @@ __all__ = [
     "posing_and_skinning",
     "reach_poses",
     "read_pose_file",
+    "region_colors",
+    "shapes",
     "stand_on_ground",
     "striking_mass",
+    "worn_parts",
 ]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from .desk import Desk
+from .editor import EditorDesk
+from .experiments import ExperimentDesk
 from .prediction import PredictionDesk
 
 __all__ = ["DESKS"]
 
-DESKS: tuple[type[Desk], ...] = (PredictionDesk,)
+DESKS: tuple[type[Desk], ...] = (PredictionDesk, EditorDesk, ExperimentDesk)

@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from .robots.wheel import Wheel
     from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
     from .urdf import RobotModel, describe, read_urdf
+    from .urdf.link_surface import LinkSurface, link_surface
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
     from .world_batch import worlds_of
@@ -110,6 +111,7 @@ _LAZY = {
     "LeggedDrive": "robots.drives.legged",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
+    "LinkSurface": "urdf.link_surface",
     "MecanumDrive": "robots.drives.mecanum",
     "MountPlacement": "robots.mount",
     "OmniWheelDrive": "robots.drives.omni_wheels",
@@ -167,6 +169,7 @@ _LAZY = {
     "integrate_twist": "robots.drives.drive",
     "join_worlds": "environments",
     "joint_states": "robots.wheel_encoders",
+    "link_surface": "urdf.link_surface",
     "move_agent": "live_changes",
     "move_joint": "robots.joint_motion",
     "people_by_reaction": "reactions.robot_reactions",
@@ -222,6 +225,7 @@ __all__ = [
     "LeggedDrive",
     "LightSource",
     "LimbCapsules",
+    "LinkSurface",
     "MecanumDrive",
     "MountPlacement",
     "OmniWheelDrive",
@@ -278,6 +282,7 @@ __all__ = [
     "integrate_twist",
     "join_worlds",
     "joint_states",
+    "link_surface",
     "move_agent",
     "move_joint",
     "people_by_reaction",

@@ -1,0 +1,153 @@
+// People, robots and overlays of a scene seen from above.
+import { trace } from "./plan.mjs";
+
+const FORCE = 0.004;
+
+/** Shoulders and head in the colours of clothes and hair, on the disc of the person; a line is the velocity. */
+export function drawPeople(context, state, look, pixel, mark, numbers) {
+  const { who, ids, place } = state.frame.arrays;
+  const { people, regions } = state.description;
+  const [top, hair] = [regions.indexOf("top"), regions.indexOf("hair")];
+  for (let i = 0; i < state.people; i++) {
+    const [x, y, heading, vx, vy] = place.subarray(5 * i, 5 * i + 5);
+    const radius = people.radius[who[i]];
+    const colors = people.colors[who[i]];
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fillStyle = look.ink;
+    context.globalAlpha = 0.1;
+    context.fill();
+    context.globalAlpha = 1;
+    context.strokeStyle = look.wallTop;
+    context.lineWidth = pixel;
+    context.stroke();
+    context.save();
+    context.translate(x, y);
+    context.rotate(heading);
+    context.fillStyle = `#${colors.slice(6 * top, 6 * top + 6)}`;
+    context.strokeStyle = look.ink;
+    context.beginPath();
+    context.ellipse(0, 0, 0.55 * radius, 0.95 * radius, 0, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
+    context.fillStyle = `#${colors.slice(6 * hair, 6 * hair + 6)}`;
+    context.beginPath();
+    context.arc(0.08 * radius, 0, 0.42 * radius, 0, 2 * Math.PI);
+    context.fill();
+    context.restore();
+    line(context, x, y, x + 0.6 * vx, y + 0.6 * vy, look.ink, 1.5 * pixel);
+    if (mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
+    if (numbers) write(context, String(ids[i]), x, y + radius + 4 * pixel, look.ink, pixel);
+  }
+}
+
+/** Footprint with an arrow ahead, and the name. */
+export function drawRobots(context, state, look, pixel, mark) {
+  const { bots, botplace } = state.frame.arrays;
+  bots.forEach((row, k) => {
+    const robot = state.description.robots[row];
+    const [x, y, heading] = botplace.subarray(5 * k, 5 * k + 5);
+    context.save();
+    context.translate(x, y);
+    context.rotate(heading);
+    context.globalAlpha = robot.ghost ? 0.4 : 1;
+    trace(context, robot.footprint);
+    context.fillStyle = look.robotGoal;
+    context.strokeStyle = look.ink;
+    context.lineWidth = 1.5 * pixel;
+    context.fill();
+    context.stroke();
+    const size = 0.55 * robot.radius;
+    trace(context, [[size, 0], [-0.5 * size, 0.7 * size], [-0.5 * size, -0.7 * size]]);
+    context.fillStyle = look.floor;
+    context.fill();
+    context.restore();
+    write(context, robot.name, x, y + robot.radius + 6 * pixel, look.ink, pixel);
+    if (mark?.kind === "robot" && mark.id === robot.id) ring(context, x, y, robot.radius + 0.14, look.mark, 3 * pixel);
+  });
+}
+
+/** Overlays by name of the layer; those under people are drawn first. */
+export const OVERLAYS = [
+  { name: "ranges", under: true, draw: drawCones },
+  { name: "goals", under: true, draw: drawGoals },
+  { name: "scans", under: false, draw: (...all) => drawScans("scan", 3, ...all) },
+  { name: "clouds", under: false, draw: (...all) => drawScans("cloud", 1.5, ...all) },
+  { name: "forces", under: false, draw: drawForces },
+];
+
+function drawScans(kind, size, context, state, look, pixel) {
+  context.fillStyle = look[kind];
+  const side = size * pixel;
+  for (const { points } of state.scans(kind)) {
+    for (let k = 0; k < points.length; k += 3) context.fillRect(points[k] - 0.5 * side, points[k + 1] - 0.5 * side, side, side);
+  }
+}
+
+function drawCones(context, state, look) {
+  const cones = state.frame.arrays.cones ?? [];
+  const sensors = state.description.sensors.filter((one) => one.kind === "cone");
+  context.fillStyle = look.cone;
+  context.globalAlpha = 0.3;
+  for (let k = 0; k < cones.length / 9; k++) {
+    const [x, y, , w, a, b, c, reach] = cones.subarray(9 * k, 9 * k + 9);
+    const yaw = Math.atan2(2 * (w * c + a * b), 1 - 2 * (b * b + c * c));
+    const half = sensors[k]?.angle ?? 0.2;
+    context.beginPath();
+    context.moveTo(x, y);
+    context.arc(x, y, reach, yaw - half, yaw + half);
+    context.closePath();
+    context.fill();
+  }
+  context.globalAlpha = 1;
+}
+
+function drawGoals(context, state, look, pixel) {
+  const { goals, place } = state.frame.arrays;
+  if (!goals) return;
+  context.globalAlpha = 0.5;
+  context.setLineDash([6 * pixel, 5 * pixel]);
+  for (let i = 0; i < state.people; i++) {
+    if (Number.isFinite(goals[2 * i])) line(context, place[5 * i], place[5 * i + 1], goals[2 * i], goals[2 * i + 1], look.goal, 1.5 * pixel);
+  }
+  context.setLineDash([]);
+  context.globalAlpha = 1;
+}
+
+function drawForces(context, state, look, pixel) {
+  const rows = state.frame.arrays.forces ?? [];
+  for (let k = 0; k < rows.length / 6; k++) {
+    const [x, y, , fx, fy] = rows.subarray(6 * k, 6 * k + 6);
+    line(context, x, y, x + FORCE * fx, y + FORCE * fy, look.force, 3 * pixel);
+    ring(context, x, y, 0.05, look.force, 2 * pixel);
+  }
+}
+
+function line(context, x0, y0, x1, y1, color, width) {
+  context.beginPath();
+  context.moveTo(x0, y0);
+  context.lineTo(x1, y1);
+  context.strokeStyle = color;
+  context.lineWidth = width;
+  context.stroke();
+}
+
+function ring(context, x, y, radius, color, width) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.strokeStyle = color;
+  context.lineWidth = width;
+  context.stroke();
+}
+
+function write(context, text, x, y, color, pixel) {
+  context.save();
+  const { a, b, e, f, c, d } = context.getTransform();
+  const scale = Math.hypot(a, b) * pixel;
+  context.setTransform(scale, 0, 0, scale, a * x + c * y + e, b * x + d * y + f);
+  context.font = "12px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.fillStyle = color;
+  context.fillText(text, 0, 0);
+  context.restore();
+}

@@ -1,0 +1,294 @@
+// Scene3D: a scene in space. Frames are applied as they come; render() draws the newest.
+import * as THREE from "three";
+import { decodeFrame } from "../net/state_frame.mjs";
+import { LOOKS, OWN_LAYERS } from "../scene/look.mjs";
+import { SceneState } from "../scene/scene_state.mjs";
+import { Crowd, LEVELS } from "./crowd.mjs";
+import { overlays } from "./overlays.mjs";
+import { Robots } from "./robots.mjs";
+import { Stage } from "./stage.mjs";
+import { Views } from "./views.mjs";
+
+const SUN = new THREE.Vector3(-0.42, -0.55, 1);
+const SHADED = 22;
+const SHADOW_PIXELS = 2048;
+
+export class Scene3D {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {(path: string, query?: object) => string} resource address of a mesh, such as "bodies/1.bin"
+   */
+  constructor(canvas, resource) {
+    this.canvas = canvas;
+    this.state = new SceneState();
+    this._resource = resource;
+    this._renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this._renderer.shadowMap.enabled = true;
+    this._renderer.shadowMap.type = THREE.PCFShadowMap;
+    this._renderer.info.autoReset = false;
+    this._scene = new THREE.Scene();
+    this._views = new Views(canvas);
+    this._layers = new Map(OWN_LAYERS.map((one) => [one.name, { ...one }]));
+    this._marked = new Map();
+    this._frames = 0;
+    this._theme = "light";
+    this._build();
+    this.setTheme(this._theme);
+  }
+
+  /** Loads what stands still: meshes, walls, robots. Keeps the camera if the scene has the same bounds. */
+  async load(description) {
+    const bodies = this._bodies ?? Promise.all([...Array(LEVELS).keys()].map((level) => this._fetch(`bodies/${level}.bin`)));
+    this._bodies = bodies;
+    const meshes = new Map();
+    const robots = description.robots.map(async (one) => {
+      meshes.set(one.key, await this._fetch(one.mesh, { key: one.key }));
+    });
+    const [levels] = await Promise.all([bodies, ...robots]);
+    if (!this._crowd) {
+      this._crowd = new Crowd(levels);
+      this._scene.add(this._crowd.group);
+    }
+    const moved = JSON.stringify(this.state.description?.bounds) !== JSON.stringify(description.bounds);
+    this.state.describe(description, levels[LEVELS - 1]);
+    this._crowd.dress(description.people, description.regions.length);
+    this._robots.build(description.robots, meshes);
+    this._stage.build(description, this._look);
+    for (const { name, title } of description.layers) {
+      if (!this._layers.has(name)) this._layers.set(name, { name, title, visible: name === "scans" });
+    }
+    this._showLayers();
+    this._resize();
+    if (moved) this._views.overview(description);
+  }
+
+  /** Takes a frame of the channel "scene"; false if the description must be loaded again first. */
+  apply(frame) {
+    if (!this.state.apply(frame)) return false;
+    this._crowd.update(this.state, new Set(this._marks("person")), this._markColor, this._look.shade);
+    this._robots.update(this.state, this._views.inside(this.state.description));
+    this._stage.update(frame.arrays);
+    for (const [name, one] of Object.entries(this._overlays)) {
+      if (one.object.visible) one.update(this.state, this._look, name);
+    }
+    return true;
+  }
+
+  layers() {
+    return [...this._layers.values()].map((one) => ({ ...one }));
+  }
+
+  /** Names of the visible layers that a frame must be asked for. */
+  wanted() {
+    const own = new Set(OWN_LAYERS.map((one) => one.name));
+    return this.layers().filter((one) => one.visible && !own.has(one.name)).map((one) => one.name);
+  }
+
+  setLayer(name, visible) {
+    if (!this._layers.has(name)) throw new Error(`the scene has no layer ${name}`);
+    this._layers.get(name).visible = visible;
+    this._showLayers();
+  }
+
+  cameras() {
+    return this.state.description ? this._views.list(this.state.description) : [];
+  }
+
+  get camera() {
+    return this._views.name;
+  }
+
+  /** Chooses a camera by its name; target {kind, id} is whom "follow" follows. */
+  setCamera(name, target = null) {
+    this._views.choose(name, this.state.description, target);
+    this._stage.full = name === "follow" || name.startsWith("robot:");
+    if (this.state.frame) this._robots.update(this.state, this._views.inside(this.state.description));
+  }
+
+  /** Shows everything with the free camera. */
+  reset() {
+    this.setCamera("free");
+    this._views.overview(this.state.description);
+  }
+
+  /** Person or robot at a point of the canvas [CSS pixels], or null. */
+  pick(x, y) {
+    if (!this.state.frame) return null;
+    const { clientWidth, clientHeight } = this.canvas;
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this._views.camera);
+    let best = null;
+    for (const one of this._targets()) {
+      const from = new THREE.Vector3(one.x, one.y, one.z);
+      const to = new THREE.Vector3(one.x, one.y, one.z + one.height);
+      const hit = new THREE.Vector3();
+      if (ray.ray.distanceSqToSegment(from, to, hit) > one.radius ** 2) continue;
+      const away = hit.distanceTo(ray.ray.origin);
+      if (!best || away < best.away) best = { kind: one.kind, id: one.id, away };
+    }
+    return best && { kind: best.kind, id: best.id };
+  }
+
+  /** Point x, y [m] of the floor at a point of the canvas [CSS pixels], or null. */
+  floor(x, y) {
+    const { clientWidth, clientHeight } = this.canvas;
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this._views.camera);
+    const hit = ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
+    return hit && { x: hit.x, y: hit.y };
+  }
+
+  /** Marks one person or robot, which the follow camera then follows; kind null marks nobody. */
+  highlight(kind, id) {
+    this._marked = new Map(kind === null || kind === undefined ? [] : [[`${kind} ${id}`, { kind, id }]]);
+    this._views.target = this._marked.size ? { kind, id } : null;
+    if (this.state.frame) this.apply(this.state.frame);
+  }
+
+  setTheme(name) {
+    this._theme = name === "dark" ? "dark" : "light";
+    this._look = LOOKS[this._theme];
+    this._markColor = new THREE.Color(this._look.mark);
+    this._scene.background = new THREE.Color(this._look.sky);
+    this._scene.fog = new THREE.Fog(this._look.sky, 45, 170);
+    this._sun.intensity = this._look.sun;
+    this._dome.intensity = this._look.dome;
+    this._ring.material.color.set(this._look.mark);
+    if (!this.state.description) return;
+    this._stage.build(this.state.description, this._look);
+    this._showLayers();
+    if (this.state.frame) this.apply(this.state.frame);
+  }
+
+  /** Numbers of the last picture, for tests and for a text beside the canvas. */
+  info() {
+    const { render, memory } = this._renderer.info;
+    const { position } = this._views.camera;
+    return {
+      people: this.state.people,
+      robots: this.state.frame ? this.state.frame.arrays.bots.length : 0,
+      levels: this._crowd ? [...this._crowd.counts] : [0, 0, 0],
+      time: this.state.time,
+      sequence: this.state.frame ? this.state.frame.sequence : 0,
+      calls: render.calls,
+      triangles: render.triangles,
+      geometries: memory.geometries,
+      textures: memory.textures,
+      frames: this._frames,
+      milliseconds: this._spent,
+      camera: this._views.name,
+      eye: [position.x, position.y, position.z],
+      theme: this._theme,
+    };
+  }
+
+  render() {
+    const begin = performance.now();
+    this._resize();
+    this._views.update(this.state);
+    this._crowd?.choose(this._views.camera, this._renderer.domElement.height);
+    this._light();
+    this._mark();
+    this._renderer.info.reset();
+    this._renderer.render(this._scene, this._views.camera);
+    this._frames += 1;
+    this._spent = performance.now() - begin;
+  }
+
+  dispose() {
+    this._views.dispose();
+    this._crowd?.dispose();
+    this._robots.dispose();
+    this._stage.dispose();
+    this._renderer.dispose();
+  }
+
+  _build() {
+    this._sun = new THREE.DirectionalLight("#fff8ef", 2);
+    this._sun.castShadow = true;
+    this._sun.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
+    this._sun.shadow.bias = -0.0006;
+    this._sun.shadow.normalBias = 0.03;
+    this._sun.shadow.radius = 4;
+    this._dome = new THREE.HemisphereLight("#f6f9ff", "#b9bcc0", 1.4);
+    this._stage = new Stage();
+    this._robots = new Robots();
+    this._overlays = overlays();
+    this._ring = new THREE.Mesh(new THREE.RingGeometry(0.85, 1, 56), new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95 }));
+    this._ring.visible = false;
+    this._scene.add(this._sun, this._sun.target, this._dome, this._stage.group, this._robots.group, this._ring);
+    for (const one of Object.values(this._overlays)) this._scene.add(one.object);
+  }
+
+  async _fetch(path, query) {
+    const response = await fetch(this._resource(path, query));
+    if (!response.ok) throw new Error(`${path}: ${(await response.text()).trim()}`);
+    return decodeFrame(await response.arrayBuffer());
+  }
+
+  _marks(kind) {
+    return [...this._marked.values()].filter((one) => one.kind === kind).map((one) => one.id);
+  }
+
+  _mark() {
+    const [one] = this._marked.values();
+    const place = one && this.state.place(one.kind, one.id);
+    this._ring.visible = Boolean(place);
+    if (!place) return;
+    const radius = one.kind === "robot" ? this.state.description.robots.find((bot) => bot.id === one.id).radius + 0.12 : 0.42;
+    this._ring.position.set(place[0], place[1], 0.02);
+    this._ring.scale.setScalar(radius);
+  }
+
+  _targets() {
+    const { ids, pelvis, bots, botplace } = this.state.frame.arrays;
+    const people = Array.from(ids, (id, i) => ({
+      kind: "person", id, x: pelvis[3 * i], y: pelvis[3 * i + 1], z: pelvis[3 * i + 2] - 0.9, height: this.state.height("person", id), radius: 0.3,
+    }));
+    const robots = Array.from(bots, (row, k) => {
+      const { id, radius, height } = this.state.description.robots[row];
+      return { kind: "robot", id, x: botplace[5 * k], y: botplace[5 * k + 1], z: 0, height, radius };
+    });
+    return [...robots, ...people];
+  }
+
+  _showLayers() {
+    const shown = (name) => this._layers.get(name)?.visible ?? false;
+    for (const name of ["walls", "props", "zones"]) this._stage.parts[name].visible = shown(name);
+    this._stage.grid = shown("grid");
+    this._robots.group.visible = shown("robots");
+    for (const [name, one] of Object.entries(this._overlays)) one.object.visible = shown(name);
+    if (this._crowd) {
+      this._crowd.group.visible = shown("people");
+      this._crowd.shadows = shown("shadows");
+    }
+    this._stage.shadows = this._robots.shadows = this._sun.castShadow = shown("shadows");
+  }
+
+  _light() {
+    const middle = this._views.controls.target;
+    const eye = this._views.camera.position;
+    const reach = Math.min(SHADED, Math.max(7, 0.75 * eye.distanceTo(middle)));
+    const around = this._views.name.startsWith("robot:") ? eye : middle;
+    const shadow = this._sun.shadow.camera;
+    shadow.left = shadow.bottom = -reach;
+    shadow.right = shadow.top = reach;
+    shadow.near = 1;
+    shadow.far = 4 * SHADED;
+    shadow.updateProjectionMatrix();
+    const step = (2 * reach) / SHADOW_PIXELS;
+    this._sun.target.position.set(step * Math.round(around.x / step), step * Math.round(around.y / step), 0);
+    this._sun.position.copy(this._sun.target.position).addScaledVector(SUN.clone().normalize(), 2 * SHADED);
+  }
+
+  _resize() {
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height || (width === this._width && height === this._height && ratio === this._ratio)) return;
+    Object.assign(this, { _width: width, _height: height, _ratio: ratio });
+    this._renderer.setPixelRatio(ratio);
+    this._renderer.setSize(width, height, false);
+    this._views.camera.aspect = width / height;
+    this._views.camera.updateProjectionMatrix();
+  }
+}

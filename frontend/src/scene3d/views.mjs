@@ -1,0 +1,143 @@
+// Views: the cameras of a scene: free, overview, follow, and from a robot.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+const FIELD = 45;
+const WIDE = 75;
+
+export class Views {
+  constructor(canvas) {
+    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.1, 500);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.maxPolarAngle = 0.495 * Math.PI;
+    this.controls.minDistance = 0.6;
+    this.controls.maxDistance = 250;
+    this.controls.zoomToCursor = true;
+    this.name = "free";
+    this._target = null;
+    this._yaw = 0;
+    canvas.addEventListener("keydown", (event) => this._key(event));
+  }
+
+  /** Cameras of a description. */
+  list(description) {
+    return [
+      { name: "free", title: "Free" },
+      { name: "overview", title: "Overview" },
+      { name: "follow", title: "Follow" },
+      ...description.robots.map((one) => ({ name: `robot:${one.name}`, title: `From ${one.name}` })),
+    ];
+  }
+
+  /** Chooses a camera; target {kind, id} is whom it follows. */
+  choose(name, description, target) {
+    this.name = name;
+    this._target = target ?? this._target;
+    this.controls.enabled = !name.startsWith("robot:");
+    this.camera.fov = name.startsWith("robot:") ? WIDE : FIELD;
+    this.camera.updateProjectionMatrix();
+    if (name === "overview") this.overview(description, true);
+    if (name === "follow") this._start = true;
+  }
+
+  set target(target) {
+    this._target = target;
+  }
+
+  /** Whom the follow camera follows: the chosen one, or the first robot, or the first person. */
+  followed(state) {
+    if (this._target && state.place(this._target.kind, this._target.id)) return this._target;
+    const { bots, ids } = state.frame.arrays;
+    if (bots.length) return { kind: "robot", id: state.description.robots[bots[0]].id };
+    return ids.length ? { kind: "person", id: ids[0] } : null;
+  }
+
+  /** Id of the robot from which this camera looks, or null. */
+  inside(description) {
+    if (!this.name.startsWith("robot:")) return null;
+    return description.robots.find((one) => `robot:${one.name}` === this.name)?.id ?? null;
+  }
+
+  /** Shows all of a description, from above or from the side. */
+  overview({ bounds: [x0, y0, x1, y1] }, above = false) {
+    const middle = new THREE.Vector3(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.6);
+    const pitch = above ? 1.05 : 0.62;
+    const yaw = x1 - x0 >= y1 - y0 ? -0.5 * Math.PI : Math.PI;
+    const turn = above ? yaw : yaw + 0.35;
+    const way = new THREE.Vector3(Math.cos(turn) * Math.cos(pitch), Math.sin(turn) * Math.cos(pitch), Math.sin(pitch));
+    const corners = [];
+    for (const x of [x0, x1]) for (const y of [y0, y1]) for (const z of [0, 1.8]) corners.push(new THREE.Vector3(x, y, z));
+    let [near, far] = [1, 400];
+    for (let k = 0; k < 24; k++) {
+      const away = 0.5 * (near + far);
+      this._look(middle, way, away);
+      if (corners.every((one) => this._sees(one))) far = away;
+      else near = away;
+    }
+    this._look(middle, way, above ? far : Math.min(far, 22));
+    this.controls.target.copy(middle);
+    this.controls.update();
+  }
+
+  /** Moves the camera before a picture. */
+  update(state) {
+    if (!state.frame) return;
+    if (this.name === "follow") this._follow(state);
+    else if (this.name.startsWith("robot:")) this._ride(state);
+    else this.controls.update();
+  }
+
+  dispose() {
+    this.controls.dispose();
+  }
+
+  _look(middle, way, away) {
+    this.camera.position.copy(middle).addScaledVector(way, away);
+    this.camera.lookAt(middle);
+    this.camera.updateMatrixWorld();
+    this.camera.matrixWorldInverse.copy(this.camera.matrixWorld).invert();
+  }
+
+  _sees(point) {
+    const at = point.clone().project(this.camera);
+    return Math.abs(at.x) < 0.97 && Math.abs(at.y) < 0.95 && at.z < 1;
+  }
+
+  _follow(state) {
+    const target = this.followed(state);
+    if (!target) return;
+    const [x, y, heading] = state.place(target.kind, target.id);
+    const goal = new THREE.Vector3(x, y, 0.75 * state.height(target.kind, target.id));
+    if (this._start) {
+      this.camera.position.set(x - 4.2 * Math.cos(heading - 0.4), y - 4.2 * Math.sin(heading - 0.4), 2.9);
+      this._start = false;
+    } else {
+      this.camera.position.add(goal.clone().sub(this.controls.target));
+    }
+    this.controls.target.copy(goal);
+    this.controls.update();
+  }
+
+  _ride(state) {
+    const id = this.inside(state.description);
+    const place = id === null ? null : state.place("robot", id);
+    if (!place) return;
+    const [x, y, heading] = place;
+    const height = Math.max(0.6, state.height("robot", id));
+    this.camera.position.set(x, y, height);
+    this.camera.lookAt(x + Math.cos(heading), y + Math.sin(heading), height - 0.12);
+  }
+
+  _key(event) {
+    const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!step || !event.shiftKey || !this.controls.enabled) return;
+    event.preventDefault();
+    const away = this.camera.position.clone().sub(this.controls.target);
+    const round = new THREE.Spherical().setFromCartesianCoords(away.x, away.z, -away.y);
+    round.theta += 0.12 * step[0];
+    round.phi = Math.min(this.controls.maxPolarAngle, Math.max(0.05, round.phi + 0.12 * step[1]));
+    const turned = new THREE.Vector3().setFromSpherical(round);
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(turned.x, -turned.z, turned.y));
+  }
+}

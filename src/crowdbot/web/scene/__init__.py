@@ -1,0 +1,7 @@
+"""The picture of a running simulation: what stands still, frames of what moves, and meshes."""
+
+from .description import scene_description
+from .frame import LAYERS, scene_frame
+from .meshes import scene_resource
+
+__all__ = ["LAYERS", "scene_description", "scene_frame", "scene_resource"]
