@@ -11,11 +11,12 @@ from .desk import Desk
 from .editor import EditorDesk
 from .evaluation import EvaluationDesk
 from .experiments import ExperimentDesk
+from .prediction import PredictionDesk
 from .simulator import SimulatorDesk
 
 __all__ = ["DESKS", "opened_first"]
 
-DESKS: tuple[type[Desk], ...] = (SimulatorDesk, EditorDesk, EvaluationDesk, ExperimentDesk)
+DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk)
 
 
 def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[Desk], ...], tuple[Path, ...]]:
