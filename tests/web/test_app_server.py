@@ -255,3 +255,26 @@ def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path, monkeypatch
 
     assert serve(tmp_path, talk) == (200, 413)
     assert [one.name for one in (tmp_path / "files").iterdir()] == ["large.csv"]
+
+
+def test_a_server_for_other_machines_takes_no_code(tmp_path):
+    async def main():
+        server = AppServer((Counter,), tmp_path / "files", "0.0.0.0", 0, AccessPolicy("0.0.0.0", "secret"))
+        async with server.running(), aiohttp.ClientSession() as client:
+            url = server.url.replace("0.0.0.0", "127.0.0.1").replace("/?", "/api/main/upload?name=mine.py&")
+            async with client.post(url, data=b"import os") as answer:
+                return answer.status, await answer.text()
+
+    status, text = asyncio.run(main())
+    assert (status, text) == (403, "'mine.py' is code; a server for other machines takes data only\n")
+    assert not (tmp_path / "files" / "mine.py").exists()
+
+
+def test_the_server_stops_while_a_command_runs(tmp_path):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            await socket.send_json({"id": 1, "call": "counter.burst", "args": {"count": 3_000}})
+            return time.monotonic()
+
+    begin = serve(tmp_path, talk)
+    assert time.monotonic() - begin < 30

@@ -17,6 +17,7 @@ from crowdbot.core import CrowdbotError
 from .access import COOKIE, AccessPolicy
 from .app_session import AppSession
 from .desk import Desk
+from .desk_thread import DeskThread
 from .window import Window
 from .workspace import Workspace
 
@@ -42,8 +43,12 @@ UPLOAD = 512 << 20
 """Largest file that a window may send [B]."""
 SESSIONS = 40
 """Sessions at the same time."""
+CLOSING = 5.0
+"""Time for the desks to stop their runs at the end [s]."""
 WINDOWS = 100
 """Windows of all sessions."""
+CODE = frozenset((".py", ".pyc", ".pyd", ".so"))
+"""Files that a server for other machines does not take."""
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}\Z")
 STATIC = {
     "": ("index.html", "text/html"),
@@ -115,8 +120,9 @@ class AppServer:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
             await runner.cleanup()
-            for session in self.sessions.values():
-                await asyncio.get_running_loop().run_in_executor(None, session.close)
+            closing = [asyncio.wrap_future(DeskThread("closing").call(one.close)) for one in self.sessions.values()]
+            if closing:  # a desk that is still busy then ends with the program
+                await asyncio.wait(closing, timeout=CLOSING)
             self.sessions.clear()
 
     def application(self) -> web.Application:
@@ -194,6 +200,8 @@ class AppServer:
     async def _upload(self, request: web.Request) -> web.StreamResponse:
         session, name = self._session(request), Path(request.query.get("name", "")).name
         path = session.workspace.writable(name)
+        if self.access.needs_token and path.suffix.casefold() in CODE:
+            raise web.HTTPForbidden(text=f"{name!r:.80} is code; a server for other machines takes data only")
         draft = path.with_name(f".{name}.part")
         try:
             with draft.open("wb") as file:

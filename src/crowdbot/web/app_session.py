@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Protocol
 
 from crowdbot.core import InputError, did_you_mean
 
 from .command import call_command
 from .desk import Desk, Resource
+from .desk_thread import DeskThread
 from .state_frame import StateFrame
 from .workspace import Workspace
 
@@ -46,7 +46,7 @@ class AppSession:
         self.name, self.workspace, self._loop = name, workspace, loop
         self.windows: set[Viewer] = set()
         self.desks = {desk.name: desk(self) for desk in desks}
-        self._threads = {name: ThreadPoolExecutor(1, f"crowdbot-{name}") for name in self.desks}
+        self._threads = {name: DeskThread(f"crowdbot-{name}") for name in self.desks}
         self._latest: dict[str, StateFrame] = {}
         self._lock = threading.Lock()
 
@@ -64,12 +64,13 @@ class AppSession:
         """Call the command ``desk.command`` in the thread of its desk and return its result."""
         name, _, command = address.partition(".")
         desk = self.desk(name)
-        return await self._loop.run_in_executor(self._threads[name], call_command, desk, command, arguments)
+        return await asyncio.wrap_future(self._threads[name].call(call_command, desk, command, arguments))
 
     async def resource(self, name: str, path: str, query: dict[str, str]) -> Resource:
         """Return a file of a desk; raises KeyError if there is none."""
         desk = self.desk(name)
-        return await self._loop.run_in_executor(self._threads[name], desk.resource, path, query)
+        found: Resource = await asyncio.wrap_future(self._threads[name].call(desk.resource, path, query))
+        return found
 
     def greet(self) -> dict[str, Any]:
         """Return the state of all desks for a new window."""
@@ -110,4 +111,4 @@ class AppSession:
         for desk in self.desks.values():
             desk.close()
         for thread in self._threads.values():
-            thread.shutdown(wait=True, cancel_futures=True)
+            thread.close()
