@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import json
+import threading
 import time
 
 import aiohttp
@@ -11,6 +12,8 @@ import pytest
 
 from crowdbot.core import InputError
 from crowdbot.web import CREDIT, AccessPolicy, AppServer, Desk, Resource, StateFrame, command
+
+HANGS, GOES_ON = threading.Event(), threading.Event()
 
 
 class Counter(Desk):
@@ -42,6 +45,11 @@ class Counter(Desk):
         for number in range(count):
             self.session.show(StateFrame("count", float(number), {"n": np.array([number], dtype=np.int32)}))
             time.sleep(0.001)
+
+    @command
+    def hang(self) -> None:
+        HANGS.set()
+        GOES_ON.wait(60)
 
     @command
     def save(self, name: str, text: str) -> str:
@@ -273,8 +281,12 @@ def test_a_server_for_other_machines_takes_no_code(tmp_path):
 def test_the_server_stops_while_a_command_runs(tmp_path):
     async def talk(server, client):
         async with window(server, client) as (socket, _):
-            await socket.send_json({"id": 1, "call": "counter.burst", "args": {"count": 3_000}})
-            return time.monotonic()
+            await socket.send_json({"id": 1, "call": "counter.hang", "args": {}})
+            await asyncio.get_running_loop().run_in_executor(None, HANGS.wait)
+            return True
 
-    begin = serve(tmp_path, talk)
-    assert time.monotonic() - begin < 30
+    try:
+        assert serve(tmp_path, talk)
+        assert any(one.name == "crowdbot-counter" for one in threading.enumerate())
+    finally:
+        GOES_ON.set()
