@@ -99,6 +99,7 @@ class BridgeRun:
         with contextlib.ExitStack() as stack:
             self.stop = stack.enter_context(catch_interrupt())
             stack.callback(self.port.stop)
+            stack.callback(self._answer_rest)
             self.port.start()
             if self.port.transports:
                 names = ", ".join(one.name for one in self.port.transports)
@@ -110,9 +111,6 @@ class BridgeRun:
                     break
                 number += 1
                 self.trial = steered_trial(following)
-            self.control.finish_restart("the run has ended")
-            for call in self.port.inbox.close():
-                call.answer(result(FAILED, "the run has ended"))
         latency = self.port.inbox.latency.summary()
         if latency.commands:
             self.note(
@@ -204,6 +202,13 @@ class BridgeRun:
             self._back = now
             self.port.report("error", f"the time on /clock went back to {now / 1e9:g} s from {clock.time:g} s")
         return 0.0 if now >= clock.nanoseconds + clock.step_ns else IDLE
+
+    def _answer_rest(self) -> None:
+        """Answer the calls that still wait at the end."""
+        self.control.finish_steps(False)
+        self.control.finish_restart("the run has ended")
+        for call in self.port.inbox.close():
+            call.answer(result(FAILED, "the run has ended"))
 
     def _file(self, number: int) -> Path | None:
         if self.out is None or number == 1:
