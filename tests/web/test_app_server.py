@@ -1,8 +1,8 @@
 """The server: commands, events, state frames with credit, access, files, limits."""
 
 import asyncio
-import io
 import contextlib
+import io
 import json
 import time
 
