@@ -50,6 +50,12 @@ def serve(folder, desks=DESKS, **options):
         assert not thread.is_alive()
 
 
+@pytest.fixture(name="serve")
+def serve_fixture():
+    """Function that runs the app with given desks in a thread."""
+    return serve
+
+
 @pytest.fixture
 def app(tmp_path):
     """The app on a free port, with an empty folder."""

@@ -9,7 +9,7 @@ from .app_session import AppSession, Viewer
 from .command import call_command, command, command_names
 from .desk import Desk, DeskWindows, Resource
 from .state_frame import StateFrame
-from .tabs import DESKS
+from .tabs import DESKS, opened_first
 from .window import CREDIT, Window
 from .workspace import Workspace
 
@@ -30,4 +30,5 @@ __all__ = [
     "command",
     "command_names",
     "is_loopback",
+    "opened_first",
 ]
