@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import io
 import json
 import threading
 import time
@@ -255,10 +256,12 @@ def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path, monkeypatch
     from crowdbot.web import app_server
 
     async def talk(server, client):
-        async with client.post(server.url + "api/main/upload?name=large.csv", data=bytes(5 << 20)) as answer:
+        async with client.post(
+            server.url + "api/main/upload?name=large.csv", data=io.BytesIO(bytes(5 << 20))
+        ) as answer:
             first = answer.status
         monkeypatch.setattr(app_server, "UPLOAD", 1 << 20)
-        async with client.post(server.url + "api/main/upload?name=huge.csv", data=bytes(2 << 20)) as answer:
+        async with client.post(server.url + "api/main/upload?name=huge.csv", data=io.BytesIO(bytes(2 << 20))) as answer:
             return first, answer.status
 
     assert serve(tmp_path, talk) == (200, 413)

@@ -45,7 +45,7 @@ def builtin_kinds(kind: str) -> dict[str, type]:
         "degradations": (importlib.import_module("crowdbot.data.degrade"), Degradation),
     }
     found = builtin_classes(*rooms[kind])
-    late = {name for name, one in found.items() if kind == "goals" and (one.knows_future or one.learns)}
+    late = {name for name, one in found.items() if issubclass(one, models.Goal) and (one.knows_future or one.learns)}
     return {name: one for name, one in found.items() if name in late or not required_fields(one)}
 
 
@@ -60,7 +60,7 @@ def form_rows(cls: type) -> list[Row]:
     table = {row.name: row for row in parameters(cls)}
     hints = typing.get_type_hints(cls)
     rows = []
-    for field in dataclasses.fields(cls):  # type: ignore[arg-type]
+    for field in dataclasses.fields(cls):
         if not field.init or field.default is dataclasses.MISSING:
             continue
         if field.name in table:
