@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,10 @@ SLOWEST = 1e-9
 """Speeds below this [m/s] have no direction."""
 SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
+ATTEMPTS = 20
+"""Passes over the neighbours in which a sliding person looks for a free velocity."""
+LEEWAY = 1e-3
+"""Speed into others [m/s] that ends this search."""
 STANDING = 0.1
 """People slower than this [m/s] do not count as oncoming."""
 
@@ -37,6 +41,7 @@ class HeadwayRows(NamedTuple):
     anticipation: Floats
     oncoming: Floats
     reaction: Floats
+    sliding: Floats
     walking: NDArray[np.bool_]
 
 
@@ -51,7 +56,7 @@ def limit_speeds(crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) ->
 def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) -> None:
     """Limit the speed of the agents ``begin`` to ``end`` in spatial order."""
     # unpack the tuples outside of the loop: each access counts references
-    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, walking = crowd
+    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = crowd
     agent, number, order = near
     A = agent.shape[1]
     for k in range(begin, end):
@@ -83,9 +88,41 @@ def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors,
             now = max(0.0, velocity[row, 0] * ux + velocity[row, 1] * uy)
             free_speed = math.sqrt(wish[row, 0] ** 2 + wish[row, 1] ** 2)
             limit = now + (min(limit, max(free_speed, now)) - now) * -math.expm1(-dt / reaction[row])
+        wanted = min(limit, speed)
         limit = min(limit, way / dt)
         if limit < speed:
             out[row, 0], out[row, 1] = limit * ux, limit * uy
+        if sliding[row] > 0.0 and limit < wanted:
+            sx, sy = _slide(row, a, agent[e, a], number[e, a], place, radius, wanted * ux, wanted * uy, dt)
+            out[row, 0] += sliding[row] * (sx - out[row, 0])
+            out[row, 1] += sliding[row] * (sy - out[row, 1])
+
+
+@kernel
+def _slide(
+    row: int, a: int, agent: Any, number: int, place: Floats, radius: Floats, vx: float, vy: float, dt: float
+) -> tuple[float, float]:
+    """Return the velocity without the part that leads into others; each of two takes half of the way to contact.
+
+    It is 0 if no velocity is found that leads into nobody.
+    """
+    for _ in range(ATTEMPTS):
+        free = True
+        for n in range(number):
+            other = row - a + agent[n]
+            dx, dy = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
+            distance = math.sqrt(dx * dx + dy * dy)
+            if distance == 0.0:
+                continue
+            room = 0.5 * max(distance - radius[row] - radius[other], 0.0) / dt
+            toward = (vx * dx + vy * dy) / distance
+            if toward > room + LEEWAY:
+                free = False
+                vx -= (toward - room) * dx / distance
+                vy -= (toward - room) * dy / distance
+        if free:
+            return vx, vy
+    return 0.0, 0.0
 
 
 @kernel
