@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, kernel, prange
+from crowdbot.core.geometry import nearest_on_segment
 
 __all__ = ["HeadwayRows", "limit_speeds", "limit_speeds_part"]
 
@@ -20,8 +21,8 @@ SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
 ATTEMPTS = 20
 """Passes over the neighbours in which a sliding person looks for a free velocity."""
-LEEWAY = 1e-3
-"""Speed into others [m/s] that ends this search."""
+LEEWAY = 1e-2
+"""Speed away from others [m/s] that each pass adds, so that the search ends."""
 STANDING = 0.1
 """People slower than this [m/s] do not count as oncoming."""
 
@@ -46,19 +47,23 @@ class HeadwayRows(NamedTuple):
 
 
 @kernel(parallel=True)
-def limit_speeds(crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) -> None:
+def limit_speeds(crowd: HeadwayRows, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
     """Limit the speed of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        limit_speeds_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, dt, out)
+        limit_speeds_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
 
 
 @kernel
-def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) -> None:
+def limit_speeds_part(
+    begin: int, end: int, crowd: HeadwayRows, near: Neighbors, walls: Floats, dt: float, out: Floats
+) -> None:
     """Limit the speed of the agents ``begin`` to ``end`` in spatial order."""
     # unpack the tuples outside of the loop: each access counts references
     place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = crowd
     agent, number, order = near
     A = agent.shape[1]
+    wall = np.empty((len(walls), 3))
+    aside = np.empty((agent.shape[2] + len(walls), 3))  # direction of neighbours and walls, and speed towards them
     for k in range(begin, end):
         row = order[k]
         vx, vy = chosen[row, 0], chosen[row, 1]
@@ -89,40 +94,77 @@ def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors,
             free_speed = math.sqrt(wish[row, 0] ** 2 + wish[row, 1] ** 2)
             limit = now + (min(limit, max(free_speed, now)) - now) * -math.expm1(-dt / reaction[row])
         wanted = min(limit, speed)
+        if sliding[row] > 0.0:
+            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], wanted * dt, wall)
+            for n in range(number[e, a]):
+                _aside(place, radius, row, row - a + agent[e, a, n], dt, aside[n])
+            for n in range(count):
+                aside[number[e, a] + n] = wall[n]
+                aside[number[e, a] + n, 2] /= dt
+            sx, sy = _slide(aside[: number[e, a] + count], wanted * ux, wanted * uy, sliding[row])
+            out[row, 0], out[row, 1] = sx, sy
+            continue
         limit = min(limit, way / dt)
         if limit < speed:
             out[row, 0], out[row, 1] = limit * ux, limit * uy
-        if sliding[row] > 0.0 and limit < wanted:
-            sx, sy = _slide(row, a, agent[e, a], number[e, a], place, radius, wanted * ux, wanted * uy, dt)
-            out[row, 0] += sliding[row] * (sx - out[row, 0])
-            out[row, 1] += sliding[row] * (sy - out[row, 1])
 
 
 @kernel
-def _slide(
-    row: int, a: int, agent: Any, number: int, place: Floats, radius: Floats, vx: float, vy: float, dt: float
-) -> tuple[float, float]:
-    """Return the velocity without the part that leads into others; each of two takes half of the way to contact.
+def _near_walls(walls: Floats, x: float, y: float, radius: float, way: float, found: Floats) -> int:
+    """Write direction and free distance of the walls in reach of a way [m] to ``found [K, 3]``; return their number."""
+    count = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
+    for m in range(len(walls)):
+        nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
+        dx, dy = nx - x, ny - y
+        distance = math.sqrt(dx * dx + dy * dy)
+        if 0.0 < distance <= radius + way:
+            found[count, 0], found[count, 1] = dx / distance, dy / distance
+            found[count, 2] = max(distance - radius, 0.0)
+            count += 1
+    return count
 
-    It is 0 if no velocity is found that leads into nobody.
+
+@kernel
+def _aside(place: Floats, radius: Floats, row: int, other: int, dt: float, found: Floats) -> None:
+    """Write the direction to another person, and the largest speed towards them: half of the gap in a step."""
+    dx, dy = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance > 0.0:
+        found[0], found[1] = dx / distance, dy / distance
+        found[2] = 0.5 * max(distance - radius[row] - radius[other], 0.0) / dt
+    else:
+        found[0], found[1], found[2] = 0.0, 0.0, 0.0
+
+
+@kernel
+def _slide(aside: Floats, vx: float, vy: float, share: float) -> tuple[float, float]:
+    """Return a velocity within the largest speeds towards others and walls: a shorter one, and one alongside them.
+
+    The second is found by repeated projection, and is 0 if none is found.
     """
-    for _ in range(ATTEMPTS):
+    scale = 1.0
+    for n in range(len(aside)):
+        toward = vx * aside[n, 0] + vy * aside[n, 1]
+        if toward > aside[n, 2]:
+            scale = min(scale, aside[n, 2] / toward)
+    if scale == 1.0:
+        return vx, vy
+    sx, sy = vx, vy
+    for attempt in range(ATTEMPTS):
         free = True
-        for n in range(number):
-            other = row - a + agent[n]
-            dx, dy = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
-            distance = math.sqrt(dx * dx + dy * dy)
-            if distance == 0.0:
-                continue
-            room = 0.5 * max(distance - radius[row] - radius[other], 0.0) / dt
-            toward = (vx * dx + vy * dy) / distance
-            if toward > room + LEEWAY:
+        for n in range(len(aside)):
+            toward = sx * aside[n, 0] + sy * aside[n, 1]
+            if toward > aside[n, 2]:
                 free = False
-                vx -= (toward - room) * dx / distance
-                vy -= (toward - room) * dy / distance
+                sx -= (toward - aside[n, 2] + LEEWAY) * aside[n, 0]
+                sy -= (toward - aside[n, 2] + LEEWAY) * aside[n, 1]
         if free:
-            return vx, vy
-    return 0.0, 0.0
+            break
+        if attempt == ATTEMPTS - 1:
+            sx, sy = 0.0, 0.0
+    if sx * vx + sy * vy < 0.0:
+        sx, sy = 0.0, 0.0
+    return (1.0 - share) * scale * vx + share * sx, (1.0 - share) * scale * vy + share * sy
 
 
 @kernel
