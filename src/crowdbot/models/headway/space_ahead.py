@@ -19,6 +19,8 @@ SLOWEST = 1e-9
 """Speeds below this [m/s] have no direction."""
 SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
+SIDESTEP = 0.3
+"""Speed [m/s] with which people who slide step aside when the space ahead stops them."""
 ATTEMPTS = 20
 """Passes over the neighbours in which a sliding person looks for a free velocity."""
 LEEWAY = 1e-2
@@ -59,7 +61,9 @@ def limit_speeds_part(
 ) -> None:
     """Limit the speed of the agents ``begin`` to ``end`` in spatial order."""
     # unpack the tuples outside of the loop: each access counts references
-    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = crowd
+    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = (
+        crowd
+    )
     agent, number, order = near
     A = agent.shape[1]
     wall = np.empty((len(walls), 3))
@@ -73,6 +77,7 @@ def limit_speeds_part(
             continue
         ux, uy = vx / speed, vy / speed
         limit, way = math.inf, math.inf
+        bx, by = 0.0, 0.0  # the person who limits the speed most
         e, a = row // A, row % A
         for n in range(number[e, a]):
             other = row - a + agent[e, a, n]
@@ -88,25 +93,38 @@ def limit_speeds_part(
                 if toward < 0.0:
                     fast = math.sqrt(velocity[other, 0] ** 2 + velocity[other, 1] ** 2)
                     share *= 1.0 - (1.0 - oncoming[row]) * min(1.0, -toward / max(fast, STANDING))
-                limit = min(limit, max(free, 0.0) / (gap[row] * max(share, SMALLEST_SHARE)))
+                bound = max(free, 0.0) / (gap[row] * max(share, SMALLEST_SHARE))
+                if bound < limit:
+                    limit, bx, by = bound, dx, dy
         if limit < math.inf and reaction[row] > 0.0:
             now = max(0.0, velocity[row, 0] * ux + velocity[row, 1] * uy)
             free_speed = math.sqrt(wish[row, 0] ** 2 + wish[row, 1] ** 2)
             limit = now + (min(limit, max(free_speed, now)) - now) * -math.expm1(-dt / reaction[row])
         wanted = min(limit, speed)
         if sliding[row] > 0.0:
-            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], wanted * dt, wall)
+            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], (wanted + SIDESTEP) * dt, wall)
             for n in range(number[e, a]):
                 _aside(place, radius, row, row - a + agent[e, a, n], dt, aside[n])
             for n in range(count):
                 aside[number[e, a] + n] = wall[n]
                 aside[number[e, a] + n, 2] /= dt
-            sx, sy = _slide(aside[: number[e, a] + count], wanted * ux, wanted * uy, sliding[row])
+            wx, wy = _step_aside(ux, uy, bx, by, wanted, sliding[row] * (min(SIDESTEP, speed) - wanted))
+            sx, sy = _slide(aside[: number[e, a] + count], wx, wy, sliding[row])
             out[row, 0], out[row, 1] = sx, sy
             continue
         limit = min(limit, way / dt)
         if limit < speed:
             out[row, 0], out[row, 1] = limit * ux, limit * uy
+
+
+@kernel
+def _step_aside(ux: float, uy: float, bx: float, by: float, wanted: float, step: float) -> tuple[float, float]:
+    """Return the velocity in direction u, and in addition a step past the person at bx, by if it is above 0."""
+    distance = math.sqrt(bx * bx + by * by)
+    if distance == 0.0 or step <= 0.0:
+        return wanted * ux, wanted * uy
+    ahead = (ux * bx + uy * by) / distance
+    return wanted * ux + step * (ux - ahead * bx / distance), wanted * uy + step * (uy - ahead * by / distance)
 
 
 @kernel
