@@ -144,5 +144,11 @@ def test_who_has_arrived_stands():
 
 
 def test_a_bad_time_gap_is_named():
-    with pytest.raises(InputError, match=r"time_gap = 0.0 \[s\] is not allowed, it must be at least 0.01"):
-        CollisionFreeSpeed(time_gap=0.0)
+    with pytest.raises(InputError, match=r"time_gap = -0.1 \[s\] is not allowed, it must be at least 0"):
+        CollisionFreeSpeed(time_gap=-0.1)
+
+
+def test_without_a_time_gap_only_the_direction_is_chosen():
+    file = Scene.of([[0.0, 0.0], [0.41, 0.0]], radius=0.2, goal=[[9.0, 0.0], [9.0, 0.0]], preferred_speed=1.3)
+    found = CollisionFreeSpeed(time_gap=0.0, strength=0.5).velocity(file, 0.1)[0]
+    assert np.linalg.norm(found, axis=-1) == pytest.approx([1.3, 1.3])

@@ -113,6 +113,47 @@ def test_the_reaction_time_delays_the_limit():
     assert braking[1] == pytest.approx(0.4 / 1.06 + (1.0 - 0.4 / 1.06) * np.exp(-0.5))
 
 
+def door() -> Scene:
+    """Return two people in contact who want to the same place ahead: each is in the way of the other."""
+    return Scene.of(
+        [[0.0, 0.2], [0.0, -0.2]], radius=0.2, preferred_velocity=[[1.0, -0.6], [1.0, 0.6]], preferred_speed=1.2
+    )
+
+
+def test_two_people_who_block_each_other_stand_or_slide():
+    stand, slide, half = (
+        with_headway(Straight)(headway_width=0.5, headway_sliding=share).velocity(door(), 0.1)[0]
+        for share in (0.0, 1.0, 0.5)
+    )
+    assert stand == pytest.approx(0.0, abs=1e-12)
+    assert slide == pytest.approx(np.array([[1.0, 0.0], [1.0, 0.0]]), abs=2e-2)
+    assert half == pytest.approx(0.5 * slide, abs=2e-2)
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_who_slides_is_not_faster_and_overlaps_nobody(share):
+    scene = crowd(5, A=60, E=3, external=np.zeros(60, dtype=bool))
+    plain, sliding = People(headway_sliding=0.0, time_gap=0.0), People(headway_sliding=share, time_gap=0.0)
+    wanted = np.linalg.norm(plain.model.velocity(scene, 0.05), axis=-1)
+    before, after = scene, sliding.step(scene, 0.05)
+    assert np.all(np.linalg.norm(after.velocity, axis=-1) <= wanted + 1e-9)
+    assert not np.array_equal(after.velocity, plain.velocity(scene, 0.05))
+
+    def gaps(now: Scene) -> np.ndarray:
+        away = now.position[:, :, None] - now.position[:, None]
+        both = now.radius[:, :, None] + now.radius[:, None] + 1e3 * np.eye(60)
+        return np.linalg.norm(away, axis=-1) - both
+
+    was, now = gaps(before), gaps(after)
+    free = was > 0.2  # nobody is faster than 2 m/s in 0.05 s
+    assert np.all(now[free & (was < 1e2)] > -1e-9)
+
+
+def test_where_nobody_is_in_the_way_sliding_changes_nothing():
+    scene = file(0.0, 0.93, 3.0)
+    assert speeds(scene, headway_sliding=1.0) == speeds(scene)
+
+
 def test_invisible_people_and_absent_people_are_not_ahead():
     for name in ("active", "visible"):
         scene = file(0.0, 0.8).replace(**{name: np.array([[True, False]])})
@@ -154,6 +195,8 @@ def test_names_and_copies():
 def test_bad_names_and_values_are_told():
     with pytest.raises(InputError, match="headway_taper = 1.5"):
         with_headway(ORCA)(headway_taper=1.5)
+    with pytest.raises(InputError, match="headway_sliding = 1.5"):
+        with_headway(ORCA)(headway_sliding=1.5)
     with pytest.raises(InputError, match="single crowd model without it"):
         find_class("people+headway", room, room.CrowdModel)
     with pytest.raises(InputError, match="single crowd model without it"):

@@ -32,7 +32,7 @@ from .scenario import (
 )
 from .statistics import summarize_starts, text_of
 
-__all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS"]
+__all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS", "corner_times", "hall_departures"]
 
 LIMIT = 240.0
 """Time limit of a run [s]."""
@@ -269,6 +269,20 @@ LONG_CORNER = Check(
     summarize_long_corner,
     judge_long_corner,
 )
+
+
+def hall_departures(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
+    """Return the share of people who leave the hall by the two doors of one side, for each start."""
+    walk = _hall(model, DOOR_PEOPLE, (-1.0,), numbers, LIMIT, lambda part: None)
+    y = walk.position[..., 1]
+    out = np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0)
+    return [float(one) for one in out.mean(axis=1)]
+
+
+def corner_times(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
+    """Return the times [s] of a crowd around a wide corner, for each start."""
+    walk, _ = _corner(model, "corner", CORNER_CROWD, numbers, 120.0, lambda part: None)
+    return [float(one_start(walk, e).times[-1]) for e in range(len(numbers))]
 
 
 def _hall_solids() -> list[Solid]:

@@ -44,11 +44,14 @@ class HeadwayLayer(CrowdModel):
         headway_anticipation: look-ahead time for people who walk ahead in the same direction [s].
         headway_oncoming: share of the time gap that people keep to those who walk towards them, 0 to 1.
         headway_reaction_time: time constant with which the speed limit follows the space ahead [s]; 0: no delay.
+        headway_sliding: share of the velocity alongside others and walls that people keep when their way ends there, 0
+            to 1. Above 0, each person takes at most half of the gap to others in a step, and none enters a wall.
         headway_distance: maximum distance of people ahead [m].
 
     The corridor lies along the velocity that the model chooses. The space is the way to contact of the two discs, and
-    the speed never exceeds what this way allows in one step. The layer does not turn anybody, does not look at walls,
-    and changes nothing for people without anybody ahead. Robots are people ahead, too.
+    the speed never exceeds what this way allows in one step. Without sliding, the layer turns nobody, does not look at
+    walls, and changes nothing for people without anybody ahead. With sliding, two people side by side before a door
+    pass one after the other, where both would stand. Robots are people ahead, too.
 
     This class is abstract: :func:`with_headway` returns the class for a model.
 
@@ -70,6 +73,7 @@ class HeadwayLayer(CrowdModel):
     headway_anticipation: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.0, source="off by default")
     headway_oncoming: PerAgent = parameter(1.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
     headway_reaction_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.0, source="Tordeux et al. 2016")
+    headway_sliding: PerAgent = parameter(0.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
     headway_distance: PerAgent = parameter(4.0, unit="m", low=1.0, high=10.0, source="free speed times time gap")
 
     suffix: ClassVar[str] = "+headway"
@@ -137,10 +141,11 @@ class HeadwayLayer(CrowdModel):
             each("anticipation"),
             each("oncoming"),
             each("reaction_time"),
+            each("sliding"),
             rows(walking),
         )
         out = np.array(chosen)
-        launch(limit_speeds, limit_speeds_part, rows(out), crowd, near, float(dt))
+        launch(limit_speeds, limit_speeds_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
         return out
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, kernel, prange
+from crowdbot.core.geometry import nearest_on_segment
 
 __all__ = ["HeadwayRows", "limit_speeds", "limit_speeds_part"]
 
@@ -18,6 +19,12 @@ SLOWEST = 1e-9
 """Speeds below this [m/s] have no direction."""
 SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
+SIDESTEP = 0.3
+"""Speed [m/s] with which people who slide step aside when the space ahead stops them."""
+ATTEMPTS = 20
+"""Passes over the neighbours in which a sliding person looks for a free velocity."""
+LEEWAY = 1e-2
+"""Speed away from others [m/s] that each pass adds, so that the search ends."""
 STANDING = 0.1
 """People slower than this [m/s] do not count as oncoming."""
 
@@ -37,23 +44,30 @@ class HeadwayRows(NamedTuple):
     anticipation: Floats
     oncoming: Floats
     reaction: Floats
+    sliding: Floats
     walking: NDArray[np.bool_]
 
 
 @kernel(parallel=True)
-def limit_speeds(crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) -> None:
+def limit_speeds(crowd: HeadwayRows, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
     """Limit the speed of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        limit_speeds_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, dt, out)
+        limit_speeds_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
 
 
 @kernel
-def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors, dt: float, out: Floats) -> None:
+def limit_speeds_part(
+    begin: int, end: int, crowd: HeadwayRows, near: Neighbors, walls: Floats, dt: float, out: Floats
+) -> None:
     """Limit the speed of the agents ``begin`` to ``end`` in spatial order."""
     # unpack the tuples outside of the loop: each access counts references
-    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, walking = crowd
+    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = (
+        crowd
+    )
     agent, number, order = near
     A = agent.shape[1]
+    wall = np.empty((len(walls), 3))
+    aside = np.empty((agent.shape[2] + len(walls), 3))  # direction of neighbours and walls, and speed towards them
     for k in range(begin, end):
         row = order[k]
         vx, vy = chosen[row, 0], chosen[row, 1]
@@ -63,6 +77,7 @@ def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors,
             continue
         ux, uy = vx / speed, vy / speed
         limit, way = math.inf, math.inf
+        bx, by = 0.0, 0.0  # the person who limits the speed most
         e, a = row // A, row % A
         for n in range(number[e, a]):
             other = row - a + agent[e, a, n]
@@ -78,14 +93,96 @@ def limit_speeds_part(begin: int, end: int, crowd: HeadwayRows, near: Neighbors,
                 if toward < 0.0:
                     fast = math.sqrt(velocity[other, 0] ** 2 + velocity[other, 1] ** 2)
                     share *= 1.0 - (1.0 - oncoming[row]) * min(1.0, -toward / max(fast, STANDING))
-                limit = min(limit, max(free, 0.0) / (gap[row] * max(share, SMALLEST_SHARE)))
+                bound = max(free, 0.0) / (gap[row] * max(share, SMALLEST_SHARE))
+                if bound < limit:
+                    limit, bx, by = bound, dx, dy
         if limit < math.inf and reaction[row] > 0.0:
             now = max(0.0, velocity[row, 0] * ux + velocity[row, 1] * uy)
             free_speed = math.sqrt(wish[row, 0] ** 2 + wish[row, 1] ** 2)
             limit = now + (min(limit, max(free_speed, now)) - now) * -math.expm1(-dt / reaction[row])
+        wanted = min(limit, speed)
+        if sliding[row] > 0.0:
+            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], (wanted + SIDESTEP) * dt, wall)
+            for n in range(number[e, a]):
+                _aside(place, radius, row, row - a + agent[e, a, n], dt, aside[n])
+            for n in range(count):
+                aside[number[e, a] + n] = wall[n]
+                aside[number[e, a] + n, 2] /= dt
+            wx, wy = _step_aside(ux, uy, bx, by, wanted, sliding[row] * (min(SIDESTEP, speed) - wanted))
+            sx, sy = _slide(aside[: number[e, a] + count], wx, wy, sliding[row])
+            out[row, 0], out[row, 1] = sx, sy
+            continue
         limit = min(limit, way / dt)
         if limit < speed:
             out[row, 0], out[row, 1] = limit * ux, limit * uy
+
+
+@kernel
+def _step_aside(ux: float, uy: float, bx: float, by: float, wanted: float, step: float) -> tuple[float, float]:
+    """Return the velocity in direction u, and in addition a step past the person at bx, by if it is above 0."""
+    distance = math.sqrt(bx * bx + by * by)
+    if distance == 0.0 or step <= 0.0:
+        return wanted * ux, wanted * uy
+    ahead = (ux * bx + uy * by) / distance
+    return wanted * ux + step * (ux - ahead * bx / distance), wanted * uy + step * (uy - ahead * by / distance)
+
+
+@kernel
+def _near_walls(walls: Floats, x: float, y: float, radius: float, way: float, found: Floats) -> int:
+    """Write direction and free distance of the walls in reach of a way [m] to ``found [K, 3]``; return their number."""
+    count = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
+    for m in range(len(walls)):
+        nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
+        dx, dy = nx - x, ny - y
+        distance = math.sqrt(dx * dx + dy * dy)
+        if 0.0 < distance <= radius + way:
+            found[count, 0], found[count, 1] = dx / distance, dy / distance
+            found[count, 2] = max(distance - radius, 0.0)
+            count += 1
+    return count
+
+
+@kernel
+def _aside(place: Floats, radius: Floats, row: int, other: int, dt: float, found: Floats) -> None:
+    """Write the direction to another person, and the largest speed towards them: half of the gap in a step."""
+    dx, dy = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance > 0.0:
+        found[0], found[1] = dx / distance, dy / distance
+        found[2] = 0.5 * max(distance - radius[row] - radius[other], 0.0) / dt
+    else:
+        found[0], found[1], found[2] = 0.0, 0.0, 0.0
+
+
+@kernel
+def _slide(aside: Floats, vx: float, vy: float, share: float) -> tuple[float, float]:
+    """Return a velocity within the largest speeds towards others and walls: a shorter one, and one alongside them.
+
+    The second is found by repeated projection, and is 0 if none is found.
+    """
+    scale = 1.0
+    for n in range(len(aside)):
+        toward = vx * aside[n, 0] + vy * aside[n, 1]
+        if toward > aside[n, 2]:
+            scale = min(scale, aside[n, 2] / toward)
+    if scale == 1.0:
+        return vx, vy
+    sx, sy = vx, vy
+    for attempt in range(ATTEMPTS):
+        free = True
+        for n in range(len(aside)):
+            toward = sx * aside[n, 0] + sy * aside[n, 1]
+            if toward > aside[n, 2]:
+                free = False
+                sx -= (toward - aside[n, 2] + LEEWAY) * aside[n, 0]
+                sy -= (toward - aside[n, 2] + LEEWAY) * aside[n, 1]
+        if free:
+            break
+        if attempt == ATTEMPTS - 1:
+            sx, sy = 0.0, 0.0
+    if sx * vx + sy * vy < 0.0:
+        sx, sy = 0.0, 0.0
+    return (1.0 - share) * scale * vx + share * sx, (1.0 - share) * scale * vy + share * sy
 
 
 @kernel

@@ -135,7 +135,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
         else:
             ux, uy = math.cos(heading[row]), math.sin(heading[row])
         speed = min(wish, top[row])
-        for n in range(held):
+        for n in range(held if gap[row] > 0.0 else 0):
             speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
         out[row, 0], out[row, 1] = speed * ux, speed * uy
 
@@ -149,7 +149,8 @@ class CollisionFreeSpeed(CrowdModel):
         range: decay length of the repulsion between agents [m].
         wall_strength: strength of the repulsion by walls, relative to 1 for the desired direction.
         wall_range: decay length of the repulsion by walls [m].
-        time_gap: time gap to the next agent ahead at the chosen speed [s].
+        time_gap: time gap to the next agent ahead at the chosen speed [s]; 0: the space ahead does not limit the speed,
+            which is then left to the headway layer.
         neighbor_distance: maximum distance of neighbours and walls [m]; neighbours behind a wall are ignored.
         max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
@@ -181,7 +182,7 @@ class CollisionFreeSpeed(CrowdModel):
     range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)
     wall_strength: PerAgent = parameter(5.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
     wall_range: PerAgent = parameter(0.02, unit="m", low=0.01, high=0.2, source="JuPedSim 1.4.2", min=1e-3)
-    time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", min=1e-2)
+    time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2")
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
     max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None
