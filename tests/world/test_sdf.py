@@ -103,8 +103,8 @@ def test_an_sdf_becomes_a_robot_folder(tmp_path):
         ),
         (model(link("base", "0 0 0 0 0 0"), joint("left")), "has no frame 'left_wheel'"),
         (
-            model(link("a", "0 0 0 0 0 0"), "<joint name='j' type='ball'><parent>a</parent><child>a</child></joint>"),
-            "'j' type='ball' must be revolute, continuous, prismatic, fixed",
+            model(link("a", "0 0 0 0 0 0"), "<joint name='j' type='screw'><parent>a</parent><child>a</child></joint>"),
+            "'j' type='screw' must be revolute, continuous, prismatic, fixed",
         ),
         (model("<link name='a'><visual name='v'/></link>"), "<visual> needs <geometry> with a shape"),
     ],

@@ -86,6 +86,12 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
             robot(link("a", "<collision><geometry><cylinder radius='-1' length='1'/></geometry></collision>")),
             '<cylinder> radius="-1" must be above 0',
         ),
+        (
+            robot(link("a", "<visual><geometry><cylinder radius='1' length='1e200'/></geometry></visual>")),
+            '<cylinder> length="1e200" must be at least 1e-09 m and at most 1e+06 m',
+        ),
+        (robot(link("a", "<visual><geometry><sphere radius='1e-320'/></geometry></visual>")), "must be at least 1e-09"),
+        (robot(link("a", "<visual><geometry><box size='1 1 1e-320'/></geometry></visual>")), "must be at least 1e-09"),
         (robot(link("a", "<visual><geometry><mesh/></geometry></visual>")), "<mesh> needs the attribute 'filename'"),
         (robot(link("a", mesh("a.stl", scale="1 0 1"))), '<mesh> scale="1 0 1" must not be 0'),
         (

@@ -166,7 +166,7 @@ def _steering(model: RobotModel, joint: Joint, poses: Mapping[str, Floats]) -> s
     """Return the joint with a vertical axis and limits above a wheel, or ''."""
     for above in _above(model, joint):
         vertical = abs((poses[above.child][:3, :3] @ above.axis)[2]) > 0.8
-        if above.size == 1 and above.kind != "prismatic" and vertical and above.mimic is None:
+        if above.size == 1 and above.kind != "prismatic" and vertical:
             return above.name
     return ""
 

@@ -208,7 +208,7 @@ def _drive(done: _Conversion) -> dict[str, str]:
             guess, why, status = given[key], sources.get(key, "the drive plugin"), FILE
         name = key.replace("_", "-")
         value = done.table.number(name, guess, why, f"{name}= of <drive> in robot.xml", status, unit=unit)
-        row[name] = format_number(value)
+        row[name] = repr(value) if key == "max_steering" else format_number(value)  # rounded up, it may exceed pi / 2
         return value
 
     speed = choose("max_speed", *_top_speed(done), "m/s")
@@ -309,6 +309,7 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
     model, base = done.model, done.base
     root = copy_elements(source, done.name)
     copies = copy_meshes(root, model)
+    _free_steering(done.table, root, {wheel.steering for wheel in base.wheels}, done.urdf)
     done.mass = add_masses(done.table, root, model, done.urdf)
     if abs(base.rear) > 0.005 and base.wheels and base.kind != "planar":
         root.children.append(Element("link", {"name": GROUND_LINK}))
@@ -328,6 +329,15 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
             mu = Element("mu1", {"value": format_number(friction)})
             root.children.append(Element("gazebo", {"reference": name}, [mu]))
     return root, copies
+
+
+def _free_steering(table: GuessTable, root: Element, names: set[str], urdf: str) -> None:
+    """Remove <mimic> from steering joints: the two front wheels of a car steer by different angles."""
+    for joint in root.each("joint"):
+        if joint.attributes.get("name", "") in names and joint.each("mimic"):
+            joint.children = [inner for inner in joint.children if inner.tag != "mimic"]
+            what = f"steering {joint.attributes['name']}"
+            table.add(what, "on its own", "both front wheels turn about one centre", f"<mimic> in {urdf}", DERIVED)
 
 
 def _tire(table: GuessTable, link: str, friction: float, urdf: str) -> float:

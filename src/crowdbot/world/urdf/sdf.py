@@ -254,6 +254,12 @@ class _Converter:
         """Add a joint; a joint to the world is left out."""
         kind, name = joint.attributes.get("type", ""), joint.attributes.get("name", "")
         parent, child = self.text(joint, "parent"), self.text(joint, "child")
+        if kind == "ball":
+            kind = "fixed"
+            self.ignored.append(
+                f"{self.place}:{joint.line}: <joint> {name[:60]!r} is a ball joint, which is not supported; it is"
+                " fixed, and a castor on it glides"
+            )
         if kind not in JOINTS:
             self.refuse(
                 joint, f"{name[:60]!r} type={kind[:40]!r} must be {', '.join(JOINTS)}{did_you_mean(kind, JOINTS)}"

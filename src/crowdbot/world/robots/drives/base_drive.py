@@ -44,9 +44,11 @@ FASTEST_SLIDING = 2.0
 def turns_wheels(model: RobotModel, base: BaseKind) -> bool:
     """Return whether motors turn the wheels in the physics world.
 
-    Wheels with rollers of their own links, and wheels that all steer, cannot be controlled: these bases are moved
-    directly.
+    Wheels with rollers of their own links, and wheels that all steer, cannot be controlled, and a base on one axle
+    without castors falls over unless it balances: these bases are moved directly.
     """
+    if base.kind == "differential" and not base.castors and base.wheelbase_of_axles < 0.1 * base.track:
+        return False
     driven = [wheel for wheel in base.wheels if wheel.joint in base.driven]
     needed = {"differential": 2, "skid-steer": 4, "mecanum": 4, "omnidirectional": 3}.get(base.kind, 1)
     if base.kind not in WHEELED or len(driven) < needed:
@@ -168,6 +170,18 @@ def mass_attributes(model: RobotModel, base: BaseKind) -> list[tuple[str, float]
     ]
 
 
+def _axle_share(model: RobotModel, base: BaseKind) -> float:
+    """Return the share of the friction of all weight with which the wheels of one axle hold a base in a curve.
+
+    Castors bear a part of the weight, and a centre of mass beside the axle turns the base out of the curve.
+    """
+    away = float(model.inertial().center[0]) - base.rear
+    poses = model.poses()
+    reach = max((math.copysign(1.0, away) * (float(poses[name][0, 3]) - base.rear) for name in base.castors), default=0)
+    borne = 1.0 - abs(away) / reach if reach > abs(away) else 1.0
+    return borne / math.hypot(1.0, 2.0 * away / base.track) if base.track else borne
+
+
 def curve_limit(model: RobotModel, base: BaseKind, wheeled: bool) -> tuple[float, str]:
     """Return the largest product of speed and turn rate [m/s2] of a differential base, and the reason."""
     if not wheeled:
@@ -175,7 +189,7 @@ def curve_limit(model: RobotModel, base: BaseKind, wheeled: bool) -> tuple[float
     floor = min(wheel.center[2] - wheel.radius for wheel in base.wheels)
     height = float(model.inertial().center[2] - floor)
     tips = UPRIGHT * GRAVITY * 0.5 * base.track / max(height, 1e-3)
-    grip = SHARE * tire_friction(model, base) * GRAVITY
+    grip = SHARE * tire_friction(model, base) * GRAVITY * _axle_share(model, base)
     if tips < grip:
         return tips, "half of that at which it tips over"
-    return grip, f"{SHARE:g} of the friction of {'rubber' if grip == SHARE * GRAVITY else 'its wheels'}"
+    return grip, f"{SHARE:g} of the friction of {'rubber' if grip == SHARE * GRAVITY else 'its driven wheels'}"
