@@ -42,8 +42,17 @@ def experiments(page: Page) -> None:
     page.get_by_label("How old are you?").fill("31")
 
 
+def evaluation(page: Page) -> None:
+    """Compare two navigators and list the runs of the first."""
+    page.get_by_label("Trials").select_option("circle-crossing")
+    page.get_by_label("Seeds").fill("0:30")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("heading", name="first").wait_for(timeout=300_000)
+
+
 PICTURES: dict[str, tuple[str, Callable[[Page], None]]] = {
     "editor": ("editor", editor),
+    "evaluation": ("evaluation", evaluation),
     "experiments": ("experiments", experiments),
 }
 """Pictures: the tab, and what is done in it."""

@@ -1,6 +1,7 @@
 // The tabs, in the order of the page; crowdbot.web.tabs has the desks behind them.
 import { editor } from "./editor/tab.mjs";
+import { evaluation } from "./evaluation/tab.mjs";
 import { experiments } from "./experiments/tab.mjs";
 import { simulator } from "./simulator/tab.mjs";
 
-export const tabs = [simulator, editor, experiments];
+export const tabs = [simulator, editor, evaluation, experiments];

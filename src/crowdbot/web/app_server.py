@@ -26,6 +26,10 @@ POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+SANDBOX = (
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+)
+"""Policy of a page with scripts of its own: without access to the app or the net."""
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -139,7 +143,8 @@ class AppServer:
             except CrowdbotError as error:
                 response = web.Response(status=400, text=f"{error}\n")
         if not response.prepared:
-            response.headers.update(HEADERS)
+            for header, value in HEADERS.items():
+                response.headers.setdefault(header, value)
             if given is not None and refusal is None and self.access.needs_token:
                 response.set_cookie(COOKIE, given, httponly=True, samesite="Strict", secure=self.tls is not None)
         return response
@@ -177,6 +182,8 @@ class AppServer:
             raise web.HTTPNotFound(text=f"file {path!r:.80} does not exist") from None
         response = web.Response(body=found.data, headers={"Cache-Control": "no-cache"})
         response.content_type = found.kind
+        if found.sandbox:
+            response.headers["Content-Security-Policy"] = SANDBOX
         if found.name is not None:
             name = re.sub(r"[^A-Za-z0-9._-]", "-", found.name)
             response.headers["Content-Disposition"] = f'attachment; filename="{name}"'
