@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from crowdbot.core import InputError
-
 from .output import add_json, print_json, progress
 
 
@@ -38,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Write the table or the page."""
+    from crowdbot.core import InputError
     from crowdbot.recording import export, folder_of
 
     if options.to.suffix.lower() == ".html":
@@ -60,6 +59,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _write_page(options: argparse.Namespace) -> int:
     """Write the page that plays the episode."""
+    from crowdbot.core import InputError
     from crowdbot.web import write_player
 
     if options.table != "people":
