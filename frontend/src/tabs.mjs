@@ -2,6 +2,7 @@
 import { editor } from "./editor/tab.mjs";
 import { evaluation } from "./evaluation/tab.mjs";
 import { experiments } from "./experiments/tab.mjs";
+import { prediction } from "./prediction/tab.mjs";
 import { simulator } from "./simulator/tab.mjs";
 
-export const tabs = [simulator, editor, evaluation, experiments];
+export const tabs = [simulator, prediction, editor, evaluation, experiments];

@@ -1,11 +1,242 @@
-// Simulator tab.
+// Simulator tab: a trial that runs or an episode that plays, and everything that can be done with it.
+import { attempt, say } from "../ui/dialog.mjs";
 import { h } from "../ui/dom.mjs";
+import { DisplayPanel } from "./display_panel.mjs";
+import { Drive } from "./drive.mjs";
+import { EpisodePanel } from "./episode_panel.mjs";
+import { Inspector } from "./inspector.mjs";
+import { Library } from "./library.mjs";
+import { Picture } from "./picture.mjs";
+import { PlotsPanel } from "./plots_panel.mjs";
+import { Tools } from "./tools.mjs";
+import { Transport, speedText } from "./transport.mjs";
+import { ValuesPanel } from "./values_panel.mjs";
+
+const SUMMARY = 5000;
+const PING = 2000;
+
+class SimulatorView {
+  constructor(root, app) {
+    this.app = app;
+    this.status = { state: "none" };
+    this.source = {};
+    this.latency = null;
+    this.fps = 0;
+    this._make();
+    root.classList.add("simulator");
+    root.append(this.library.element, h("div", { class: "middle" }, this.tools.element, this.picture.element, this.drive.element, this.transport.element, this.line, this.summary), this.side);
+    this._listen();
+    this._keys();
+    setInterval(() => this._measure(), PING);
+    setInterval(() => this._summarize(), SUMMARY);
+  }
+
+  show() {
+    this.picture.shown = true;
+  }
+
+  hide() {
+    this.picture.shown = false;
+  }
+
+  /** Takes the state of the server, when the page opens or connects again. */
+  greet(state) {
+    this.plots.know(state.plots);
+    this._opened(state.source, state.status);
+    this.plots.begin(state.history);
+    this._take(state.status);
+    this.library.load().catch((error) => say(error.message, "error"));
+    this.app.connection.call("simulator.names").then((names) => {
+      this.tools.know(names);
+      this.inspector.navigators = names.navigators;
+    }, () => {});
+    if (state.status.state !== "none") this.app.connection.call("simulator.show_frame").catch(() => {});
+  }
+
+  _make() {
+    const { app } = this;
+    this.library = new Library(app);
+    this.picture = new Picture(app, {
+      select: (hit) => this.inspector.select(hit),
+      place: (point) => this.tools.place(point),
+      loaded: () => this._loaded(),
+    });
+    this.transport = new Transport(app, { restart: (fresh) => this._restart(fresh), save: () => this._save() });
+    this.values = new ValuesPanel(app);
+    this.drive = new Drive(app, { started: (subject) => this._driving(subject), stopped: () => this.display.look("free") });
+    this.inspector = new Inspector(app, {
+      chosen: (hit) => this.picture.mark(hit?.kind ?? null, hit?.id),
+      tool: (name) => this.tools.choose(name),
+      drive: (kind, name) => this.drive.start(kind, name),
+      values: (path) => this.values.open(path),
+    });
+    this.tools = new Tools(app, { inspector: this.inspector, picture: this.picture, became: (name) => this._became(name) });
+    this.display = new DisplayPanel(app, this.picture);
+    this.plots = new PlotsPanel(app);
+    this.episode = new EpisodePanel(app, { transport: this.transport, library: this.library, names: () => this.tools.names });
+    this.line = h("p", { class: "status-line" });
+    this.summary = h("p", { class: "summary", "aria-live": "polite", "aria-label": "Summary of the picture" });
+    this.side = h("aside", { class: "side", "aria-label": "Inspector, display and plots" },
+      this.episode.element, this.inspector.element, this.display.element, this.plots.element, this.values.element);
+  }
+
+  _listen() {
+    const { connection } = this.app;
+    connection.on("simulator.status", (status) => this._take(status));
+    connection.on("simulator.opened", ({ source, status }) => {
+      this._opened(source, status);
+      this.plots.begin([]);
+    });
+    connection.draw("scene", (frame) => this.picture.take(frame));
+    connection.on("lost", () => this.drive.subject && this.drive.forget());
+  }
+
+  _opened(source, status) {
+    this.source = source;
+    this.picture.newest = null;
+    this.picture.preview(status.state === "preparing" ? source.preview ?? null : null);
+    this.library.mark(source.name);
+    const live = source.kind === "run";
+    this.tools.live = this.inspector.live = this.values.live = live;
+    this.episode.element.hidden = live || !source.kind;
+    this.transport.mark([]);
+    this._readEpisode = !live;
+    if (!this._waiting) this.inspector.select(null);
+    if (this.drive.subject) this.drive.forget();
+  }
+
+  async _take(status) {
+    const before = this.status;
+    this.status = status;
+    this.transport.show(status);
+    this.plots.take(status);
+    this._showLine();
+    if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
+    if (status.state === "preparing") this.picture.say(status.compiling ? "Compiling for the first run on this computer; meanwhile everybody walks straight" : "Preparing the simulation");
+    else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
+    if (status.state === "failed") this.picture.preview(null);
+    if (status.state === "ended" && before.state !== "ended" && this.drive.subject) this.drive.forget();
+    if (this._readEpisode && status.kind === "episode" && !["preparing", "failed"].includes(status.state)) {
+      this._readEpisode = false;
+      await attempt(() => this._showEpisode());
+    }
+    if (this.inspector.element.open) this.inspector.update();
+  }
+
+  async _showEpisode() {
+    const { events, series } = await this.app.connection.call("simulator.episode");
+    this.episode.show(events);
+    this.transport.mark(events);
+    this.plots.whole(series);
+  }
+
+  _loaded() {
+    this.display.loaded();
+    this.inspector.refresh();
+    if (this._waiting) {
+      const name = this._waiting;
+      this._waiting = null;
+      this._walk(name);
+    }
+  }
+
+  _driving({ kind, name }) {
+    const robots = this.picture.scene.state.description?.robots ?? [];
+    if (kind === "robot") this.inspector.select({ kind, id: robots.find((one) => one.name === name)?.id });
+    this.display.look("follow");
+  }
+
+  _became(name) {
+    this._waiting = name;
+    if (this.status.trial && this.picture.scene.state.frame && this.status.state === "running") this.picture.wake();
+  }
+
+  async _walk(name) {
+    const people = await this.app.connection.call("simulator.people");
+    const own = people.find((one) => one.name === name);
+    if (own) await this.inspector.select({ kind: "person", id: own.id });
+    await this.drive.start("avatar", name);
+  }
+
+  _restart(fresh) {
+    if (this.status.kind !== "run") return undefined;
+    const seed = fresh ? Math.floor(Math.random() * 1e6) : null;
+    return attempt(() => this.app.connection.call("simulator.restart", { seed }));
+  }
+
+  async _save() {
+    const name = await attempt(() => this.app.connection.call("simulator.save"));
+    if (!name) return;
+    say(`Saved as ${name}`);
+    await this.library.loadEpisodes();
+  }
+
+  async _measure() {
+    const drawn = this.picture.frames;
+    this.fps = (drawn - (this._drawn ?? drawn)) / (PING / 1000);
+    this._drawn = drawn;
+    if (!this.app.connection.open) return;
+    const begin = performance.now();
+    await this.app.connection.call("simulator.ping").catch(() => {});
+    this.latency = performance.now() - begin;
+    this._showLine();
+  }
+
+  _showLine() {
+    const { state, trial, seed, time, factor, values, outcome, orders, speed, problems } = this.status;
+    if (!trial) {
+      this.line.textContent = problems?.length ? problems[0] : "Nothing is open";
+      return;
+    }
+    const word = state === "ended" && outcome ? `ended: ${outcome}` : state;
+    const parts = [`${trial}, seed ${seed}: ${word}`, `${(time ?? 0).toFixed(1)} s`, `speed ${speedText(speed)}`];
+    if (state === "running" && factor) parts.push(`real-time factor ${factor.toFixed(2)}`);
+    if (values?.people !== undefined) parts.push(`${values.people} people`);
+    parts.push(`${orders} orders`, `${this.fps.toFixed(0)} pictures/s`);
+    if (this.latency !== null) parts.push(`latency ${this.latency.toFixed(0)} ms`);
+    this.line.textContent = parts.join("  ·  ");
+  }
+
+  _summarize() {
+    const { state, values, time } = this.status;
+    if (!values || state !== "running" || values.people === undefined || this.picture.element.offsetParent === null) return;
+    const near = values.clearance === null || values.clearance === undefined ? "" : `; the nearest person is ${values.clearance.toFixed(1)} m from the robot`;
+    this.summary.textContent = `At ${time.toFixed(0)} s: ${values.people} people${near}.`;
+  }
+
+  _keys() {
+    const { transport } = this;
+    const episode = () => this.status.kind === "episode";
+    const arrow = (way) => () => !this.drive.subject && (episode() ? transport.jump(way) : way > 0 && transport.step());
+    this.app.keys.add("simulator", [
+      [" ", "Run or pause", () => transport.toggle()],
+      [".", "One step", () => transport.step()],
+      ["ArrowRight", "One step; in an episode: 1 s ahead", arrow(1)],
+      ["ArrowLeft", "In an episode: 1 s back", arrow(-1)],
+      ["[", "Slower", () => transport.change(-1)],
+      ["]", "Faster", () => transport.change(1)],
+      ["r", "Restart", () => this._restart(false)],
+      ["n", "Restart with another seed", () => this._restart(true)],
+      ["j", "Event before", () => this.episode.jump(-1)],
+      ["k", "Event after", () => this.episode.jump(1)],
+      ["+", "Add a person by two clicks", () => this.tools.choose("person")],
+      ["g", "Goal of the chosen one by a click", () => this.inspector.state && this.tools.choose("goal")],
+      ["Delete", "Remove the chosen one", () => this.inspector.remove()],
+      ["f", "Follow", () => this.display.look("follow")],
+      ["o", "Overview", () => this.display.reset()],
+      ["v", "In space or from above", () => this._turnView()],
+      ["Escape", "Cancel; give a robot back", () => this.tools.choose(null)],
+    ]);
+  }
+
+  _turnView() {
+    this.display.view.value = this.picture.view === "3d" ? "2d" : "3d";
+    this.picture.setView(this.display.view.value);
+  }
+}
 
 export const simulator = {
   name: "simulator",
   title: "Simulator",
-  mount(root) {
-    root.append(h("p", {}, "Simulator"));
-    return {};
-  },
+  mount: (root, app) => new SimulatorView(root, app),
 };

@@ -30,6 +30,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="folder for the files that the app reads and writes (default: crowdbot-app)",
     )
+    parser.add_argument(
+        "--open",
+        metavar="TRIAL|EPISODE",
+        help="trial file, built-in name, or episode that is shown first (default: a robot among walking people)",
+    )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser window")
     parser.add_argument("--certificate", type=Path, metavar="FILE", help="certificate for HTTPS, PEM")
     parser.add_argument("--key", type=Path, metavar="FILE", help="private key of the certificate, PEM")
@@ -37,11 +42,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Serve until Ctrl-C."""
-    from crowdbot.web import DESKS, AppServer
+    from crowdbot.web import DESKS, AppServer, opened_first
 
     if not 0 <= options.port <= 65535:
         raise InputError(f"--port = {options.port}: expected 0 to 65535")
-    server = AppServer(DESKS, options.folder, options.host, options.port, tls=_tls(options))
+    desks, readable = DESKS, tuple[Path, ...]()
+    if options.open is not None:
+        desks, readable = opened_first(DESKS, options.open)
+    server = AppServer(desks, options.folder, options.host, options.port, readable=readable, tls=_tls(options))
     try:
         asyncio.run(_serve(server, not options.no_browser))
     except KeyboardInterrupt:

@@ -9,12 +9,12 @@ from pathlib import Path
 from types import TracebackType
 
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.simulation import EpisodeDigest, Simulation, StopRequest
+from crowdbot.simulation import EpisodeDigest, Simulation, SimulationRun, StopRequest
 
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata
 from .keyframes import Keyframe, KeyframeWarning, keyframe_ticks, latest_keyframe
-from .provenance import DigestComparison, Provenance, digests
+from .provenance import DigestComparison, OrderReplay, Provenance, digests
 
 __all__ = ["LATE", "RecordedSimulation", "continue_from", "simulate_to"]
 
@@ -93,6 +93,16 @@ class RecordedSimulation:
         if comparison.differs is not None:
             raise EpisodeError(f"{self.path} differs from its replay from {comparison.differs:g} s on")
         return found
+
+    def run_from(self, seconds: float) -> SimulationRun:
+        """Return a run that continues from an instant [s] with the recorded orders, to watch the episode.
+
+        Raises:
+            InputError, EpisodeError: see :meth:`at`.
+        """
+        simulation = self.at(seconds)
+        assert self._course is not None
+        return SimulationRun(simulation, (), (OrderReplay(self._course.parts[-1].orders),))
 
     def _fresh(self, tick: int) -> Simulation:
         """Return a new simulation of the trial with its changes up to a step, built once for each set of changes."""

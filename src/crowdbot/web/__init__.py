@@ -10,7 +10,7 @@ from .command import call_command, command, command_names
 from .desk import Desk, DeskWindows, Resource
 from .scene import PlayerFile, scene_description, scene_frame, scene_resource, write_player
 from .state_frame import StateFrame
-from .tabs import DESKS
+from .tabs import DESKS, opened_first
 from .window import CREDIT, Window
 from .workspace import Workspace
 
@@ -32,6 +32,7 @@ __all__ = [
     "command",
     "command_names",
     "is_loopback",
+    "opened_first",
     "scene_description",
     "scene_frame",
     "scene_resource",

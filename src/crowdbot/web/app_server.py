@@ -38,6 +38,8 @@ HEADERS = {
 }
 MESSAGE = 4 << 20
 """Largest message of a window [B]."""
+UPLOAD = 512 << 20
+"""Largest file that a window may send [B]."""
 SESSIONS = 40
 """Sessions at the same time."""
 WINDOWS = 100
@@ -192,8 +194,16 @@ class AppServer:
     async def _upload(self, request: web.Request) -> web.StreamResponse:
         session, name = self._session(request), Path(request.query.get("name", "")).name
         path = session.workspace.writable(name)
-        data = await request.read()
-        await asyncio.get_running_loop().run_in_executor(None, path.write_bytes, data)
+        draft = path.with_name(f".{name}.part")
+        try:
+            with draft.open("wb") as file:
+                async for block in request.content.iter_chunked(1 << 20):
+                    if file.tell() + len(block) > UPLOAD:
+                        raise web.HTTPRequestEntityTooLarge(UPLOAD, file.tell() + len(block))
+                    file.write(block)
+            draft.replace(path)
+        finally:
+            draft.unlink(missing_ok=True)
         return web.json_response({"name": name})
 
     def _session(self, request: web.Request) -> AppSession:

@@ -2,11 +2,44 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.trials import builtin_trials
+
 from .desk import Desk
 from .editor import EditorDesk
 from .evaluation import EvaluationDesk
 from .experiments import ExperimentDesk
+from .prediction import PredictionDesk
+from .simulator import SimulatorDesk
 
-__all__ = ["DESKS"]
+__all__ = ["DESKS", "opened_first"]
 
-DESKS: tuple[type[Desk], ...] = (EditorDesk, EvaluationDesk, ExperimentDesk)
+DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk)
+
+
+def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[Desk], ...], tuple[Path, ...]]:
+    """Return the desks of a server whose sessions first show a trial or an episode, and the folder to be readable.
+
+    Args:
+        desks: the tabs.
+        name: trial file, episode file, or name of a built-in trial.
+
+    Raises:
+        InputError: there is no such file or trial.
+
+    >>> opened_first(DESKS, "frontal")[0][0].first
+    'frontal'
+    """
+    path = Path(name)
+    if path.suffix in (".xml", ".mcap"):
+        if not path.is_file():
+            raise InputError(f"--open {name}: the file does not exist")
+        first, readable = str(path.resolve()), (path.resolve().parent,)
+    elif name in builtin_trials():
+        first, readable = name, ()
+    else:
+        raise InputError(f"--open {name}: no file and no built-in trial{did_you_mean(name, builtin_trials())}")
+    own = type("SimulatorDesk", (SimulatorDesk,), {"first": first, "__doc__": SimulatorDesk.__doc__})
+    return tuple(own if desk is SimulatorDesk else desk for desk in desks), readable

@@ -1,0 +1,87 @@
+// Library: built-in trials with thumbnails, files of the folder, recorded episodes.
+import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { fill, h } from "../ui/dom.mjs";
+import { makeForm } from "../ui/form.mjs";
+
+export class Library {
+  constructor(app) {
+    this.app = app;
+    this.trials = h("ul", { class: "trials" });
+    this.episodes = h("ul", { class: "episodes" });
+    this.search = h("input", { type: "search", "aria-label": "Search trials", placeholder: "Search trials", oninput: () => this._filter() });
+    this.file = h("input", { type: "file", accept: ".xml,.mcap", "aria-label": "Open a trial or an episode from a file", onchange: () => this._upload() });
+    this.element = h("aside", { class: "library", "aria-label": "Trials and episodes" },
+      h("h2", {}, "Trials"), this.search, this.trials,
+      h("h2", {}, "Episodes"), this.episodes,
+      h("label", { class: "field" }, h("span", {}, "Open a file (.xml, .mcap)"), this.file));
+  }
+
+  async load() {
+    const [trials] = await Promise.all([this.app.connection.call("simulator.trials"), this.loadEpisodes()]);
+    fill(this.trials, trials.map((trial) => this._trial(trial)));
+    this._filter();
+  }
+
+  async loadEpisodes() {
+    const names = await this.app.connection.call("simulator.episodes");
+    fill(this.episodes, names.length
+      ? names.map((name) => h("li", {}, h("button", { type: "button", onclick: () => this.openEpisode(name) }, name)))
+      : h("li", { class: "faint" }, "None yet: save a run"));
+  }
+
+  openEpisode(name, at = null) {
+    return attempt(() => this.app.connection.call("simulator.open_episode", { name, at }));
+  }
+
+  async open(name, settings = {}, seed = null) {
+    const found = await attempt(() => this.app.connection.call("simulator.open", { name, settings, seed }));
+    for (const remark of found?.remarks ?? []) say(remark);
+    return found;
+  }
+
+  /** Marks what is open. */
+  mark(name) {
+    for (const one of this.element.querySelectorAll("button[aria-current]")) one.removeAttribute("aria-current");
+    this.trials.querySelector(`button[data-name="${CSS.escape(name ?? "")}"]`)?.setAttribute("aria-current", "true");
+  }
+
+  _trial({ name, title, built_in, parameters }) {
+    const picture = built_in && h("img", { src: this.app.connection.address("simulator", `thumbnail/${name}.svg`), alt: "", loading: "lazy" });
+    const button = h("button", { type: "button", "data-name": name, title, onclick: () => this.open(name) }, picture || null,
+      h("span", {}, h("strong", {}, name), h("small", {}, title)));
+    const more = parameters.length
+      ? h("button", { type: "button", class: "more", "aria-label": `Settings of ${name}`, onclick: () => this._settings(name, parameters) }, "Settings")
+      : null;
+    return h("li", { "data-words": `${name} ${title}`.toLowerCase() }, button, more);
+  }
+
+  _settings(name, parameters) {
+    const form = makeForm([...parameters, { name: "world", label: "World", kind: "choice", value: "", choices: [["", "as in the trial"], "planar", "physics"] }]);
+    const run = async () => {
+      const defaults = Object.fromEntries(parameters.map((one) => [one.name, one.value]));
+      const values = form.values();
+      const settings = Object.fromEntries(Object.entries(values).filter(([key, value]) => value !== "" && value !== null && value !== defaults[key]));
+      return (await this.open(name, settings)) !== undefined;
+    };
+    openDialog(`Settings of ${name}`, form.element, [["Cancel", () => true], ["Run", run]]);
+  }
+
+  _filter() {
+    const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    for (const one of this.trials.children) one.hidden = !words.every((word) => one.dataset.words.includes(word));
+  }
+
+  async _upload() {
+    const file = this.file.files[0];
+    if (!file) return;
+    await attempt(async () => {
+      const { session } = this.app.connection;
+      const answer = await fetch(`api/${session}/upload?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+      if (!answer.ok) throw new Error((await answer.text()).trim());
+      const { name } = await answer.json();
+      await (name.endsWith(".mcap") ? this.openEpisode(name) : this.open(name));
+      await this.load();
+    });
+    this.file.value = "";
+  }
+}

@@ -1,0 +1,167 @@
+// Picture: the canvas of the simulator: the scene, the preview while it is prepared, clicks.
+import { Scene2D } from "../scene2d/scene2d.mjs";
+import { Scene3D } from "../scene3d/scene3d.mjs";
+import { h } from "../ui/dom.mjs";
+import { say } from "../ui/dialog.mjs";
+import { drawPreview } from "./preview.mjs";
+
+const AWAKE = 800;
+const DRAG = 5;
+
+export class Picture {
+  /**
+   * @param {object} app the page
+   * @param {{select(hit), place(point)}} actions what clicks do: hit {kind, id} or null; place x, y [m] of the floor
+   */
+  constructor(app, actions) {
+    this.app = app;
+    this.actions = actions;
+    this.placing = false;
+    this.frames = 0;
+    this._waiting = null;
+    this._loading = null;
+    this._awake = 0;
+    this._shown = true;
+    this.place = h("div", { class: "stage-place" });
+    this.overlay = h("canvas", { class: "preview", "aria-hidden": "true", hidden: true });
+    this.note = h("p", { class: "picture-note", role: "status" });
+    this.element = h("div", { class: "picture" }, this.place, this.overlay, this.note);
+    this._make(app.address.get("view") ?? "3d");
+    this._listen();
+    requestAnimationFrame(() => this._tick());
+  }
+
+  /** Takes a frame of the channel "scene"; the promise is kept until it is drawn. */
+  take(frame) {
+    if (!this._shown || !this.scene) return undefined;
+    this._finish();
+    this.newest = frame;
+    return new Promise((resolve) => {
+      this._waiting = resolve;
+    });
+  }
+
+  /** Shows people on straight lines until the first frame comes. */
+  preview(preview) {
+    this._preview = preview && { ...preview, since: performance.now() };
+    this.overlay.hidden = !preview;
+    if (preview) this.newest = null;
+  }
+
+  /** Text over the picture. */
+  say(text) {
+    if (this.note.textContent !== text) this.note.textContent = text;
+    this.note.hidden = !text;
+  }
+
+  set shown(shown) {
+    this._shown = shown;
+    if (!shown) this._finish();
+    this.wake();
+  }
+
+  /** Draws for a while, because the camera moves. */
+  wake() {
+    this._awake = performance.now() + AWAKE;
+  }
+
+  mark(kind, id) {
+    if (this.scene?.state.frame) this.scene.highlight(kind, id);
+    this.wake();
+  }
+
+  /** Shows the scene in space ("3d") or from above ("2d"). */
+  setView(view) {
+    if (view === this.view) return;
+    this.scene.dispose();
+    this._make(view);
+    this.app.remember({ view });
+    this.app.connection.call("simulator.show_frame").catch(() => {});
+  }
+
+  _make(view) {
+    this.canvas = h("canvas", { class: "stage", tabindex: "0", role: "img", "aria-label": "Picture of the simulation" });
+    this.place.replaceChildren(this.canvas);
+    const resource = (path, query) => this.app.connection.address("simulator", path, query);
+    this.view = view === "2d" ? "2d" : "3d";
+    try {
+      this.scene = this.view === "2d" ? new Scene2D(this.canvas, resource) : new Scene3D(this.canvas, resource);
+    } catch (error) {
+      say(`The picture in space needs WebGL, so the one from above is shown: ${error.message}`, "error");
+      return this._make("2d");
+    }
+    this.scene.setTheme(this.app.theme);
+    this._listenCanvas();
+    return this.wake();
+  }
+
+  _listen() {
+    document.addEventListener("theme", (event) => {
+      this.scene?.setTheme(event.detail);
+      this.wake();
+    });
+    new ResizeObserver(() => this.wake()).observe(this.element);
+  }
+
+  _listenCanvas() {
+    let down = null;
+    for (const name of ["pointermove", "wheel", "keydown"]) this.canvas.addEventListener(name, () => this.wake(), { passive: true });
+    this.canvas.addEventListener("pointerdown", (event) => {
+      down = [event.offsetX, event.offsetY];
+      this.wake();
+    });
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > DRAG || event.button !== 0) return;
+      this._click(event.offsetX, event.offsetY);
+    });
+  }
+
+  _click(x, y) {
+    if (!this.scene?.state.frame) return;
+    if (this.placing) {
+      const point = this.scene.floor(x, y);
+      if (point) this.actions.place(point);
+    } else this.actions.select(this.scene.pick(x, y));
+  }
+
+  _finish() {
+    this._waiting?.();
+    this._waiting = null;
+  }
+
+  _tick() {
+    requestAnimationFrame(() => this._tick());
+    if (!this._shown || !this.scene || !this.canvas.clientWidth) return this._finish();
+    if (this._preview) drawPreview(this.overlay, this._preview, this.app.theme);
+    const fresh = this._waiting !== null;
+    if (fresh) this._apply();
+    if (!fresh && performance.now() > this._awake) return undefined;
+    if (this.scene.state.frame) this.scene.render();
+    return this._finish();
+  }
+
+  _apply() {
+    if (!this.newest || this._loading) return;
+    if (this.scene.apply(this.newest)) {
+      this.frames += 1;
+      this.preview(null);
+      return;
+    }
+    this._loading = this._load().catch((error) => say(error.message, "error"));
+  }
+
+  async _load() {
+    try {
+      const description = await this.app.connection.call("simulator.description");
+      if (description.revision !== undefined) {
+        await this.scene.load(description);
+        this.actions.loaded?.(description);
+      }
+      if (this.newest && this.scene.apply(this.newest)) this.preview(null);
+      this.wake();
+    } finally {
+      this._loading = null;
+    }
+    this.app.connection.call("simulator.show_frame").catch(() => {});
+  }
+}

@@ -1,0 +1,194 @@
+"""PacedLoop: a thread that advances something at a speed relative to real time."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+from crowdbot.core import InputError, PacedClock
+
+__all__ = ["SPEEDS", "PacedLoop"]
+
+Result = TypeVar("Result")
+SPEEDS = (0.1, 100.0)
+"""Lowest and highest speed relative to real time; None is as fast as possible."""
+CALL = 120.0
+"""Longest time [s] that a caller waits for the thread, which compiles kernels in a first run."""
+
+
+class PacedLoop:
+    """A thread that advances in steps at a speed, and does other things between two steps.
+
+    A pause, or time that the computer sleeps, is not made up for. All actions run in the same thread, so that they see
+    a state between two steps.
+
+    Args:
+        step: simulated time of a step [s].
+        advance: advances one step; False if there is nothing more to do.
+        begin: called first, in the thread.
+        end: called last, in the thread.
+        paused: whether the loop waits at its start.
+
+    >>> done = []
+    >>> loop = PacedLoop(0.01, lambda: len(done) < 2 and not done.append(1))
+    >>> loop.speed = None
+    >>> loop.start()
+    >>> loop.resume()
+    >>> loop.ended.wait(5.0), len(done)
+    (True, 2)
+    >>> loop.close()
+    """
+
+    def __init__(
+        self,
+        step: float,
+        advance: Callable[[], bool],
+        begin: Callable[[], None] = lambda: None,
+        end: Callable[[], None] = lambda: None,
+        paused: bool = True,
+    ) -> None:
+        self._advance, self._begin, self._end = advance, begin, end
+        self._clock = PacedClock(step, sleep=self._sleep)
+        self._changed = threading.Condition()
+        self._calls: list[Callable[[], None]] = []
+        self._paused, self._closed, self._steps = paused, False, 0
+        self._speed: float | None = 1.0
+        self.ended = threading.Event()
+        """Set while there is nothing more to do."""
+        self._thread = threading.Thread(target=self._run, name="crowdbot-simulation", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    @property
+    def speed(self) -> float | None:
+        """Simulated time over real time; None: as fast as possible."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, speed: float | None) -> None:
+        """Set the speed."""
+        if speed is not None and not SPEEDS[0] <= speed <= SPEEDS[1]:
+            raise InputError(f"speed = {speed:g}: expected {SPEEDS[0]:g} to {SPEEDS[1]:g}, or null for no limit")
+        with self._changed:
+            self._speed = speed
+            if speed is not None:
+                self._clock.rate = speed
+            self._changed.notify_all()
+
+    @property
+    def paused(self) -> bool:
+        """Whether the loop waits."""
+        return self._paused
+
+    def pause(self) -> None:
+        """Wait after the current step."""
+        with self._changed:
+            self._paused, self._steps = True, 0
+            self._clock.pause()
+            self._changed.notify_all()
+
+    def resume(self) -> None:
+        """Continue."""
+        with self._changed:
+            self._paused = False
+            self._clock.resume()
+            self._changed.notify_all()
+
+    def take_steps(self, count: int) -> None:
+        """Pause, and advance a number of steps at once."""
+        self.pause()
+        with self._changed:
+            self._steps = count
+            self._changed.notify_all()
+
+    def restart(self) -> None:
+        """Continue after the end, because there is something to do again."""
+        with self._changed:
+            self.ended.clear()
+            self._changed.notify_all()
+
+    def do(self, action: Callable[[], Result]) -> Result:
+        """Run an action in the thread between two steps and return its result; its exceptions are raised here.
+
+        Raises:
+            InputError: the loop is closed, or is busy for a long time.
+        """
+        if threading.current_thread() is self._thread:
+            return action()
+        future: Future[Result] = Future()
+
+        def call() -> None:
+            try:
+                future.set_result(action())
+            except BaseException as error:
+                future.set_exception(error)
+
+        with self._changed:
+            if self._closed:
+                raise InputError("the simulation has been closed")
+            self._calls.append(call)
+            self._changed.notify_all()
+        try:
+            return future.result(CALL)
+        except TimeoutError:
+            raise InputError(f"the simulation has not answered for {CALL:g} s; it may still be compiling") from None
+
+    def close(self, wait: float | None = None) -> None:
+        """End the thread after its current step, and wait for it at most ``wait`` [s]."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        if threading.current_thread() is not self._thread and self._thread.ident is not None:
+            self._thread.join(wait)
+
+    def _run(self) -> None:
+        try:
+            self._begin()
+            while not self._closed:
+                self._do_calls()
+                if self._may_advance():
+                    self._step()
+                else:
+                    with self._changed:
+                        if not (self._calls or self._closed or self._may_advance()):
+                            self._changed.wait()
+        finally:
+            self._end()
+            with self._changed:
+                self._closed = True
+            self._do_calls()
+
+    def _may_advance(self) -> bool:
+        return not self._closed and not self.ended.is_set() and (not self._paused or self._steps > 0)
+
+    def _step(self) -> None:
+        self._steps = max(0, self._steps - 1)
+        if not self._advance():
+            self.ended.set()
+        elif self._speed is not None and not self._paused:
+            self._clock.advance()
+        else:
+            time.sleep(0)
+
+    def _sleep(self, seconds: float) -> None:
+        """Wait until a step is due, and do what is asked for in the meantime."""
+        until = time.monotonic() + seconds
+        while True:
+            self._do_calls()
+            with self._changed:
+                rest = until - time.monotonic()
+                if rest <= 0.0 or self._closed or self._paused or self._speed is None:
+                    return
+                if not self._calls:
+                    self._changed.wait(rest)
+
+    def _do_calls(self) -> None:
+        with self._changed:
+            calls, self._calls = self._calls, []
+        for call in calls:
+            call()

@@ -1,0 +1,91 @@
+"""Preview of a trial: people on straight lines, shown while the simulation is prepared."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.trials import Trial
+
+__all__ = ["trial_preview"]
+
+Floats = NDArray[np.float64]
+MOST = 150
+PACE = 1.3
+"""Speed [m/s] of people and robots in a preview."""
+
+
+def trial_preview(trial: Trial) -> dict[str, Any]:
+    """Return walls, bounds [m] and moving discs [x, y, vx, vy, radius, 1 for a robot] of a trial.
+
+    This is no simulation: nobody reacts to anybody. It needs no compiled code.
+
+    >>> from crowdbot.trials import load_trial
+    >>> len(trial_preview(load_trial("frontal"))["discs"])
+    2
+    """
+    rng = np.random.default_rng(0)
+    discs = [_disc((one.x, one.y), _first(one.goal), one.radius, 0) for one in trial.agents]
+    goals = {journey.name: _stop(journey) for journey in trial.journeys}
+    for spawner in trial.spawners:
+        zone = np.asarray(spawner.zone, dtype=np.float64)
+        goal = np.asarray(spawner.goal, dtype=np.float64).mean(axis=0) if spawner.goal else goals.get(spawner.journey)
+        for place in _points(zone, min(spawner.count, MOST - len(discs)), rng):
+            ahead = None if goal is None else (place + goal - zone.mean(axis=0))
+            discs.append(_disc(place, ahead, 0.25, 0))
+    discs += [_disc((one.x, one.y), one.goal.position, float(one.radius), 1) for one in trial.robots]
+    rings = [np.asarray(ring) for ring in trial.stage.rings]
+    every = np.concatenate([*rings, np.array([disc[:2] for disc in discs]).reshape(-1, 2), np.zeros((0, 2))])
+    low, high = (
+        (every.min(axis=0) - 1.0, every.max(axis=0) + 1.0) if len(every) else (np.full(2, -5.0), np.full(2, 5.0))
+    )
+    return {
+        "bounds": [*low.round(2).tolist(), *high.round(2).tolist()],
+        "walls": [ring.round(3).tolist() for ring in rings],
+        "discs": discs,
+    }
+
+
+def _disc(place: Any, goal: Any, radius: float, robot: int) -> list[float]:
+    x, y = float(place[0]), float(place[1])
+    way = (0.0, 0.0) if goal is None else (float(goal[0]) - x, float(goal[1]) - y)
+    length = math.hypot(*way)
+    speed = PACE / length if length > 0.1 else 0.0
+    return [round(one, 3) for one in (x, y, way[0] * speed, way[1] * speed, radius, robot)]
+
+
+def _first(points: Any) -> Any:
+    return points[0] if points else None
+
+
+def _stop(journey: Any) -> Floats | None:
+    for stop in journey.stops:
+        points = getattr(stop, "points", None)
+        if points:
+            return np.asarray(points, dtype=np.float64).mean(axis=0)
+        if hasattr(stop, "x"):
+            return np.array([stop.x, stop.y], dtype=np.float64)
+    return None
+
+
+def _points(zone: Floats, count: int, rng: np.random.Generator) -> list[Floats]:
+    """Return random points in a polygon."""
+    low, high = zone.min(axis=0), zone.max(axis=0)
+    found: list[Floats] = []
+    for place in rng.uniform(low, high, (max(0, 40 * count), 2)):
+        if len(found) >= count:
+            break
+        if _is_inside(place, zone):
+            found.append(place)
+    return found
+
+
+def _is_inside(place: Floats, zone: Floats) -> bool:
+    ahead, crossing = np.roll(zone, -1, axis=0), False
+    for (x, y), (u, v) in zip(zone, ahead, strict=True):
+        if (y > place[1]) != (v > place[1]) and place[0] < (u - x) * (place[1] - y) / (v - y) + x:
+            crossing = not crossing
+    return crossing

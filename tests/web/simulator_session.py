@@ -1,0 +1,54 @@
+"""A session without windows, for tests of the simulator desk."""
+
+import contextlib
+import json
+import time
+
+from crowdbot.web import Workspace
+from crowdbot.web.simulator import SimulatorDesk
+
+
+class Windows:
+    """Collects what a desk sends."""
+
+    name = "main"
+
+    def __init__(self, folder):
+        self.workspace = Workspace(folder)
+        self.events, self.frames = [], []
+
+    def tell(self, event, data):
+        self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
+
+    def show(self, frame):
+        self.frames = [*self.frames[-50:], frame]
+
+    def latest(self, event):
+        return next(data for name, data in reversed(self.events) if name == event)
+
+
+def wait_until(condition, seconds=100.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it takes too long"
+        time.sleep(0.01)
+
+
+@contextlib.contextmanager
+def simulator(folder):
+    """A desk in a folder, closed at the end."""
+    desk = SimulatorDesk(Windows(folder))
+    try:
+        yield desk
+    finally:
+        desk.close()
+
+
+def ready(desk):
+    wait_until(lambda: desk._status()["state"] not in ("preparing", "none"))
+    return desk._status()
+
+
+def ended(desk):
+    wait_until(lambda: desk._status()["state"] in ("ended", "failed"))
+    return desk._status()
