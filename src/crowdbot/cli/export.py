@@ -1,11 +1,9 @@
-"""``crowdbot export EPISODE.mcap --to FILE``: write an episode as a table, Parquet or CSV, or as a page that plays it."""
+"""``crowdbot export EPISODE.mcap --to FILE``: write an episode as a table, or as a page that plays it."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-
-from crowdbot.core import InputError
 
 from .output import add_json, print_json, progress
 
@@ -13,7 +11,13 @@ from .output import add_json, print_json, progress
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path, help="recorded episode")
-    parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="output file, .parquet or .csv; .html is one page that plays the episode in a browser")
+    parser.add_argument(
+        "--to",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help="output file, .parquet or .csv; .html is one page that plays the episode in a browser",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument(
         "--table",
@@ -32,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Write the table or the page."""
+    from crowdbot.core import InputError
     from crowdbot.recording import export, folder_of
 
     if options.to.suffix.lower() == ".html":
@@ -54,7 +59,8 @@ def main(options: argparse.Namespace) -> int:
 
 def _write_page(options: argparse.Namespace) -> int:
     """Write the page that plays the episode."""
-    from crowdbot.web.scene import write_player
+    from crowdbot.core import InputError
+    from crowdbot.web import write_player
 
     if options.table != "people":
         raise InputError("--table is for a table; a page holds everything")

@@ -8,6 +8,7 @@ from .app_server import AppServer
 from .app_session import AppSession, Viewer
 from .command import call_command, command, command_names
 from .desk import Desk, DeskWindows, Resource
+from .scene import PlayerFile, scene_description, scene_frame, scene_resource, write_player
 from .state_frame import StateFrame
 from .tabs import DESKS, opened_first
 from .window import CREDIT, Window
@@ -21,6 +22,7 @@ __all__ = [
     "AppSession",
     "Desk",
     "DeskWindows",
+    "PlayerFile",
     "Resource",
     "StateFrame",
     "Viewer",
@@ -31,4 +33,8 @@ __all__ = [
     "command_names",
     "is_loopback",
     "opened_first",
+    "scene_description",
+    "scene_frame",
+    "scene_resource",
+    "write_player",
 ]

@@ -28,11 +28,11 @@ KINDS: dict[type, str] = {
 def scene_description(simulation: Simulation, people: PeopleMotion | None = None) -> dict[str, Any]:
     """Return what a page needs to draw a simulation, as JSON; the page asks again when the revision changes.
 
-    Keys: ``revision``; ``name``, ``world``, ``duration``; ``bounds`` x0, y0, x1, y1 and ``focus`` x, y [m]; ``stage`` (walls, ground,
-    doors, props); ``zones``; ``regions`` and ``parts`` of bodies; ``people`` with lists for all people: ``body`` (row
-    of the asset), ``kind`` (its name), ``scale``, ``height`` [m], ``colors`` (six digits for each region), ``parts``
-    (bits of the parts that are worn) and ``rider``; ``robots``; ``sensors``; ``layers`` (names and titles of
-    :data:`crowdbot.web.scene.LAYERS`).
+    Keys: ``revision``; ``name``, ``about``, ``world``, ``duration``; ``bounds`` x0, y0, x1, y1 and ``focus`` x, y [m];
+    ``stage`` (walls, ground, doors, props); ``zones``; ``regions`` and ``parts`` of bodies; ``people`` with lists for
+    all people: ``body`` (row of the asset), ``kind`` (its name), ``scale``, ``height`` [m], ``colors`` (six digits for
+    each region), ``parts`` (bits of the parts that are worn), ``radius`` [m] and ``rider``; ``robots``; ``sensors``;
+    ``layers`` (names and titles of :data:`crowdbot.web.scene.LAYERS`).
 
     Args:
         simulation: the simulation.

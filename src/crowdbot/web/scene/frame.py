@@ -44,8 +44,8 @@ def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: Pe
     relative to the rest shape, in units of 1/32767; ``bots`` [R] row of a robot in the description; ``botplace``
     [R, 5]; ``links`` [L, 7] position and quaternion of the links with shapes of these robots, one robot after the
     other; ``doors`` [D]; ``props`` [P, 7] pose of movable props, and ``propnum`` [P] their numbers. Layers add:
-    ``scanK`` and ``poseK`` for scanner K of the description; ``cloudK`` [M, 3]; ``cones``; ``forces`` [F, 6] point [m] and
-    vector [N]; ``goals`` [N, 2].
+    ``scanK`` and ``poseK`` for scanner K of the description; ``cloudK`` [M, 3]; ``cones``; ``forces`` [F, 6] point [m]
+    and vector [N]; ``goals`` [N, 2].
 
     Args:
         simulation: the simulation; ``posed=True``, unless ``people`` is given.
