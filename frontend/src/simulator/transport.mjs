@@ -44,6 +44,7 @@ export class Transport {
   change(by) {
     const at = SPEEDS.findIndex((one) => one === this.status.speed);
     const next = SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, (at < 0 ? 3 : at) + by))];
+    this.status.speed = next;
     return this._call("speed", { speed: next });
   }
 

@@ -33,6 +33,7 @@ class StageView:
         self._bodies: WalkingBodies | None = None
         self._simulation: Simulation | None = None
         self._shown = self._told = 0.0
+        self._closed = False
         self._rate: tuple[float, float] | None = None
         self.factor: float | None = None
         """Simulated time over real time since the status before."""
@@ -42,8 +43,8 @@ class StageView:
         self._simulation, self._bodies, self._rate = simulation, WalkingBodies(simulation), None
 
     def close(self) -> None:
-        """Send nothing more: the windows show something else."""
-        self._simulation = None
+        """Send nothing more: the windows show something else. Called from any thread."""
+        self._closed = True
 
     def description(self) -> dict[str, Any]:
         """Return what stands still."""
@@ -54,7 +55,9 @@ class StageView:
     def show(self, always: bool = False) -> bool:
         """Send a frame if one is due; return whether it was sent."""
         now = time.monotonic()
-        if self._simulation is None or self._bodies is None or (now - self._shown < FRAME and not always):
+        if self._closed or self._simulation is None or self._bodies is None:
+            return False
+        if now - self._shown < FRAME and not always:
             return False
         self._shown = now
         self._bodies.follow(self._simulation)
