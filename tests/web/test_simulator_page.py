@@ -101,7 +101,7 @@ def test_a_run_is_steered_saved_and_replays(page, files):
     page.get_by_label("Choose a person or robot").select_option("robot 5")
     page.get_by_label("Navigator").select_option("straight")
     page.get_by_role("cell", name="straight").wait_for()
-    page.get_by_role("button", name="Save the recording").click()
+    page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="circle-crossing-seed").wait_for()
     saved = next(files.glob("circle-crossing-seed-*.mcap"))
     assert len(read_episode(saved).orders) == 4
@@ -129,7 +129,7 @@ def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):
     page.keyboard.press("Escape")
     wait(page, f"{VIEW}.drive.subject === null")
     page.get_by_role("cell", name="orca", exact=True).wait_for()
-    page.get_by_role("button", name="Save the recording").click()
+    page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="static-crowd-seed").wait_for()
     saved = next(files.glob("static-crowd-seed-*.mcap"))
     assert replay(saved).equal
@@ -148,7 +148,7 @@ def test_the_keyboard_alone_runs_restarts_and_ends_with_the_digest_of_the_comman
         page.keyboard.press("]")
     wait(page, f"{VIEW}.status.speed === null")
     state(page, "ended")
-    page.get_by_role("button", name="Save the recording").focus()
+    page.get_by_role("button", name="Save", exact=True).focus()
     page.keyboard.press("Enter")
     page.get_by_role("button", name="circle-crossing-seed").wait_for()
     episode = read_episode(next(files.glob("circle-crossing-seed-*.mcap")))
