@@ -31,7 +31,7 @@ function licenses() {
     if (!file) throw new Error(`${name} has no licence file`);
     return `${name} ${version} (${license})\n\n${readFileSync(join(folder, file), "utf8").trim()}\n`;
   });
-  return `app.js contains these libraries.\n\n${texts.join("\n" + "-".repeat(80) + "\n\n")}`;
+  return `app.js and player.js contain these libraries.\n\n${texts.join("\n" + "-".repeat(80) + "\n\n")}`;
 }
 
 const files = {
@@ -39,6 +39,9 @@ const files = {
   "app.css": await bundle("src/styles/app.css"),
   "index.html": readFileSync(join(here, "src", "index.html"), "utf8"),
   "icon.svg": readFileSync(join(here, "src", "icon.svg"), "utf8"),
+  "player.js": await bundle("src/player/main.mjs"),
+  "player.css": await bundle("src/styles/player.css"),
+  "player.html": readFileSync(join(here, "src", "player.html"), "utf8"),
   "licenses.txt": licenses(),
 };
 

@@ -3,10 +3,13 @@
 import dataclasses
 import json
 import math
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import crowdbot
 from crowdbot.benchmark import (
     DRIVE_BARS,
     DriveFigures,
@@ -26,6 +29,7 @@ from crowdbot.models import ORCA
 from crowdbot.world import AckermannDrive, Omnidirectional, PlanarWorld, Robot, builtin_robots
 
 STEP = 0.01
+ROBOTS = Path(crowdbot.__file__).parent / "assets" / "robots"
 
 
 def test_a_planar_trace_is_the_planar_world():
@@ -121,11 +125,34 @@ def test_the_command_prints_a_table_or_json(capsys, tmp_path):
     assert found["bars"] == dict(DRIVE_BARS)
 
 
+def test_the_page_has_robots_of_other_makers(tmp_path, capsys):
+    cart, page = tmp_path / "cart.urdf", tmp_path / "drives.md"
+    shutil.copyfile(ROBOTS / "turtlebot2" / "turtlebot2.urdf", cart)
+    words = ["bench", "drives", "--robot", "differential", "--quick", "--page", str(page), "--makers", str(cart)]
+    assert main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [(row["robot"], row["base"], row["step"]) for row in found["makers"]] == [("cart", "differential", 0.005)]
+    text = page.read_text(encoding="utf-8")
+    assert f"--page drives.md --makers \\\n    {cart}\n" in text
+    assert "## Robots of other makers" in text
+    assert "| cart | differential | 5 |" in text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cart.urdf", "drives", "drives.md"]
+
+
+def test_figures_beyond_the_bars_are_named_for_other_makers(tmp_path):
+    report = measure_drives(["differential"], quick=True)
+    worse = dataclasses.replace(report.rows[0], robot="cart", grid=DriveFigures(overshoot=0.5, tilt=1.0))
+    report = dataclasses.replace(report, makers=(worse, report.rows[0]))
+    text = write_drives_page(report, tmp_path / "drives.md")[0].read_text(encoding="utf-8")
+    assert "Within all bars at all steps: 1 robot. Beyond a bar at some step: cart: overshoot, fall." in text
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
         (["bench", "drives", "environments"], "is measured alone"),
-        (["bench", "--robot", "qolo"], "--robot and --page belong to crowdbot bench drives"),
+        (["bench", "--robot", "qolo"], "--robot, --makers and --page belong to crowdbot bench drives"),
+        (["bench", "drives", "--quick", "--robot", "qolo", "--makers", "no.urdf"], "there is no URDF file no.urdf"),
         (["bench", "drives", "--robot", "turtlebot9"], "there is no robot 'turtlebot9'"),
     ],
 )

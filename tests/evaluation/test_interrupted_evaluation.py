@@ -1,26 +1,13 @@
 """Evaluations that are killed at random moments, and workers that die, end with the same table."""
 
 import importlib
-import random
-import signal
-import subprocess
-import sys
-import time
 
 import pytest
 
 from crowdbot.evaluation import EvaluationPlan, evaluate, load_evaluation, parse_methods
 from crowdbot.trials import load_trial
+from killed_runs import FEW, MANY, run_killed
 
-PROGRAM = """
-import importlib, sys
-from pathlib import Path
-from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
-from crowdbot.trials import load_trial
-importlib.import_module("crowdbot.evaluation.runner").CHUNK = 1
-plan = EvaluationPlan([load_trial("circle-crossing", duration=3.0)], parse_methods("straight, orca"), seeds=range(10))
-evaluate(plan, Path(sys.argv[1]) / "parts").save(Path(sys.argv[1]) / "result.json")
-"""
 FATAL = """
 import os, signal
 from dataclasses import dataclass
@@ -50,35 +37,15 @@ def plain(cells):
     )
 
 
-@pytest.mark.sweep
-def test_an_evaluation_that_is_killed_20_times_ends_with_the_same_table(tmp_path):
-    rng = random.Random(17)
-    command = [sys.executable, "-c", PROGRAM, str(tmp_path)]
-    kills = 0
-    while kills < 20 and not (tmp_path / "result.json").exists():
-        process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-        begin, before = time.monotonic(), len(list(tmp_path.glob("parts/*.json")))
-        # a run without a new part is killed only after one, so that all 20 kills hit different moments of the work
-        while len(list(tmp_path.glob("parts/*.json"))) == before and time.monotonic() - begin < 120:
-            if process.poll() is not None or rng.random() < 0.002:
-                break
-            time.sleep(0.01)
-        time.sleep(rng.uniform(0.0, 0.05))
-        if process.poll() is None:
-            process.send_signal(signal.SIGKILL)
-            kills += 1
-        process.wait()
-    assert subprocess.run(command, check=False).returncode == 0
-    assert kills >= 10
-    plan = EvaluationPlan(
-        [load_trial("circle-crossing", duration=3.0)], parse_methods("straight, orca"), seeds=range(10)
-    )
-    whole = evaluate(plan)
-    again = load_evaluation(tmp_path / "result.json")
-    assert plain(cells_of(again)) == plain(cells_of(whole))
-    for one, other in zip(again.cells, whole.cells, strict=True):
-        for row, wanted in zip(one.runs, other.runs, strict=True):
-            assert dict(row.metrics) == pytest.approx(dict(wanted.metrics), nan_ok=True, rel=0.0, abs=0.0)
+@pytest.mark.parametrize("kills", [FEW, pytest.param(MANY, marks=pytest.mark.sweep)])
+def test_a_killed_evaluation_ends_with_the_same_table(tmp_path, kills):
+    words = ["evaluate", "circle-crossing", "--navigators", "straight, orca", "--set", "duration=3"]
+    run_killed(tmp_path, [*words, "--seeds", "0:70", "--worst", "1"], kills, seed=kills)
+    whole, killed = (load_evaluation(tmp_path / name / "result.json") for name in ("whole", "killed"))
+    assert [len(cell.runs) for cell in whole.cells] == [70, 70]
+    assert repr(killed.cells) == repr(whole.cells)
+    report = (tmp_path / "whole" / "report.html").read_text(encoding="utf-8")
+    assert (tmp_path / "killed" / "report.html").read_text(encoding="utf-8") == report
 
 
 @pytest.mark.sweep

@@ -157,6 +157,16 @@ def test_a_replay_does_not_wait_for_a_decision_that_hung(tmp_path: Path) -> None
     assert done.failures[0] == done.failures[1]
 
 
+def test_a_failed_run_has_the_same_digest_alone_and_among_others() -> None:
+    trial = with_navigator(Stuck(way="sleep"))
+    with pytest.warns(RunFailureWarning):
+        together = simulate_seeds(trial, [1, 2])
+    with pytest.warns(RunFailureWarning):
+        alone = [simulate(trial, seed) for seed in (1, 2)]
+    assert [one.digest for one in together] == [one.digest for one in alone]
+    assert [order for _, order in together[1].orders] == [order for _, order in alone[1].orders]
+
+
 def test_a_decision_within_the_limit_changes_nothing() -> None:
     quick = Stuck(begin_at=100.0)
     assert simulate(with_navigator(quick), 1).digest == simulate(with_navigator(quick, decision_limit=1e5), 1).digest

@@ -3,7 +3,9 @@
 import asyncio
 import contextlib
 import shutil
+import subprocess
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -12,9 +14,9 @@ from crowdbot.web import DESKS, AppServer
 FLAGS = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
-    """Headless Chromium."""
+    """Headless Chromium; Playwright keeps an event loop running until the end of the module."""
     from playwright.sync_api import sync_playwright
 
     path = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -48,6 +50,12 @@ def serve(folder, desks=DESKS, **options):
         assert not thread.is_alive()
 
 
+@pytest.fixture(name="serve")
+def serve_fixture():
+    """Function that runs the app with given desks in a thread."""
+    return serve
+
+
 @pytest.fixture
 def app(tmp_path):
     """The app on a free port, with an empty folder."""
@@ -70,3 +78,30 @@ def page(browser, app):
     yield page
     context.close()
     assert faults == []
+
+
+@pytest.fixture(scope="session")
+def modules(tmp_path_factory):
+    """A copy of the sources of the page with the libraries of its lock file."""
+    root = Path(__file__).parents[2]
+    folder = tmp_path_factory.mktemp("checkout")
+    shutil.copytree(root / "frontend", folder / "frontend", ignore=shutil.ignore_patterns("node_modules"))
+    shutil.copytree(root / "src/crowdbot/assets/web", folder / "src/crowdbot/assets/web")
+    shutil.copytree(root / "tests/web", folder / "tests/web", ignore=shutil.ignore_patterns("*.py"))
+    command = ["npm", "ci", "--no-audit", "--no-fund"]
+    done = subprocess.run(command, cwd=folder / "frontend", capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return folder / "frontend"
+
+
+@pytest.fixture(scope="session")
+def axe(modules):
+    """A function that returns the accessibility faults that axe-core finds in a page."""
+    script = (modules / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
+
+    def check(page):
+        page.evaluate(script)
+        found = page.evaluate("axe.run()")["violations"]
+        return [(one["id"], one["help"], [node["html"][:200] for node in one["nodes"][:3]]) for one in found]
+
+    return check

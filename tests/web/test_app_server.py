@@ -241,3 +241,17 @@ def test_uploads_are_kept_by_their_last_name(tmp_path):
 
     assert serve(tmp_path, talk) == {"name": "tracks.csv"}
     assert (tmp_path / "files" / "tracks.csv").read_bytes() == b"id,x"
+
+
+def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path, monkeypatch):
+    from crowdbot.web import app_server
+
+    async def talk(server, client):
+        async with client.post(server.url + "api/main/upload?name=large.csv", data=bytes(5 << 20)) as answer:
+            first = answer.status
+        monkeypatch.setattr(app_server, "UPLOAD", 1 << 20)
+        async with client.post(server.url + "api/main/upload?name=huge.csv", data=bytes(2 << 20)) as answer:
+            return first, answer.status
+
+    assert serve(tmp_path, talk) == (200, 413)
+    assert [one.name for one in (tmp_path / "files").iterdir()] == ["large.csv"]

@@ -1,26 +1,9 @@
 """The frame of the page: tabs, theme, keys, connection; the shipped files are as built."""
 
-import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
-
 FRONTEND = Path(__file__).parents[2] / "frontend"
-
-
-@pytest.fixture(scope="module")
-def modules(tmp_path_factory):
-    """A copy of the sources of the page with the libraries of its lock file."""
-    folder = tmp_path_factory.mktemp("checkout")
-    shutil.copytree(FRONTEND, folder / "frontend", ignore=shutil.ignore_patterns("node_modules"))
-    shutil.copytree(FRONTEND.parent / "src/crowdbot/assets/web", folder / "src/crowdbot/assets/web")
-    shutil.copytree(FRONTEND.parent / "tests/web", folder / "tests/web", ignore=shutil.ignore_patterns("*.py"))
-    done = subprocess.run(
-        ["npm", "ci", "--no-audit", "--no-fund"], cwd=folder / "frontend", capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    return folder / "frontend"
 
 
 def test_the_shipped_files_are_as_built(modules):

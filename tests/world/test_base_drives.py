@@ -95,8 +95,19 @@ def test_a_load_beside_the_middle_moves_the_centre_of_turning():
 def test_speed_and_turn_rate_are_limited_together_by_friction():
     drive = SkidSteerDrive(max_speed=3.0, max_turn_rate=4.0, friction=0.5, max_wheel_speed=500.0)
     twist = driven(drive, Twist(3.0, 4.0), 0.05, 200)[1].at(0)
-    assert twist.forward * twist.turn == pytest.approx(0.4 * 0.5 * 9.81)
+    assert twist.forward * twist.turn == pytest.approx(drive.curve_share * 0.5 * 9.81)
+    assert 0.2 < drive.curve_share < 0.4
     assert twist.turn / twist.forward == pytest.approx(4.0 / 3.0)
+
+
+@pytest.mark.parametrize("x", [-0.03, 0.0, 0.03])
+def test_all_tyres_slide_sideways_in_the_fastest_curve(x):
+    limits = {"max_speed": 3.0, "max_turn_rate": 3.0, "max_wheel_speed": 500.0}
+    drive = SkidSteerDrive(center_x=x, track=0.4, wheelbase=0.4, **limits)
+    twist = driven(drive, Twist(3.0, 2.0), 0.05, 300)[1].at(0)
+    slips = [twist.left + twist.turn * place for place in (-0.2, 0.2)]
+    assert min(abs(slip) for slip in slips) == pytest.approx(0.3 * 0.2 * twist.turn, rel=0.05)
+    assert slips[0] < 0.0 < slips[1]
 
 
 @pytest.mark.parametrize("drive", WHEELED)

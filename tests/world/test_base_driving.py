@@ -140,15 +140,30 @@ HUSKY = "husky/husky_description/urdf/husky.urdf.xacro"
 JACKAL = "jackal/jackal_description/urdf/jackal.urdf.xacro"
 
 
+def real_robot(source, folder):
+    made = import_robot(source, "real")
+    for path, content in made.texts.items():
+        (folder / path).write_text(content)
+    for path, file in made.copies.items():
+        (folder / path).parent.mkdir(exist_ok=True)
+        (folder / path).write_bytes(file.read_bytes())
+    return Robot.load(folder)
+
+
+@pytest.mark.parametrize("step", [0.002, 0.005, 0.01])
+@pytest.mark.parametrize("name", [HUSKY, JACKAL])
+def test_real_skid_steer_robots_do_not_overshoot(urdf, tmp_path, name, step):
+    real_robot(urdf / name, tmp_path)
+    grid = measure_drives([str(tmp_path)], steps=[step], quick=True).rows[0].grid
+    assert grid.overshoot <= 0.05
+    assert grid.steady_error <= 0.02
+    assert grid.path_error <= 0.02
+    assert not grid.fallen
+
+
 @pytest.mark.parametrize("name", [HUSKY, JACKAL])
 def test_real_skid_steer_robots_turn_as_asked(urdf, tmp_path, name):
-    made = import_robot(urdf / name, "real")
-    for path, content in made.texts.items():
-        (tmp_path / path).write_text(content)
-    for path, source in made.copies.items():
-        (tmp_path / path).parent.mkdir(exist_ok=True)
-        (tmp_path / path).write_bytes(source.read_bytes())
-    robot = Robot.load(tmp_path)
+    robot = real_robot(urdf / name, tmp_path)
     for row in ((0.0, 1.0), (0.5, 0.0), (0.5, 1.0)):
         forward, turn, _ = driven(PhysicsWorld(scene_of(robot), ORCA(), {0: robot}, DT), Twist(*row))
         assert forward == pytest.approx(row[0], rel=0.05, abs=0.01)

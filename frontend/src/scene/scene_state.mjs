@@ -29,6 +29,11 @@ export class SceneState {
     return true;
   }
 
+  /** Number of people who are present, without riders of robots. */
+  get walkers() {
+    return this.frame ? this.frame.arrays.who.filter((row) => !this.description.people.rider[row]).length : 0;
+  }
+
   get time() {
     return this.frame ? this.frame.time : 0;
   }

@@ -10,7 +10,8 @@ export function drawPeople(context, state, look, pixel, mark, numbers) {
   const [top, hair] = [regions.indexOf("top"), regions.indexOf("hair")];
   for (let i = 0; i < state.people; i++) {
     const [x, y, heading, vx, vy] = place.subarray(5 * i, 5 * i + 5);
-    const radius = people.radius[who[i]];
+    const rider = people.rider[who[i]];
+    const radius = rider ? 0.24 : people.radius[who[i]];
     const colors = people.colors[who[i]];
     context.beginPath();
     context.arc(x, y, radius, 0, 2 * Math.PI);
@@ -36,6 +37,7 @@ export function drawPeople(context, state, look, pixel, mark, numbers) {
     context.fill();
     context.restore();
     line(context, x, y, x + 0.6 * vx, y + 0.6 * vy, look.ink, 1.5 * pixel);
+    if (rider) continue;
     if (mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
     if (numbers) write(context, String(ids[i]), x, y + radius + 4 * pixel, look.ink, pixel);
   }

@@ -127,7 +127,7 @@ export class Scene2D {
   /** Numbers of the last picture, for tests and for a text beside the canvas. */
   info() {
     return {
-      people: this.state.people,
+      people: this.state.walkers,
       robots: this.state.frame ? this.state.frame.arrays.bots.length : 0,
       levels: [0, 0, 0],
       time: this.state.time,

@@ -40,7 +40,7 @@ export class Robots {
       robot.group.visible = robot.id !== hidden;
       for (const mesh of robot.links) {
         mesh.position.set(links[at], links[at + 1], links[at + 2]);
-        mesh.quaternion.set(links[at + 4], links[at + 5], links[at + 6], links[at + 3]);
+        mesh.quaternion.set(links[at + 4], links[at + 5], links[at + 6], links[at + 3]).normalize();
         at += 7;
       }
     }

@@ -165,7 +165,7 @@ export class Scene3D {
     const { render, memory } = this._renderer.info;
     const { position } = this._views.camera;
     return {
-      people: this.state.people,
+      people: this.state.walkers,
       robots: this.state.frame ? this.state.frame.arrays.bots.length : 0,
       levels: this._crowd ? [...this._crowd.counts] : [0, 0, 0],
       time: this.state.time,

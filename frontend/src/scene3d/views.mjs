@@ -4,6 +4,9 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FIELD = 45;
 const WIDE = 75;
+/** Largest distance of the first view [m], so that people are seen. */
+const FARTHEST = 24;
+const NEARER = 17;
 
 export class Views {
   constructor(canvas) {
@@ -60,7 +63,7 @@ export class Views {
   }
 
   /** Shows all of a description, from above or from the side. */
-  overview({ bounds: [x0, y0, x1, y1] }, above = false) {
+  overview({ bounds: [x0, y0, x1, y1], focus }, above = false) {
     const middle = new THREE.Vector3(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.6);
     const pitch = above ? 1.05 : 0.62;
     const yaw = x1 - x0 >= y1 - y0 ? -0.5 * Math.PI : Math.PI;
@@ -68,14 +71,24 @@ export class Views {
     const way = new THREE.Vector3(Math.cos(turn) * Math.cos(pitch), Math.sin(turn) * Math.cos(pitch), Math.sin(pitch));
     const corners = [];
     for (const x of [x0, x1]) for (const y of [y0, y1]) for (const z of [0, 1.8]) corners.push(new THREE.Vector3(x, y, z));
-    let [near, far] = [1, 400];
-    for (let k = 0; k < 24; k++) {
-      const away = 0.5 * (near + far);
-      this._look(middle, way, away);
-      if (corners.every((one) => this._sees(one))) far = away;
-      else near = away;
+    for (let round = 0; round < 3; round++) {
+      let [near, far] = [1, 400];
+      for (let k = 0; k < 20; k++) {
+        const away = 0.5 * (near + far);
+        this._look(middle, way, away);
+        if (corners.every((one) => this._sees(one))) far = away;
+        else near = away;
+      }
+      this._look(middle, way, far);
+      this._center(middle, corners);
+      this._away = far;
     }
-    this._look(middle, way, above ? far : Math.min(far, 22));
+    if (!above && this._away > FARTHEST) {
+      middle.set(focus[0], focus[1], 0.8);
+      this._look(middle, way, NEARER);
+    } else {
+      this._look(middle, way, this._away);
+    }
     this.controls.target.copy(middle);
     this.controls.update();
   }
@@ -97,6 +110,19 @@ export class Views {
     this.camera.lookAt(middle);
     this.camera.updateMatrixWorld();
     this.camera.matrixWorldInverse.copy(this.camera.matrixWorld).invert();
+  }
+
+  /** Moves a point of the floor to the middle of where points are in the picture. */
+  _center(middle, points) {
+    const at = points.map((one) => one.clone().project(this.camera));
+    const middles = ["x", "y"].map((axis) => {
+      const values = at.map((one) => one[axis]);
+      return 0.5 * (Math.min(...values) + Math.max(...values));
+    });
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2(...middles), this.camera);
+    const hit = ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -middle.z), new THREE.Vector3());
+    if (hit) middle.copy(hit);
   }
 
   _sees(point) {

@@ -17,6 +17,11 @@ export class App {
     this.select(this.address.get("tab") ?? tabs[0].name);
   }
 
+  /** What a tab has returned from mount, such as its scene for the tests; undefined before it was shown. */
+  tab(name) {
+    return this._views.get(name);
+  }
+
   /** Shows a tab. */
   select(name) {
     const tab = this.tabs.find((one) => one.name === name) ?? this.tabs[0];

@@ -1,5 +1,7 @@
 // Small functions that make elements of the page. Text is never parsed as HTML.
 
+const isShown = (one) => one !== null && one !== undefined && one !== false;
+
 /** Makes an element: h("button", {class: "main", onclick: f, "aria-label": "Run"}, "Run", child, ...). */
 export function h(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
@@ -8,13 +10,13 @@ export function h(tag, attributes = {}, ...children) {
     else if (value === true) element.setAttribute(name, "");
     else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, value);
   }
-  element.append(...children.flat().filter((one) => one !== null && one !== undefined));
+  element.append(...children.flat().filter(isShown));
   return element;
 }
 
 /** Replaces the children of an element. */
 export function fill(element, ...children) {
-  element.replaceChildren(...children.flat().filter((one) => one !== null && one !== undefined));
+  element.replaceChildren(...children.flat().filter(isShown));
   return element;
 }
 

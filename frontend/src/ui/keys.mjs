@@ -20,7 +20,7 @@ export class Keys {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target;
     if (target.closest("input, textarea, select, dialog, [contenteditable]")) return;
-    if (event.key === " " && target.closest("button, summary, a")) return;
+    if ((event.key === " " || event.key === "Enter") && target.closest("button, summary, a")) return;
     if (event.key.startsWith("Arrow") && target.closest("[role=tab], [role=slider], [role=listbox]")) return;
     const found = this.list().find(([key]) => key === event.key);
     if (!found) return;

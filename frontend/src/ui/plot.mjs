@@ -13,12 +13,12 @@ export function themeColour(colour) {
 /**
  * Makes a plot in an element.
  * @param {HTMLElement} element place of the plot; its width is that of the plot
- * @param {{title: string, x: {label, unit}, series: {label, unit, colour, dash}[], height?: number, points?: boolean}} options
+ * @param {{title: string, x: {label, unit}, series: {label, unit, colour, dash}[], height?: number, points?: boolean, legend?: boolean}} options
  *   colour: CSS colour or name of a property such as "--data-1"; dash: lengths [px], [] for a solid line
  * @returns {{set(data: number[][]), mark(x: number|null), destroy()}} set takes [xs, values of series 1, ...]; values
  *   that are not finite are gaps; mark draws a vertical line at x
  */
-export function makePlot(element, { title, x, series, height = HEIGHT, points = false }) {
+export function makePlot(element, { title, x, series, height = HEIGHT, points = false, legend = true }) {
   const place = h("div", { role: "img", "aria-label": `${title}: no data yet`, class: "plot-canvas" });
   const figure = h("figure", { class: "plot" }, h("figcaption", {}, title), place);
   element.append(figure);
@@ -53,7 +53,7 @@ export function makePlot(element, { title, x, series, height = HEIGHT, points = 
       stroke: themeColour("--ink"),
       grid: { stroke: themeColour("--line"), width: 0.5 },
       ticks: { stroke: themeColour("--line"), width: 0.5 },
-      size: 42,
+      size: 54,
     });
     const units = [...new Set(series.map((one) => one.unit ?? ""))].filter(Boolean);
     plot = new uPlot(
@@ -73,6 +73,7 @@ export function makePlot(element, { title, x, series, height = HEIGHT, points = 
             points: points ? { show: true, size: 5 } : undefined,
           })),
         ],
+        legend: { show: legend },
         cursor: { drag: { x: true, y: false } },
         hooks: { draw: [drawMark] },
       },

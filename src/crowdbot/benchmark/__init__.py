@@ -33,6 +33,7 @@ _MODULES = {
     "prediction": (
         "DegradedScore",
         "FrameResults",
+        "WindowResults",
         "JobResult",
         "EvaluationJob",
         "PredictorResult",
@@ -41,6 +42,7 @@ _MODULES = {
         "animate_window",
         "plot_degradation",
         "evaluate",
+        "predict_windows",
         "plot_errors",
         "plot_frames",
         "sweep_degradations",
@@ -96,11 +98,13 @@ if TYPE_CHECKING:
     from .prediction import FrameResults as FrameResults
     from .prediction import JobResult as JobResult
     from .prediction import PredictorResult as PredictorResult
+    from .prediction import WindowResults as WindowResults
     from .prediction import animate_window as animate_window
     from .prediction import evaluate as evaluate
     from .prediction import plot_degradation as plot_degradation
     from .prediction import plot_errors as plot_errors
     from .prediction import plot_frames as plot_frames
+    from .prediction import predict_windows as predict_windows
     from .prediction import sweep_degradations as sweep_degradations
     from .report import PredictionResult as PredictionResult
     from .report import write_report as write_report

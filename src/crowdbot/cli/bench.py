@@ -47,6 +47,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help=f"robots or their folders for {DRIVES} (default: built-in)",
     )
     parser.add_argument(
+        "--makers",
+        metavar="FILE",
+        type=Path,
+        nargs="+",
+        default=[],
+        help=f"URDF, xacro or SDF files for {DRIVES}, imported as by crowdbot new robot FILE --yes (default: none)",
+    )
+    parser.add_argument(
         "--page", type=Path, metavar="FILE.md", help=f"page for {DRIVES}, with its plots in a folder of the same name"
     )
     add_json(parser)
@@ -58,15 +66,15 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
 
     if ENVIRONMENTS in options.names:
-        if len(options.names) > 1 or options.data is not None or options.robot or options.page is not None:
+        if len(options.names) > 1 or options.data is not None or options.robot or options.makers or options.page:
             raise InputError(f"{ENVIRONMENTS} is measured alone, without other measurements and without --data")
         return _measure_environments(options)
     if DRIVES in options.names:
         if len(options.names) > 1 or options.data is not None:
             raise InputError(f"{DRIVES} is measured alone, without other measurements and without --data")
         return _measure_drives(options)
-    if options.robot or options.page is not None:
-        raise InputError(f"--robot and --page belong to crowdbot bench {DRIVES}")
+    if options.robot or options.makers or options.page is not None:
+        raise InputError(f"--robot, --makers and --page belong to crowdbot bench {DRIVES}")
     if options.quick:
         raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS} or {DRIVES}; use --repeats 1")
     with progress(options.json) as report:
@@ -109,13 +117,10 @@ def _measure_drives(options: argparse.Namespace) -> int:
     from crowdbot.benchmark import measure_drives, write_drives_page
 
     with progress(options.json) as report:
-        found = measure_drives(options.robot, quick=options.quick, report=report)
+        found = measure_drives(options.robot, quick=options.quick, makers=options.makers, report=report)
     _write(options.out, found.as_dict())
     if options.page is not None:
-        words = [*(["--robot", *options.robot] if options.robot else []), *(["--quick"] if options.quick else [])]
-        write_drives_page(
-            found, options.page, " ".join(["crowdbot bench", DRIVES, *words, "--page", options.page.name])
-        )
+        write_drives_page(found, options.page, _command(options))
     if options.json:
         print_json(found.as_dict())
     else:
@@ -123,12 +128,20 @@ def _measure_drives(options: argparse.Namespace) -> int:
     return 0
 
 
+def _command(options: argparse.Namespace) -> str:
+    """Return the command of the drive laboratory, with a file of a maker on each line."""
+    words = ["crowdbot bench", DRIVES, *(["--robot", *options.robot] if options.robot else [])]
+    words += ["--quick"] if options.quick else []
+    text = " ".join([*words, "--page", options.page.name])
+    return " \\\n    ".join([text + (" --makers" if options.makers else ""), *map(str, options.makers)])
+
+
 def _print_drives(found: DriveReport) -> None:
     from crowdbot.benchmark import DRIVE_COLUMNS, grid_cells
 
     cells = [
         (row.robot, row.base, f"{1000.0 * row.step:g}", *grid_cells(row.grid), ", ".join(row.failures))
-        for row in found.rows
+        for row in (*found.rows, *found.makers)
     ]
     head = ("robot", "base", "ms", *(title for _, title in DRIVE_COLUMNS), "beyond the bars")
     print_table("drives: largest figures over the grid", head, cells, caption=found.machine, words=2)

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .bridge import add_bridge, check_bridge_options, run_with_bridge
 from .output import add_json, note, number, print_json, print_metrics, print_table, print_warnings, progress
 from .settings import add_settings, add_world, select_variant, settings
 
@@ -25,6 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_world(parser)
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
+    add_bridge(parser)
     add_json(parser)
 
 
@@ -37,6 +39,10 @@ def main(options: argparse.Namespace) -> int:
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    if options.bridge:
+        done, wall = run_with_bridge(trial, options)
+        return print_run(done, options, wall)
+    check_bridge_options(options)
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()

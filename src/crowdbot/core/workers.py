@@ -6,7 +6,9 @@ import concurrent.futures.process
 import contextlib
 import multiprocessing
 import os
+import re
 import signal
+import socket
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,6 +24,11 @@ Result = TypeVar("Result")
 
 ATTEMPTS = 3
 """Maximum number of attempts for a job whose process dies."""
+LOCAL = "local"
+"""Address of a cluster that is started on this machine."""
+ADDRESS = re.compile(r"(?:ray://)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d+)")
+ANSWER = 10.0
+"""Time [s] for a cluster to answer."""
 
 
 def each(
@@ -35,11 +42,12 @@ def each(
         function: function of a job, defined at the top level of a module.
         jobs: arguments of the function.
         workers: number of processes; 1 runs the jobs in this process.
-        cluster: address of a Ray cluster (``auto`` for the cluster of this environment); ``workers`` is then the number
-            of simultaneous jobs. Requires ``pip install crowdbot[cluster]``.
+        cluster: address of a Ray cluster (``auto`` for the cluster of this environment, ``local`` to start one on this
+            machine that ends with the last job); ``workers`` is then the number of simultaneous jobs. Requires
+            ``pip install crowdbot[cluster]``.
 
     Raises:
-        InputError: ``workers`` is below 1.
+        InputError: ``workers`` is below 1, or no cluster answers at the address.
         MissingExtra: Ray is not installed.
         CrowdbotError: the process of a job died in every attempt.
 
@@ -157,13 +165,59 @@ def _on_ray(
     function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, cluster: str
 ) -> Iterator[tuple[int, Result]]:
     ray = import_optional("ray", "a cluster", "cluster")
-    ray.init(address=cluster, ignore_reinit_error=True, log_to_driver=False)
-    remote: Any = ray.remote(max_retries=ATTEMPTS - 1)(function)
-    waiting = list(enumerate(jobs))[::-1]
-    running: dict[Any, int] = {}
-    while waiting or running:
-        while waiting and len(running) < workers:
-            number, job = waiting.pop()
-            running[remote.remote(job)] = number
-        (ready, *_), _ = ray.wait(list(running))
-        yield running.pop(ready), ray.get(ready)
+    ours = not ray.is_initialized()
+    _connect(ray, workers, cluster)
+    try:
+        remote: Any = ray.remote(max_retries=ATTEMPTS - 1)(_run_job)
+        waiting = list(enumerate(jobs))[::-1]
+        running: dict[Any, int] = {}
+        while waiting or running:
+            while waiting and len(running) < workers:
+                number, job = waiting.pop()
+                running[remote.remote(function, job)] = number
+            (ready, *_), _ = ray.wait(list(running))
+            yield running.pop(ready), _ray_result(ray, ready)
+    finally:
+        if ours:  # jobs that still run end with the connection
+            ray.shutdown()
+
+
+def _run_job(function: Callable[[Job], Result], job: Job) -> Result:
+    """Run a job in a process of a cluster."""
+    return function(job)
+
+
+def _connect(ray: Any, workers: int, cluster: str) -> None:
+    """Connect to a Ray cluster, or start one on this machine."""
+    options: dict[str, Any] = {"address": cluster, "ignore_reinit_error": True, "log_to_driver": False}
+    if cluster == LOCAL:
+        options |= {"num_cpus": workers, "include_dashboard": False}
+    else:
+        _check_address(cluster)
+    try:
+        ray.init(**options)
+    except (ConnectionError, ValueError) as error:
+        raise InputError(f"cluster {cluster!r}: {' '.join(str(error).split())}") from None
+
+
+def _check_address(cluster: str) -> None:
+    """Raise an InputError if nobody answers at an address, since Ray itself tries for many minutes."""
+    match = ADDRESS.fullmatch(cluster)
+    if match is None:
+        return
+    try:
+        socket.create_connection((match["host"].strip("[]"), int(match["port"])), timeout=ANSWER).close()
+    except (OSError, OverflowError) as error:
+        raise InputError(f"cluster {cluster!r}: nobody answers there ({error}); is the head node running?") from None
+
+
+def _ray_result(ray: Any, ready: Any) -> Any:
+    """Return the result of a job, or raise its error as it was raised."""
+    try:
+        return ray.get(ready)
+    except ray.exceptions.RayTaskError as error:
+        cause = error.cause
+        raise (cause if isinstance(cause, CrowdbotError | KeyboardInterrupt) else error) from None
+    except ray.exceptions.RayError as error:
+        lines = str(error).strip().splitlines() or [type(error).__name__]
+        raise CrowdbotError(f"a job was lost on the cluster in {ATTEMPTS} attempts: {lines[0]}") from None

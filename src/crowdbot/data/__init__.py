@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
+    from .degrade import Degradation, DegradedTracks
     from .example import example_windows
-    from .file_formats import FORMATS, load
+    from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .forecast import Forecast
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
@@ -27,8 +28,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
+        "degrade": ["Degradation", "DegradedTracks"],
         "example": ["example_windows"],
-        "file_formats": ["FORMATS", "load"],
+        "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
         "forecast": ["Forecast"],
         "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
         "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
@@ -47,7 +49,10 @@ __all__ = [
     "FORMATS",
     "MCAP_MAGIC",
     "PROTOCOLS",
+    "TIME_BASES",
     "UCY_TO_METRES",
+    "Degradation",
+    "DegradedTracks",
     "Forecast",
     "McapError",
     "McapOpcode",
@@ -57,6 +62,7 @@ __all__ = [
     "RowRateError",
     "Trajectories",
     "Windows",
+    "detect_format",
     "example_windows",
     "fill_gaps",
     "has_summary",

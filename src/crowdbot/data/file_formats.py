@@ -14,7 +14,7 @@ from .readers.time_base import check_fps
 from .source import Source
 from .trajectories import Trajectories
 
-__all__ = ["FORMATS", "TIME_BASES", "load"]
+__all__ = ["FORMATS", "TIME_BASES", "detect_format", "load"]
 
 _READERS: tuple[Reader, ...] = (
     episode.READER,
@@ -80,6 +80,22 @@ def load(
     source = Source.of(Path(path))
     reader = next((reader for reader in _READERS if reader.name == format), None) or _detect(source)
     return reader.read(source, options)
+
+
+def detect_format(path: str | PathLike[str]) -> str:
+    """Return the name of the format of a recording, from its content: one of ``FORMATS``.
+
+    Raises:
+        DataError: the file is missing, empty, larger than 2 GiB, or of no supported format.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "two.csv")
+    ...     _ = path.write_text("0 1 0.0 0.0\\n10 1 0.5 0.0\\n")
+    ...     detect_format(path)
+    'sgan'
+    """
+    return _detect(Source.of(Path(path))).name
 
 
 def _detect(source: Source) -> Reader:

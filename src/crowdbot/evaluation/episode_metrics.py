@@ -17,6 +17,7 @@ from crowdbot.metrics import (
     RobotLog,
     crowd_effect,
     empty_scene_ratios,
+    gate_metrics,
     impact_region_metrics,
     log_metrics,
     metric_table,
@@ -123,12 +124,9 @@ def episode_metrics(
         found |= empty_scene_ratios(log, episode_log(others["empty"]))
     if "ghost" in others:
         shifted = others.get("shifted")
-        found |= crowd_effect(
-            _agent_log(episode),
-            _agent_log(others["ghost"]),
-            episode.robots[0],
-            None if shifted is None else _agent_log(shifted),
-        )
+        run, ghost = _agent_log(episode), _agent_log(others["ghost"])
+        found |= crowd_effect(run, ghost, episode.robots[0], None if shifted is None else _agent_log(shifted))
+        found |= gate_metrics(log, run, ghost, episode.robots[0])
     return found
 
 

@@ -1,5 +1,6 @@
 """Experiments: sequences of trials for participants, with screens, questions and answers."""
 
+from .background_run import Aborted, BackgroundRun
 from .console import Console, ConsoleClosed
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start, event_of, record_of
 from .experiment import Block, Experiment, Screen, TrialEntry
@@ -19,7 +20,9 @@ from .session_summary import save_summary, summary
 __all__ = [
     "FILE",
     "Abort",
+    "Aborted",
     "Answered",
+    "BackgroundRun",
     "Begin",
     "Block",
     "Choice",

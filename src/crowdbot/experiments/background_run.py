@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 
+from crowdbot.core import Clock
 from crowdbot.recording import open_run
-from crowdbot.simulation import Episode, EpisodeLog, SimulationRun
+from crowdbot.simulation import Episode, EpisodeLog, SimulationRun, Sink
 from crowdbot.trials import Trial
 
 __all__ = ["Aborted", "BackgroundRun"]
@@ -21,6 +23,12 @@ class BackgroundRun:
 
     The run can be paused between two steps. A pause does not change the result.
 
+    Args:
+        trial, seed: what to run.
+        out: file of the episode (default: no file).
+        clock: a paced clock shows the trial in real time (default: as fast as possible).
+        sinks: further consumers of the step records, called in the thread of the run.
+
     >>> from crowdbot.models import ORCA
     >>> running = BackgroundRun(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
     >>> while not running.wait(0.1):
@@ -29,7 +37,14 @@ class BackgroundRun:
     'finished'
     """
 
-    def __init__(self, trial: Trial, seed: int, out: Path | None = None) -> None:
+    def __init__(
+        self,
+        trial: Trial,
+        seed: int,
+        out: Path | None = None,
+        clock: Clock | None = None,
+        sinks: Sequence[Sink] = (),
+    ) -> None:
         self.share = 0.0
         """Completed share of the duration, 0 to 1."""
         self._held = False
@@ -38,7 +53,7 @@ class BackgroundRun:
         self._episode: Episode | None = None
         self._error: Exception | None = None
         self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in all Python versions
-        threading.Thread(target=self._run, args=(trial, seed, out), daemon=True).start()
+        threading.Thread(target=self._run, args=(trial, seed, out, clock, sinks), daemon=True).start()
 
     def hold(self) -> None:
         """Pause the run."""
@@ -74,10 +89,10 @@ class BackgroundRun:
         assert self._episode is not None
         return self._episode
 
-    def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
+    def _run(self, trial: Trial, seed: int, out: Path | None, clock: Clock | None, sinks: Sequence[Sink]) -> None:
         log = EpisodeLog(trial, seed)
         try:
-            with open_run(trial, seed, out, sinks=[log]) as running:
+            with open_run(trial, seed, out, clock, sinks=[log, *sinks]) as running:
                 self._running = running
                 if self._held:
                     running.hold()

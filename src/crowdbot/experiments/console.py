@@ -6,15 +6,13 @@ import contextlib
 import signal
 import textwrap
 import threading
-import traceback
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from types import FrameType
 
-from crowdbot.core import CrowdbotError, InputError
+from crowdbot.core import InputError
 
 from .background_run import BackgroundRun
-from .event import Abort, Answered, Event, Fail, Next, Pause, Repeat, Resume, Start
+from .event import Abort, Answered, Event, Next, Pause, Repeat, Resume, Start
 from .page import CONTROL
 from .question import Choice, Question
 from .respondent import Respondent
@@ -130,7 +128,7 @@ class Console:
             except BaseException:
                 self._given_up(running)
                 raise
-            self._end(running, folder)
+            self.runner.end(running.result, folder)
         self.report(what, 1.0)
 
     def _held(self, running: BackgroundRun) -> None:
@@ -155,30 +153,6 @@ class Console:
                     pass
         except KeyboardInterrupt:
             raise ConsoleClosed("the trial does not stop") from None
-
-    def _end(self, running: BackgroundRun, folder: Path) -> None:
-        try:
-            episode = running.result()
-        except CrowdbotError as error:
-            self.runner.do(Fail(str(error)))
-        except Exception as error:  # the code of a trial may raise anything; the session must continue
-            report = folder / "error.txt"
-            trace = "".join(traceback.format_exception(error))
-            try:
-                report.write_text(trace, encoding="utf-8", errors="backslashreplace")
-                where = f"the traceback is in {report.name}"
-            except OSError as failure:
-                where = f"cannot write {report.name}: {failure.strerror}"
-            frame = traceback.extract_tb(error.__traceback__)[-1]
-            place = f"{Path(frame.filename).name}, line {frame.lineno}"
-            self.runner.do(Fail(f"{type(error).__name__}: {error} ({place}); {where}"))
-        else:
-            if episode.failure is None:
-                self.runner.finish(episode)
-                return
-            report = folder / "error.txt"
-            report.write_text(episode.failure.trace, encoding="utf-8")
-            self.runner.do(Fail(f"{episode.failure.message}; more in {report.name}"))
 
     def _menu(self) -> None:
         session = self.runner.session

@@ -5,16 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import EpisodeError, InputError
+from crowdbot.core import CrowdbotError, EpisodeError, InputError
 from crowdbot.recording import as_json, versions
 from crowdbot.simulation import Episode
 from crowdbot.trials import Trial, restore_old_names, trial_xml
 
-from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
+from .event import Answered, Begin, Event, Fail, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
 from .log import SessionLog
 from .order import seed_of
@@ -138,6 +139,35 @@ class SessionRunner:
     def finish(self, episode: Episode) -> None:
         """End the trial with its episode."""
         self.do(Finish(episode.outcome, episode.digest, json.loads(as_json(episode.metrics))))
+
+    def end(self, result: Callable[[], Episode], folder: Path) -> None:
+        """End the trial with its episode or its failure; the traceback of a failure is written to ``error.txt``.
+
+        Args:
+            result: returns the episode, or raises the error of the trial.
+            folder: folder of the trial.
+        """
+        report = folder / "error.txt"
+        try:
+            episode = result()
+        except CrowdbotError as error:
+            self.do(Fail(str(error)))
+        except Exception as error:  # the code of a trial may raise anything; the session must continue
+            trace = "".join(traceback.format_exception(error))
+            try:
+                report.write_text(trace, encoding="utf-8", errors="backslashreplace")
+                where = f"the traceback is in {report.name}"
+            except OSError as failure:
+                where = f"cannot write {report.name}: {failure.strerror}"
+            frame = traceback.extract_tb(error.__traceback__)[-1]
+            place = f"{Path(frame.filename).name}, line {frame.lineno}"
+            self.do(Fail(f"{type(error).__name__}: {error} ({place}); {where}"))
+        else:
+            if episode.failure is None:
+                self.finish(episode)
+                return
+            report.write_text(episode.failure.trace, encoding="utf-8")
+            self.do(Fail(f"{episode.failure.message}; more in {report.name}"))
 
     def close(self) -> None:
         """Close the log."""

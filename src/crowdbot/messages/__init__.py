@@ -12,10 +12,12 @@ from .contacts import (
     read_forces,
 )
 from .images import image_in, picture_codec
+from .marker_array import KIND as MARKERS
 from .marker_array import markers
 from .message_store import Messages
 from .point_clouds import points_in
 from .reading_codecs import CODECS, KIND, REST, codec_of, decode_reading, encode_reading, unencoded_fields
+from .reading_topics import reading_topics
 
 __all__ = [
     "CODECS",
@@ -23,6 +25,7 @@ __all__ = [
     "FORCES",
     "KIND",
     "MAP",
+    "MARKERS",
     "REST",
     "Codec",
     "ContactEventRecord",
@@ -43,6 +46,7 @@ __all__ = [
     "points_in",
     "read_contact_events",
     "read_forces",
+    "reading_topics",
     "unencoded_fields",
     "unpack_arrays",
 ]

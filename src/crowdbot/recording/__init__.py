@@ -10,10 +10,12 @@ from .episode_rerun import EpisodeRerun, open_rerun
 from .episode_writer import Recorder
 from .image_export import folder_of
 from .keyframes import KeyframeWarning, keyframe_ticks
+from .link_frames import LinkFrames
 from .metadata import as_json, versions
 from .reading_tables import READING_TABLES
 from .recorded_run import episode_path, open_run, record, run
 from .recorded_simulation import RecordedSimulation
+from .step_messages import StepMessage, StepMessages
 from .step_records import RecordedStep
 
 __all__ = [
@@ -21,12 +23,15 @@ __all__ = [
     "AttachedFile",
     "EpisodeRerun",
     "KeyframeWarning",
+    "LinkFrames",
     "RecordedEpisode",
     "RecordedSimulation",
     "RecordedStep",
     "Recorder",
     "Replay",
     "SkippedAttachmentWarning",
+    "StepMessage",
+    "StepMessages",
     "as_json",
     "branch",
     "episode_path",

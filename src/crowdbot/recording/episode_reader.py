@@ -19,6 +19,7 @@ from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
 from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
+from crowdbot.trials import floor_plan_of_xml
 from crowdbot.world import REACTIONS
 
 from .episode_repair import EpisodeEnd
@@ -160,9 +161,10 @@ class RecordedEpisode:
         return tracks_of(self, self.name, dt)
 
     def _repr_svg_(self) -> str:
-        """Return a drawing of walls and paths for notebooks."""
+        """Return a drawing of walls, ground, doors and paths for notebooks."""
         period = self.schedule.period_ns / 1e9
-        return tracks_of(self, f"{self.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
+        plan = floor_plan_of_xml(self.metadata["trial"], f"{self.path} (trial)")
+        return tracks_of(self, f"{self.name}, seed {self.seed}, {self.outcome}", period).drawing(plan)
 
     @property
     def schedule(self) -> TickSchedule:

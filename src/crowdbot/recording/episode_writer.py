@@ -13,34 +13,22 @@ from types import TracebackType
 from typing import Any
 
 from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
-from crowdbot.messages import (
-    MeasuredReading,
-    Messages,
-    contact_messages,
-    encode_reading,
-    markers,
-)
-from crowdbot.messages.marker_array import KIND as MARKERS
-from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, Simulation, StepRecord, write_order
+from crowdbot.simulation import EpisodeStatistics, RunFailure, Simulation, StepRecord
 from crowdbot.trials import RobotSpec, Trial, trial_xml
-from crowdbot.world import people_by_reaction
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
 from .metadata import (
     ADDED_ROBOTS,
-    CONTACTS,
     DIGEST,
     ENDING,
     FORMAT,
     METADATA,
-    ORDERS,
-    REACTION_TOPIC,
     as_json,
     versions,
 )
-from .robot_messages import RobotMessages
+from .step_messages import StepMessages
 
 __all__ = ["Recorder"]
 
@@ -107,8 +95,9 @@ class Recorder:
         self.files = collect_attachments([self.trial, *earlier])
         if sentence := skip_message(file for file, _ in self.files):
             warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
-        self.messages = Messages()
-        self.robots = RobotMessages(self.messages, simulation)
+        names = dict(zip(tally.robot_ids, [robot.name for robot in self.trial.robots], strict=True))
+        self.steps = StepMessages(self.trial, names, simulation, begin)
+        self.messages = self.steps.make
         self.keyframes = KeyframeTrack(simulation, tally.digest)
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
@@ -117,10 +106,7 @@ class Recorder:
         """Number of steps until the last recorded step, and the digest of an episode that ends there."""
         clock = FreeClock(self.trial.step)
         self._schedule = clock.schedule(self.trial.recording.period)
-        self._markers = clock.schedule(self.trial.recording.markers)
-        self._next_markers = self._markers.index(self._markers.next_due(begin))
         self._write_due = begin * clock.step_ns
-        self._names = dict(zip(tally.robot_ids, [robot.name for robot in self.trial.robots], strict=True))
         self._added: dict[int, dict[str, Any]] = {}
 
     def __enter__(self) -> Recorder:
@@ -154,27 +140,14 @@ class Recorder:
 
     def take(self, frame: StepRecord) -> None:
         """Write a step."""
-        now, make = frame.nanoseconds, self.messages
+        now = frame.nanoseconds
         self._note_added(frame)
-        self._write("/clock", make.clock(now), now)
-        for topic, message in self.robots.latched(frame):
-            self._write(topic, message, now)
-        for message in self.robots.transforms(frame):
-            self._write("/tf", message, now)
-        for robot, mount, reading in frame.readings:
-            told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
-            for ending, message in encode_reading(make, told):
-                self._write(f"/{told.topic}{ending}", message, now)
-        if frame.touches:
-            self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
-        for order in frame.orders:
-            self._write(ORDERS, make.text(write_order(order)), now)
-        for topic, message in contact_messages(make, now, frame, self._names):
-            self._write(topic, message, now)
+        for one in self.steps.messages(frame):
+            self._put(one.topic, one.kind, one.cdr, now)
         if frame.due:
-            self._scene(frame)
             self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
-            self._write(DIGEST, make.text(self.last[1]), now)
+            text = self.messages.text(self.last[1])
+            self._put(DIGEST, text.__msgtype__, self.messages.encode_message(text), now)
         assert self.tape is not None
         if (keyframe := self.keyframes.take(frame)) is not None:
             self.tape.attachment(f"keyframe/{frame.tick}", keyframe, MEDIA, now)
@@ -207,32 +180,12 @@ class Recorder:
 
     def _note_added(self, frame: StepRecord) -> None:
         """Write a metadata record when orders have added robots."""
-        new = [(k, robot) for k, robot in zip(frame.robot_ids, frame.robots, strict=True) if k not in self._names]
+        new = [(k, robot) for k, robot in zip(frame.robot_ids, frame.robots, strict=True) if k not in self.steps.names]
         if not new:
             return
-        self._names |= {k: robot.name for k, robot in new}
         self._added |= {k: _robot_record(k, robot) for k, robot in new}
         assert self.tape is not None
         self.tape.metadata(ADDED_ROBOTS, {"added_robots": as_json(list(self._added.values()))})
-
-    def _scene(self, frame: StepRecord) -> None:
-        now, make, scene = frame.nanoseconds, self.messages, frame.scene
-        self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
-        if (reactions := people_by_reaction(scene, frame.ids)) is not None:
-            self._write(REACTION_TOPIC, make.text(as_json(reactions)), now)
-        for topic, message in self.robots.scene(frame):
-            self._write(topic, message, now)
-        if (latest := self._markers.index(frame.tick)) >= self._next_markers:
-            self._next_markers = latest + 1
-            goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in frame.robots]
-            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, goals), now)
-
-    def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
-        names = self._names | {WALL: "wall"}
-        return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
-
-    def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
-        self._put(topic, message.__msgtype__, self.messages.encode_message(message), nanoseconds)
 
     def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None

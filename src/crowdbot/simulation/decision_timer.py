@@ -103,23 +103,27 @@ class DecisionTimer:
                 self.hung[e] = tick
         return found
 
-    def orders(self, robot: RobotSpec, ticks: Ints, failures: Sequence[RunFailure | None]) -> list[DecisionOrder]:
-        """Return what a recording must keep about the decisions at the current ticks ``[E]``.
+    def orders(
+        self, robot: RobotSpec, ticks: Ints, failures: Sequence[RunFailure | None]
+    ) -> list[tuple[int, DecisionOrder]]:
+        """Return environments and what their recordings must keep about the decisions at the current ticks ``[E]``.
+
+        A recording has one environment, so the orders do not name theirs.
 
         Args:
             robot: the robot.
             ticks: ``[E]`` current ticks.
             failures: failure of each environment.
         """
-        found: list[DecisionOrder] = [
-            MissedDecisionOrder(robot=robot.name, environment=e) for e in np.flatnonzero(self.missed == ticks).tolist()
+        found: list[tuple[int, DecisionOrder]] = [
+            (e, MissedDecisionOrder(robot=robot.name)) for e in np.flatnonzero(self.missed == ticks).tolist()
         ]
         for e in np.flatnonzero(self.hung == ticks).tolist():
             failure, recorded = failures[e], self.recorded[e]
             known = None if recorded is None else recorded.hung.get(int(ticks[e]))
             seconds = robot.decision_limit if known is None else known.seconds
             place = "" if failure is None else failure.place
-            found.append(HungDecisionOrder(robot=robot.name, seconds=seconds, place=place, environment=e))
+            found.append((e, HungDecisionOrder(robot=robot.name, seconds=seconds, place=place)))
         return found
 
     def replay(self, environment: int, recorded: RecordedDecisions | None) -> None:

@@ -198,6 +198,7 @@ class Simulation:
         last: bool = False,
         orders: tuple[Order, ...] = (),
         number: int | None = None,
+        collisions: bool = True,
     ) -> StepRecord:
         """Return the record of the current step of an environment: part 8.
 
@@ -207,6 +208,7 @@ class Simulation:
             last: whether open contact events are included.
             orders: orders that were applied in this step.
             number: number of the environment in the record; default its index.
+            collisions: whether finished contact events are taken, each once, in the physics world.
         """
         world, e = self.world, environment
         twists = [world.twists[robot.agent].at(e) for robot in self.robots]
@@ -221,7 +223,7 @@ class Simulation:
             due,
             self.contacts(e),
             world.forces_of(e),
-            self._collisions(e, last),
+            self._collisions(e, last) if collisions else (),
             orders,
             e if number is None else number,
             tuple(robot.robot for robot in self.robots),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -323,8 +324,8 @@ class SimulationRun:
     def _note_misses(self) -> None:
         """Keep the decisions of this step that missed their deadline or did not return for the records."""
         for control in self.simulation.robots:
-            for order in control.timer.orders(control.robot, self.simulation.ticks, self.simulation.failures):
-                self._orders.setdefault(order.environment, []).append(order)
+            for e, order in control.timer.orders(control.robot, self.simulation.ticks, self.simulation.failures):
+                self._orders.setdefault(e, []).append(order)
             if control.faults is not None:
                 step = self.simulation.world.clock.dt
                 for e, event in control.faults.orders(control.robot, self.simulation.ticks, step):
@@ -364,7 +365,8 @@ class SimulationRun:
             except InputError as error:  # an earlier order of this instant has made it impossible
                 self.refusals.append((order, str(error)))
                 continue
-            self._orders.setdefault(order.environment, []).append(order)
+            # a record belongs to one environment, whose run alone has number 0
+            self._orders.setdefault(order.environment, []).append(dataclasses.replace(order, environment=0))
             if self._keyframes is not None:
                 self._history.append((self.simulation.tick, order))
             self._pending[order.environment] = True

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .ground.door import Door
     from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
     from .ground.plan import floor_plan
+    from .ground.text_plan import floor_plan_of_xml
     from .importers.dxf import import_dxf
     from .importers.foreign import import_trial
     from .importers.hunavsim import import_hunavsim
@@ -90,6 +91,7 @@ __getattr__, __dir__ = lazy_exports(
         "files.trial_files": ["resolve_file"],
         "ground.door": ["Door"],
         "ground.plan": ["floor_plan"],
+        "ground.text_plan": ["floor_plan_of_xml"],
         "ground.elements": ["UNEVEN", "Platform", "Ramp", "Stairs", "Threshold"],
         "importers.dxf": ["import_dxf"],
         "importers.foreign": ["import_trial"],
@@ -238,6 +240,7 @@ __all__ = [
     "expand_spawners",
     "expand_sweeps",
     "floor_plan",
+    "floor_plan_of_xml",
     "has_kind",
     "have_same_kinds",
     "import_dxf",

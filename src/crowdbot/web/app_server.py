@@ -26,6 +26,10 @@ POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+SANDBOX = (
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+)
+"""Policy of a page with scripts of its own: without access to the app or the net."""
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -34,6 +38,8 @@ HEADERS = {
 }
 MESSAGE = 4 << 20
 """Largest message of a window [B]."""
+UPLOAD = 512 << 20
+"""Largest file that a window may send [B]."""
 SESSIONS = 40
 """Sessions at the same time."""
 WINDOWS = 100
@@ -139,7 +145,8 @@ class AppServer:
             except CrowdbotError as error:
                 response = web.Response(status=400, text=f"{error}\n")
         if not response.prepared:
-            response.headers.update(HEADERS)
+            for header, value in HEADERS.items():
+                response.headers.setdefault(header, value)
             if given is not None and refusal is None and self.access.needs_token:
                 response.set_cookie(COOKIE, given, httponly=True, samesite="Strict", secure=self.tls is not None)
         return response
@@ -177,6 +184,8 @@ class AppServer:
             raise web.HTTPNotFound(text=f"file {path!r:.80} does not exist") from None
         response = web.Response(body=found.data, headers={"Cache-Control": "no-cache"})
         response.content_type = found.kind
+        if found.sandbox:
+            response.headers["Content-Security-Policy"] = SANDBOX
         if found.name is not None:
             name = re.sub(r"[^A-Za-z0-9._-]", "-", found.name)
             response.headers["Content-Disposition"] = f'attachment; filename="{name}"'
@@ -185,8 +194,16 @@ class AppServer:
     async def _upload(self, request: web.Request) -> web.StreamResponse:
         session, name = self._session(request), Path(request.query.get("name", "")).name
         path = session.workspace.writable(name)
-        data = await request.read()
-        await asyncio.get_running_loop().run_in_executor(None, path.write_bytes, data)
+        draft = path.with_name(f".{name}.part")
+        try:
+            with draft.open("wb") as file:
+                async for block in request.content.iter_chunked(1 << 20):
+                    if file.tell() + len(block) > UPLOAD:
+                        raise web.HTTPRequestEntityTooLarge(UPLOAD, file.tell() + len(block))
+                    file.write(block)
+            draft.replace(path)
+        finally:
+            draft.unlink(missing_ok=True)
         return web.json_response({"name": name})
 
     def _session(self, request: web.Request) -> AppSession:

@@ -32,10 +32,13 @@ class Resource:
         data: content.
         kind: media type.
         name: name of the file if it is to be saved, or None to show it.
+        sandbox: whether it is a page with scripts of its own, which the browser then keeps apart from the app.
     """
 
-    def __init__(self, data: bytes, kind: str = "application/octet-stream", name: str | None = None) -> None:
-        self.data, self.kind, self.name = data, kind, name
+    def __init__(
+        self, data: bytes, kind: str = "application/octet-stream", name: str | None = None, sandbox: bool = False
+    ) -> None:
+        self.data, self.kind, self.name, self.sandbox = data, kind, name, sandbox
 
 
 class Desk:

@@ -8,11 +8,15 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.trials import builtin_trials
 
 from .desk import Desk
+from .editor import EditorDesk
+from .evaluation import EvaluationDesk
+from .experiments import ExperimentDesk
+from .prediction import PredictionDesk
 from .simulator import SimulatorDesk
 
 __all__ = ["DESKS", "opened_first"]
 
-DESKS: tuple[type[Desk], ...] = (SimulatorDesk,)
+DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk)
 
 
 def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[Desk], ...], tuple[Path, ...]]:

@@ -22,6 +22,7 @@ __all__ = [
     "check_place",
     "check_room",
     "move_agent",
+    "next_person",
     "redirect_person",
     "remove_person",
     "slot_of",
@@ -134,6 +135,12 @@ def add_person(
         visible=True, external=False, group=-1,
     )  # fmt: skip
     return person
+
+
+def next_person(world: World, environment: int = 0) -> int:
+    """Return the id that the next person or robot gets."""
+    own = _own(world, environment)
+    return int(own._traffic.following[environment if own is world else 0])
 
 
 def check_room(world: World, environment: int = 0) -> None:

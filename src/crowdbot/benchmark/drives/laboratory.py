@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from crowdbot.benchmark.speed.timing import environment
 from crowdbot.world import Robot, builtin_robots
 
 from .figures import DriveFigures, compare_traces
+from .maker_robots import maker_robot
 from .manoeuvre import Manoeuvre, manoeuvres
 from .traces import DriveTrace, trace_physics, trace_planar
 
@@ -36,7 +38,7 @@ class DriveRow:
 
     Fields:
         robot: name of the robot.
-        base: actuation in the physics world, ``wheels`` or ``planar`` (pulled).
+        base: actuation in the physics world, ``wheels`` or ``planar`` (pulled); of other makers, the kind of base.
         step: time step of the engine [s].
         grid: largest figures over the grid of speeds.
         others: figures by manoeuvre.
@@ -74,15 +76,18 @@ class DriveReport:
         machine: processor, system and versions.
         rows: figures by robot and time step.
         traces: manoeuvres with both motions by robot, at the time step nearest to 5 ms, for plots.
+        makers: figures of robots of other makers, on the quick grid; their base is the kind of base.
     """
 
     machine: str
     rows: tuple[DriveRow, ...]
     traces: dict[str, tuple[tuple[Manoeuvre, DriveTrace, DriveTrace], ...]]
+    makers: tuple[DriveRow, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return machine, bars and rows as plain values."""
-        return {"machine": self.machine, "bars": dict(DRIVE_BARS), "rows": [row.as_dict() for row in self.rows]}
+        rows, makers = [row.as_dict() for row in self.rows], [row.as_dict() for row in self.makers]
+        return {"machine": self.machine, "bars": dict(DRIVE_BARS), "rows": rows, "makers": makers}
 
 
 def measure_drives(
@@ -90,6 +95,7 @@ def measure_drives(
     *,
     steps: Sequence[float] | None = None,
     quick: bool = False,
+    makers: Sequence[Path] = (),
     report: Callable[[str, float], None] | None = None,
 ) -> DriveReport:
     """Drive robots alone in an empty hall, in the plane and in the physics world, and compare the motions.
@@ -99,6 +105,8 @@ def measure_drives(
         steps: time steps of the engine [s] (default: 1, 2, 5, 10 and 20 ms, or 5 ms if quick). The whole grid is driven
             at 2, 5 and 10 ms, the quick one at others.
         quick: three speeds and short manoeuvres.
+        makers: robot files of other makers, imported as by ``crowdbot new robot FILE --yes``, and driven over the
+            quick grid at the steps for which the bars hold.
         report: called with the robot and the share that is done.
 
     Raises:
@@ -113,6 +121,7 @@ def measure_drives(
     steps = tuple(steps) if steps else (0.005,) if quick else STEPS
     loaded = [Robot.load(name) for name in (robots or builtin_robots())]
     shown = min(steps, key=lambda step: abs(step - 0.005))
+    found = tuple(_measure_makers(makers, [step for step in steps if step in BARRED] or list(steps), report))
     rows, traces = [], {}
     for number, robot in enumerate(loaded):
         for k, step in enumerate(steps):
@@ -127,7 +136,21 @@ def measure_drives(
                 traces[robot.name] = tuple(runs)
     if report is not None:
         report("drives", 1.0)
-    return DriveReport(environment(), tuple(rows), traces)
+    return DriveReport(environment(), tuple(rows), traces, found)
+
+
+def _measure_makers(
+    files: Sequence[Path], steps: Sequence[float], report: Callable[[str, float], None] | None
+) -> Iterator[DriveRow]:
+    for number, file in enumerate(files):
+        with maker_robot(Path(file)) as (robot, kind):
+            for step in steps:
+                if report is not None:
+                    report(f"drives of {robot.name}", number / len(files))
+                grid = [one for one in manoeuvres(robot, quick=True) if one.name in REGULAR]
+                runs = [(one, trace_physics(robot, one.commands, step), trace_planar(robot, one.commands, step))
+                        for one in grid]  # fmt: skip
+                yield replace(_row(robot, step, runs), base=kind)
 
 
 def _row(robot: Robot, step: float, runs: Sequence[tuple[Manoeuvre, DriveTrace, DriveTrace]]) -> DriveRow:

@@ -82,16 +82,22 @@ def _page(report: DriveReport, folder: str, command: str) -> str:
         heading=DRIVE_BARS["heading_error"],
         straight=STRAIGHT,
     )
-    parts = [head, _verdict(report), f"Machine: {report.machine}.", "## Over the grid", _grid_table(report)]
+    parts = [head, _verdict(report), f"Machine: {report.machine}."]
+    parts += ["## Over the grid", _rows_table("base", report.rows)]
     parts += ["## Step to full speed and turn rate, and stop", f"![Steps]({folder}/steps.png)"]
     parts += ["## Paths of the grid and of swerves", f"![Paths]({folder}/paths.png)"]
     if len({row.step for row in report.rows}) > 1:
         parts += ["## Time steps", f"![Largest errors over the time step]({folder}/time-steps.png)", DASHED]
     parts += ["## Straight, ramp, sine and swerves", _other_table(report), OTHERS]
     parts += ["## Slippery floor", f"![Turn rate in swerves]({folder}/slip.png)", SLIP, "## How it works", HOW]
+    if report.makers:
+        parts += ["## Robots of other makers", MAKERS]
+        parts += [_rows_table("kind of base", report.makers), _misses(report.makers)]
     return "\n\n".join(parts) + "\n"
 
 
+MAKERS = """Robots from files that cannot ship, as `crowdbot new robot FILE --yes` reads them, with the quick grid: full
+speed, full turn rate, and both. Limits of a base that its file does not give are guesses of the import."""
 DASHED = "Dashed: the bar. Wheels are servos with a time constant of 10 ms, or two steps if that is longer."
 OTHERS = """Heading change is the difference of the sums of all changes of heading. *straight*: full speed for 10 s and
 a stop; *ramp*: from rest to full speed in 10 s; *sine*: half speed, turn rate of half the limit like a sine of 4 s;
@@ -118,10 +124,25 @@ def _verdict(report: DriveReport) -> str:
     return f"All figures of {names} {'robots' if names != 1 else 'robot'} are within the bars."
 
 
-def _grid_table(report: DriveReport) -> str:
-    head = ["robot", "base", "step [ms]", *(title for _, title in DRIVE_COLUMNS)]
-    rows = [[row.robot, row.base, f"{1000.0 * row.step:g}", *grid_cells(row.grid)] for row in report.rows]
-    return _table(head, rows)
+def _misses(rows: tuple[DriveRow, ...]) -> str:
+    """Return a sentence about the figures of other makers' robots beyond the bars."""
+    words = {"overshoot": "overshoot", "steady_error": "steady error", "acceleration": "acceleration",
+             "turn_acceleration": "turn acceleration", "path_error": "path", "heading_error": "heading",
+             "heading_change": "heading change", "fall": "fall"}  # fmt: skip
+    missed: dict[str, list[str]] = {}
+    for row in rows:
+        for name in row.failures:
+            found = missed.setdefault(row.robot, [])
+            found += [words[name]] if words[name] not in found else []
+    within = len({row.robot for row in rows}) - len(missed)
+    listed = "; ".join(f"{robot}: {', '.join(found)}" for robot, found in missed.items())
+    said = f"Within all bars at all steps: {within} {'robots' if within != 1 else 'robot'}."
+    return said + (f" Beyond a bar at some step: {listed}." if listed else "")
+
+
+def _rows_table(base: str, rows: tuple[DriveRow, ...]) -> str:
+    head = ["robot", base, "step [ms]", *(title for _, title in DRIVE_COLUMNS)]
+    return _table(head, [[row.robot, row.base, f"{1000.0 * row.step:g}", *grid_cells(row.grid)] for row in rows])
 
 
 def _other_table(report: DriveReport) -> str:

@@ -2,9 +2,10 @@
 
 from .degraded import DegradedScore, DegradedTask, sweep_degradations
 from .degraded_plot import plot_degradation
-from .evaluation import Evaluation, EvaluationJob, FrameResults, JobResult, PredictorResult
+from .evaluation import Evaluation, EvaluationJob, JobResult, PredictorResult
 from .plots import animate_window, plot_errors, plot_frames
 from .predictor_score import evaluate
+from .window_results import FrameResults, WindowResults, predict_windows
 
 __all__ = [
     "DegradedScore",
@@ -14,10 +15,12 @@ __all__ = [
     "FrameResults",
     "JobResult",
     "PredictorResult",
+    "WindowResults",
     "animate_window",
     "evaluate",
     "plot_degradation",
     "plot_errors",
     "plot_frames",
+    "predict_windows",
     "sweep_degradations",
 ]

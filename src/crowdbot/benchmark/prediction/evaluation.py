@@ -6,25 +6,24 @@ import dataclasses
 import hashlib
 import itertools
 import pickle
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crowdbot.calibration import Fit
-from crowdbot.core import InputError, run_saved_jobs, source_digest, stream
+from crowdbot.core import InputError, run_saved_jobs, source_digest
 from crowdbot.data import Recording
-from crowdbot.metrics import PersonErrors, Score, person_errors
+from crowdbot.metrics import PersonErrors, Score
 from crowdbot.prediction import PredictorSpec
+
+from .window_results import FrameResults, predict_windows
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Evaluation", "EvaluationJob", "FrameResults", "JobResult", "PredictorResult"]
+__all__ = ["Evaluation", "EvaluationJob", "JobResult", "PredictorResult"]
 
 MIN_JOBS = 8
 """Minimum number of jobs per recording."""
@@ -54,39 +53,6 @@ class EvaluationJob:
     def key(self) -> str:
         """Hash of everything that determines the result, except the content of the recording."""
         return hashlib.blake2b(pickle.dumps((source_digest(), self)), digest_size=12).hexdigest()
-
-
-@dataclass(frozen=True)
-class FrameResults:
-    """Results by frame, ``[W]`` each; a frame is the last observed row of a window.
-
-    Fields:
-        frame: frame number in the recording.
-        people: number of people present.
-        cost: cost of the calibrated crowd [m]; NaN without calibration.
-        evaluations: number of simulated candidate crowds.
-        seconds: prediction time [s]; an equal share if windows were predicted together.
-        ade, fde: mean error over the scored people of the window [m].
-    """
-
-    frame: NDArray[np.int64]
-    people: NDArray[np.int64]
-    cost: NDArray[np.float64]
-    evaluations: NDArray[np.int64]
-    seconds: NDArray[np.float64]
-    ade: NDArray[np.float64]
-    fde: NDArray[np.float64]
-
-    @property
-    def calibrated(self) -> bool:
-        """Whether a crowd was calibrated for these frames."""
-        return bool(np.any(self.evaluations > 0))
-
-    @classmethod
-    def concatenate(cls, parts: Sequence[FrameResults]) -> FrameResults:
-        """Return the frames of several results, in order."""
-        names = [field.name for field in dataclasses.fields(cls)]
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @dataclass(frozen=True)
@@ -242,41 +208,15 @@ class Evaluation:
 
 def run_job(job: EvaluationJob) -> JobResult:
     """Run one job."""
-    past, future = job.recording.windows
     predictor = job.spec.build(job.recording)
-    rng = stream(job.seed, "predict")
-    rng.integers(0, 2**63, size=job.first)  # one number per window: results do not depend on the jobs
-    predictor.follow(past[:1], future.position.shape[1], job.samples, stream(job.seed, "warm"))
-    step = 1 if job.live else job.last - job.first
-    errors, frames, samples, memory = [], [], 1, None
-    for first in range(job.first, job.last, step):
-        part = slice(first, min(first + step, job.last))
-        begin = time.perf_counter()
-        forecast, memory = predictor.follow(
-            past[part], future.position.shape[1], job.samples, rng, memory if job.live else None
+    size = 1 if job.live else job.last - job.first
+    parts = list(
+        predict_windows(
+            predictor, *job.recording.windows, job.samples, job.best_of, job.seed, job.live, size, job.first, job.last
         )
-        seconds = (time.perf_counter() - begin) / len(past[part])
-        errors.append(person_errors(forecast, future[part], job.best_of))
-        frames.append(_frames(job, part, errors[-1], memory, seconds))
-        samples = max(samples, forecast.samples)
-    return JobResult(PersonErrors.concatenate(errors), FrameResults.concatenate(frames), samples)
-
-
-def _frames(job: EvaluationJob, part: slice, errors: PersonErrors, fit: object, seconds: float) -> FrameResults:
-    past, future = (windows[part] for windows in job.recording.windows)
-    W = len(past)
-    window = np.repeat(np.arange(W), future.scored.sum(axis=1))
-    count = np.bincount(window, minlength=W)
-
-    def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.where(count > 0, np.bincount(window, values, W) / np.maximum(count, 1), np.nan)
-
-    return FrameResults(
-        frame=past.frame[:, -1],
-        people=past.present[:, -1].sum(axis=1),
-        cost=fit.cost if isinstance(fit, Fit) else np.full(W, np.nan),
-        evaluations=fit.evaluations if isinstance(fit, Fit) else np.zeros(W, dtype=np.int64),
-        seconds=np.full(W, seconds),
-        ade=mean(errors.ade),
-        fde=mean(errors.fde),
+    )
+    return JobResult(
+        PersonErrors.concatenate([part.errors for part in parts]),
+        FrameResults.concatenate([part.frames for part in parts]),
+        max(1, *(part.forecast.samples for part in parts)),
     )

@@ -51,7 +51,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--worst", type=int, default=1, metavar="N", help="worst runs of each row to play in the report"
     )
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="number of processes")
-    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, or auto")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, auto, or local")
     parser.add_argument("--trust", action="store_true", help="allow code outside the folders of the trials")
     add_plan_options(parser)
     add_recording_options(parser)

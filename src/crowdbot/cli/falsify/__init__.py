@@ -55,7 +55,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="DIR", help="folder of result.json, report.html and found/1.xml ..."
     )
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="number of processes")
-    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, or auto")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Ray cluster, auto, or local")
     parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
     add_world(parser)
     add_settings(parser)

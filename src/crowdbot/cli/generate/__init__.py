@@ -31,7 +31,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--compress", action="store_true", help="compress the files: smaller and slower")
     add("--shard-size", type=float, default=128.0, metavar="MB", help="approximate size of a shard (default: 128)")
     add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
-    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster with a shared file system, or auto")
+    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster with a shared file system, auto, or local")
     add("--trust", action="store_true", help="allow code outside the folders of the trials")
     add_world(parser)
     add_settings(parser)

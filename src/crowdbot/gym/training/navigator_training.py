@@ -174,6 +174,7 @@ def train_navigator(
         training = NavigatorTraining(tasks, settings)
         if resume:
             training.restore(folder)
+            training.save(folder, command=command)  # a killed training can have weights older than its state
         folder.mkdir(parents=True, exist_ok=True)
         while training.done < settings.rounds:
             row = training.run_round()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .body_region import BodyRegion
 from .crowd_effect import crowd_effect, empty_scene_ratios
+from .gate_flow import gate_metrics
 from .group_intrusion import detect_groups
 from .log_metric import LogMetric, check_log_metric
 from .log_metrics import LOG_FAMILIES, log_metrics
@@ -21,6 +22,7 @@ __all__ = [
     "crowd_effect",
     "detect_groups",
     "empty_scene_ratios",
+    "gate_metrics",
     "head_injury_criterion",
     "impact_region_metrics",
     "log_metrics",

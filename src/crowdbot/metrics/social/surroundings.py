@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.metrics.proximity import ZONES
 
 from .robot_log import RobotLog
+from .voronoi_density import voronoi_metrics
 
 __all__ = ["density_metrics", "person_metrics"]
 
@@ -41,7 +42,7 @@ def density_metrics(log: RobotLog) -> dict[str, float]:
         inner, outer = speed[away < radius], speed[log.present & (away >= radius)]
         known = len(inner) and len(outer) and np.mean(outer) > 0.0
         found[f"velocity_loss_{name}"] = 1.0 - float(np.mean(inner) / np.mean(outer)) if known else math.nan
-    return found
+    return found | voronoi_metrics(log)
 
 
 def _nearest_speed(log: RobotLog, away: Floats, speed: Floats) -> float:

@@ -16,7 +16,7 @@ from .frame import LAYERS
 from .meshes import shown_links
 from .scene_revision import scene_revision
 from .sensor_arrays import cone_angle
-from .stage_description import scene_bounds, stage_description, zone_descriptions
+from .stage_description import scene_bounds, scene_focus, stage_description, zone_descriptions
 
 __all__ = ["scene_description"]
 
@@ -28,7 +28,7 @@ KINDS: dict[type, str] = {
 def scene_description(simulation: Simulation, people: PeopleMotion | None = None) -> dict[str, Any]:
     """Return what a page needs to draw a simulation, as JSON; the page asks again when the revision changes.
 
-    Keys: ``revision``; ``name``, ``world``, ``duration``; ``bounds`` x0, y0, x1, y1 [m]; ``stage`` (walls, ground,
+    Keys: ``revision``; ``name``, ``world``, ``duration``; ``bounds`` x0, y0, x1, y1 and ``focus`` x, y [m]; ``stage`` (walls, ground,
     doors, props); ``zones``; ``regions`` and ``parts`` of bodies; ``people`` with lists for all people: ``body`` (row
     of the asset), ``kind`` (its name), ``scale``, ``height`` [m], ``colors`` (six digits for each region), ``parts``
     (bits of the parts that are worn) and ``rider``; ``robots``; ``sensors``; ``layers`` (names and titles of
@@ -52,6 +52,7 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
         "world": trial.world,
         "duration": trial.duration,
         "bounds": scene_bounds(simulation),
+        "focus": scene_focus(simulation),
         "stage": stage_description(trial.stage),
         "zones": zone_descriptions(trial),
         "regions": list(shapes().regions),

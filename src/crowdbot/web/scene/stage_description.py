@@ -12,7 +12,7 @@ from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
 from crowdbot.world import CubeBody, TableBody, TreeBody
 
-__all__ = ["scene_bounds", "stage_description", "zone_descriptions"]
+__all__ = ["scene_bounds", "scene_focus", "stage_description", "zone_descriptions"]
 
 Floats = NDArray[np.float64]
 MARGIN = 1.0
@@ -113,3 +113,15 @@ def scene_bounds(simulation: Simulation) -> list[float]:
     low, high = every.min(axis=0) - MARGIN, every.max(axis=0) + MARGIN
     middle, half = 0.5 * (low + high), np.maximum(0.5 * (high - low), 2.0)
     return [round(value, 3) for value in (*(middle - half).tolist(), *(middle + half).tolist()) if math.isfinite(value)]
+
+
+def scene_focus(simulation: Simulation) -> list[float]:
+    """Return x, y [m] of the first robot, or the middle of all people."""
+    scene = simulation.world.environment_scene(0)
+    there = scene.active[0].copy()
+    for one in simulation.robots[:1]:
+        if there[one.agent]:
+            return [float(value) for value in scene.position[0, one.agent].round(3)]
+    if not there.any():
+        return [0.0, 0.0]
+    return [float(value) for value in scene.position[0, there].mean(axis=0).round(3)]

@@ -10,14 +10,18 @@ from pathlib import Path
 
 from crowdbot.core import Element, RobotError, format_xml
 from crowdbot.world.robots.drives.base_drive import (
+    RUBBER,
+    SMOOTH,
     curve_limit,
     drive_type,
     mass_attributes,
     middle_angle,
     rollers_of,
+    tire_friction,
     turns_wheels,
     wheel_attributes,
 )
+from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
 from .base_kind import BaseKind, recognize_base
@@ -208,7 +212,9 @@ def _drive(done: _Conversion) -> dict[str, str]:
         return value
 
     speed = choose("max_speed", *_top_speed(done), "m/s")
-    choose("max_acceleration", 1.0, "common value", GUESS, "m/s2")
+    grip = 0.3 * GRAVITY * tire_friction(done.model, base) if done.wheeled else 1.0
+    why = "common value" if grip >= 1.0 else "0.3 of the friction of its wheels"
+    choose("max_acceleration", min(1.0, grip), why, GUESS if grip >= 1.0 else DERIVED, "m/s2")
     if kind in ("ackermann-drive", "tricycle-drive"):
         choose("max_steering", *_steering(done), "rad")
         choose("max_steering_rate", 1.0, "common value", GUESS, "rad/s")
@@ -238,6 +244,7 @@ def _drive(done: _Conversion) -> dict[str, str]:
         if kind == "skid-steer-drive":
             for key, value in mass_attributes(done.model, base):
                 choose(key, value, "masses of the links", DERIVED, "m")
+            choose("friction", tire_friction(done.model, base), "<mu1> of the wheels, at most 1", DERIVED, "")
         if wheels:
             fastest = _wheel_limit(done)
             need = (speed + turn * reach) * (math.sqrt(2.0) if kind == "mecanum-drive" else 1.0) / base.wheels[0].radius
@@ -312,12 +319,24 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
         change = f"{GROUND_LINK} in {done.urdf}"
         done.table.add("centre of turning", f"x = {base.rear:.4g} m", "axle of the wheels", change, DERIVED)
     gliding = [*base.castors, *([] if done.wheeled else [wheel.link for wheel in base.wheels])]
+    turned = {wheel.link for wheel in base.wheels if wheel.joint in base.driven}
     for name, link in model.links.items():
         friction = 0.0 if name in gliding or (not done.wheeled and name in _feet(model, base)) else link.friction
+        if done.wheeled and name in turned and friction is not None:
+            friction = _tire(done.table, name, friction, done.urdf)
         if friction is not None:
             mu = Element("mu1", {"value": format_number(friction)})
             root.children.append(Element("gazebo", {"reference": name}, [mu]))
     return root, copies
+
+
+def _tire(table: GuessTable, link: str, friction: float, urdf: str) -> float:
+    """Return the friction coefficient of a driven wheel: not more than rubber has, and not 0."""
+    usable = RUBBER if friction < SMOOTH else min(friction, RUBBER)
+    if usable != friction:
+        source = f"rubber; the file has {friction:.4g}"
+        table.add(f"friction of {link}", f"{usable:g}", source, f"<mu1> in {urdf}", GUESS)
+    return usable
 
 
 def _feet(model: RobotModel, base: BaseKind) -> set[str]:

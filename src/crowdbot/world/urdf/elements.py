@@ -17,11 +17,12 @@ from .model import Remark
 from .shapes import Mesh
 from .transforms import frame, roll_pitch_yaw
 
-__all__ = ["UrdfReader"]
+__all__ = ["LARGEST", "UrdfReader"]
 
 Floats = NDArray[np.float64]
 MOST_PROBLEMS = 100
 LARGEST = 1e6
+"""Largest number of a row, and length [m] of a shape."""
 Color = tuple[float, float, float, float]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from crowdbot.core import Element
 
-from .elements import Floats, UrdfReader
+from .elements import LARGEST, Floats, UrdfReader
 from .inertia import default_inertia, find_inertia_problems, repair_inertia
 from .materials import read_color
 from .model import Link, LinkInertia, LinkShape
@@ -15,6 +15,8 @@ from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 __all__ = ["read_link"]
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
+THINNEST = 1e-9
+"""Smallest length [m] of a shape."""
 
 
 def read_link(reader: UrdfReader, element: Element) -> Link | None:
@@ -81,6 +83,9 @@ def _parse_shape(reader: UrdfReader, geometry: Element, collision: bool) -> Shap
         if not np.all(sides > 0.0):
             reader.say(element, f'size="{element.attributes["size"][:40]}" must be above 0')
             return None
+        if sides.min() < THINNEST:
+            reader.say(element, f'size="{element.attributes["size"][:40]}" must be at least {THINNEST:g} m')
+            return None
         return Box((float(sides[0]), float(sides[1]), float(sides[2])))
     radius = _length(reader, element, "radius")
     if element.tag == "sphere":
@@ -95,6 +100,10 @@ def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
     found = reader.required_value(element, key)
     if found is not None and found <= 0.0:
         reader.say(element, f'{key}="{element.attributes[key][:40]}" must be above 0')
+        return None
+    if found is not None and not THINNEST <= found <= LARGEST:
+        text = element.attributes[key][:40]
+        reader.say(element, f'{key}="{text}" must be at least {THINNEST:g} m and at most {LARGEST:g} m')
         return None
     return found
 

@@ -162,7 +162,8 @@ class RobotBody:
     def _wheel_rates(self, old: Twists, twist: Twists) -> Floats:
         """Return the speeds of the driven wheels [rad/s] on the way to a twist, with the slip of a skid-steer base."""
         if self._slip is not None and self._slip_state is not None:
-            twist = Twists.of(self._slip.wheels(self._slip_state, old, twist, self.step), 1)
+            found = self._slip.wheels(self._slip_state, old.at(0), twist.at(0), self.twist.at(0), self.loads, self.step)
+            return np.asarray(self._rolling @ (found.forward, found.turn, 0.0))
         return np.asarray(self._rolling @ _row(twist))
 
     def _pull(self, old: Twists) -> None:

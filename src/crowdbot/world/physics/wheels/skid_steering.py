@@ -5,17 +5,26 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from crowdbot.core import Twist
-from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.physics.robots.wheel_servo import lag
+from crowdbot.world.robots.drives.skid_slide import GRAVITY, rims_of
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
 
 __all__ = ["SlipControl", "SlipState"]
 
-LAG = 0.05
-"""Time [s] by which the base follows its wheels."""
+Floats = NDArray[np.float64]
 RATE = 3.0
 """Rate [1/s] of the estimate of the slip."""
+RETURN = 0.025
+"""Time [s] in which an error of the twist is corrected where the tyres slide."""
+GAIN = 2.0
+"""Largest correction of the wheels by an error of the twist."""
+LEAST = 0.06
+"""Slip [m/s] that the wheels may have beyond ``MOST`` times that of a steady turn."""
 QUIET = 0.1
 """Turn rate [rad/s] below which slip is hardly estimated."""
 MOST = 2.5
@@ -43,15 +52,15 @@ class SlipControl:
 
     Fields:
         drive: the drive.
-
-    >>> control = SlipControl(SkidSteerDrive(track=0.4, wheelbase=0.4))
-    >>> state = control.step(control.first, Twist(0.0, 1.0), Twist(), 0.005)
-    >>> turning = Twists.of(Twist(0.0, 1.0), 1)
-    >>> state[0] > 1.0, round(control.wheels(control.first, turning, turning, 0.005).turn, 2)
-    (True, 2.0)
+        tires: ``[W, 5]`` places and levers of the driven wheels, see :func:`rims_of`.
+        gyration: squared radius of gyration about the vertical [m2].
+        weight: weight of the robot [N].
     """
 
     drive: SkidSteerDrive
+    tires: Floats
+    gyration: float
+    weight: float
 
     @classmethod
     def of(cls, robot: Robot) -> SlipControl | None:
@@ -59,7 +68,12 @@ class SlipControl:
         drive = robot.drive
         if robot.base != "wheels" or not isinstance(drive, SkidSteerDrive):
             return None
-        return cls(drive)
+        whole, poses = robot.model.inertial(robot.posture), robot.model.poses(robot.posture)
+        joints = [robot.model.joints[wheel.joint] for wheel in robot.wheels if wheel.driven]
+        places = np.array([(poses[joint.parent] @ joint.origin)[:2, 3] for joint in joints])
+        middle, count = np.array([drive.wheels_x, 0.0]), len(places)
+        tires = np.concatenate([places - middle, np.full((count, 1), 1.0 / count), places - whole.center[:2]], axis=1)
+        return cls(drive, tires, float(whole.tensor[2, 2]) / whole.mass, GRAVITY * whole.mass)
 
     @property
     def first(self) -> SlipState:
@@ -76,7 +90,7 @@ class SlipControl:
             dt: time step [s].
         """
         factor, offset, forward, turn = state
-        gain = -math.expm1(-dt / LAG)
+        gain = -math.expm1(-dt / lag(dt))
         forward, turn = forward + gain * (wanted.forward - forward), turn + gain * (wanted.turn - turn)
         share = RATE * dt * turn / (turn * turn + QUIET * QUIET)
         factor += factor * share * (turn - found.turn)
@@ -85,15 +99,30 @@ class SlipControl:
         offset = min(max(offset, -most), most)
         return (factor, offset, forward, turn)
 
-    def wheels(self, state: SlipState, old: Twists, new: Twists, dt: float) -> Twist:
+    def wheels(self, state: SlipState, old: Twist, new: Twist, found: Twist, loads: Floats, dt: float) -> Twist:
         """Return the twist for which the wheels turn without slip, so that the base has another one with it.
 
         Args:
             state: the estimate.
-            old, new: twists of the base before and after the step, E = 1.
+            old, new: twists that the base is to have before and after the step.
+            found: its twist.
+            loads: normal forces ``[W]`` [N] of the driven wheels; all 0 before the first step.
             dt: time step [s].
         """
-        factor, offset, _, _ = state
-        left, right, _ = self.drive.slide(old, new, dt)[0].tolist()
-        middle = 0.5 * (left + right) + offset * float(new.turn[0])
-        return Twist(middle, factor * (right - left) / self.drive.track)
+        factor, offset, forward, turn = state
+        drive, tires = self.drive, self.tires
+        if loads.any():
+            tires = tires.copy()
+            tires[:, 2] = loads / self.weight
+        grip = drive.friction * GRAVITY
+        half = 0.5 * drive.track * drive.slip_factor * new.turn
+        most = MOST * (abs(half) + LEAST)
+        out = np.array([new.forward - half, new.forward + half])
+        now = np.array([new.forward, new.turn, found.left + found.turn * drive.wheels_x])
+        change = np.array([(new.forward - old.forward) / dt, (new.turn - old.turn) / dt])
+        rims_of(now, change, tires, grip, self.gyration, most, out)
+        slip = abs(half - 0.5 * drive.track * new.turn) + 0.5 * drive.wheelbase * abs(new.turn)
+        gain = min(slip / (grip * RETURN), GAIN)
+        middle = 0.5 * (out[0] + out[1]) + offset * new.turn + gain * (forward - found.forward)
+        push = gain * drive.slip_factor * (turn - found.turn)
+        return Twist(float(middle), float(factor * (out[1] - out[0]) / drive.track + push))

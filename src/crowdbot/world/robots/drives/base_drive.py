@@ -13,11 +13,14 @@ from .skid_slide import GRAVITY
 from .skid_steer import SHARE, slip_of
 
 __all__ = [
+    "RUBBER",
+    "SMOOTH",
     "curve_limit",
     "drive_type",
     "mass_attributes",
     "middle_angle",
     "rollers_of",
+    "tire_friction",
     "turns_wheels",
     "wheel_attributes",
 ]
@@ -28,6 +31,10 @@ FASTEST = 3.0
 """Largest guess of the maximum turn rate [rad/s]."""
 PULLED = 2.0
 """Largest acceleration in curves [m/s2] of a base that is moved directly: half of what its forces give."""
+RUBBER = 1.0
+"""Friction coefficient of rubber on the floor."""
+SMOOTH = 0.01
+"""Smaller friction coefficients of driven wheels in files are not meant: such wheels would not move the base."""
 UPRIGHT = 0.5
 """The same of a base on wheels, as a share of the acceleration at which it would tip over (assumed)."""
 FASTEST_SLIDING = 2.0
@@ -135,6 +142,16 @@ def middle_angle(base: BaseKind, inner: float) -> float:
     return math.atan(1.0 / (1.0 / math.tan(inner) + half))
 
 
+def tire_friction(model: RobotModel, base: BaseKind) -> float:
+    """Return the mean friction coefficient of the driven wheels on the floor, at most that of rubber.
+
+    Files for Gazebo often have coefficients far above 1, which mean that a wheel does not slip.
+    """
+    driven = [model.links[wheel.link].friction for wheel in base.wheels if wheel.joint in base.driven]
+    known = [RUBBER if value is None or value < SMOOTH else min(value, RUBBER) for value in driven]
+    return sum(known) / len(known) if known else RUBBER
+
+
 def mass_attributes(model: RobotModel, base: BaseKind) -> list[tuple[str, float]]:
     """Return place of the wheels and of the centre of mass, and radius of gyration [m], of a skid-steer drive."""
     whole, places = model.inertial(), np.array([wheel.center for wheel in base.wheels])
@@ -158,6 +175,7 @@ def curve_limit(model: RobotModel, base: BaseKind, wheeled: bool) -> tuple[float
     floor = min(wheel.center[2] - wheel.radius for wheel in base.wheels)
     height = float(model.inertial().center[2] - floor)
     tips = UPRIGHT * GRAVITY * 0.5 * base.track / max(height, 1e-3)
-    if tips < SHARE * GRAVITY:
+    grip = SHARE * tire_friction(model, base) * GRAVITY
+    if tips < grip:
         return tips, "half of that at which it tips over"
-    return SHARE * GRAVITY, f"{SHARE:g} of the friction of rubber"
+    return grip, f"{SHARE:g} of the friction of {'rubber' if grip == SHARE * GRAVITY else 'its wheels'}"

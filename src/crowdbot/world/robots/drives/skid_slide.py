@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["GRAVITY", "side_speeds", "slide_of"]
+__all__ = ["GRAVITY", "rims_of", "side_speeds", "slide_of"]
 
 Floats = NDArray[np.float64]
 GRAVITY = 9.81
@@ -36,23 +36,24 @@ def slide_of(before: Floats, after: Floats, dt: float, tires: Floats, body: Floa
         dt: time step [s].
         tires: ``[W, 5]`` x, y [m] from the middle, share of the weight, and lever x, y [m] from the centre of mass.
         body: friction coefficient times gravity [m/s2], height of the centre of mass [m], which moves load to the outer
-            wheels, and squared radius of gyration [m2].
+            and rear wheels, and squared radius of gyration [m2].
         out: ``[3]``.
     """
     forward, turn, grip = after[0], after[1], body[0]
-    width, long, spread = 0.0, 0.0, 0.0
+    width, long, across, along = 0.0, 0.0, 0.0, 0.0
     for k in range(len(tires)):
         width, long = max(width, 2.0 * abs(tires[k, 1])), max(long, 2.0 * abs(tires[k, 0]))
-        spread += tires[k, 1] * tires[k, 1]
+        across, along = across + tires[k, 1] * tires[k, 1], along + tires[k, 0] * tires[k, 0]
     half = 0.5 * turn * (width + long * long / width)
     out[0], out[1], out[2] = forward - half, forward + half, before[2]
-    lean = body[1] * forward * turn / (GRAVITY * spread)
     push, spin = (forward - before[0]) / dt, (turn - before[1]) / dt
     most, size, slow = PART * (abs(half) + SOFT), 0.0, 1.0 / (dt * grip)
     # acceleration of the centre of mass without the lateral speed
     mass_x, mass_y = tires[0, 0] - tires[0, 3], tires[0, 1] - tires[0, 4]
     ahead = push - spin * mass_y - turn * turn * mass_x
     aside_pull = forward * turn + spin * mass_x - turn * turn * mass_y
+    lean = body[1] * aside_pull / (GRAVITY * across)  # load that moves to the outer wheels
+    dive = body[1] * (ahead - turn * before[2]) / (GRAVITY * along)  # and to the rear ones
     for _ in range(ROUNDS):
         rx, ry = (turn * out[2] - ahead) / grip, -aside_pull / grip - (out[2] - before[2]) * slow
         rz = -body[2] * spin / grip
@@ -61,7 +62,7 @@ def slide_of(before: Floats, after: Floats, dt: float, tires: Floats, body: Floa
         g, h, i = 0.0, 0.0, 0.0
         for k in range(len(tires)):
             x, y, px, py = tires[k, 0], tires[k, 1], tires[k, 3], tires[k, 4]
-            share = max(0.0, tires[k, 2] - lean * y)
+            share = max(0.0, tires[k, 2] - lean * y - dive * x)
             sx, sy = forward - turn * y - (out[0] if y > 0.0 else out[1]), out[2] + turn * x
             slip = math.sqrt(sx * sx + sy * sy + SOFT * SOFT)
             fx, fy = -share * sx / slip, -share * sy / slip
@@ -85,6 +86,49 @@ def slide_of(before: Floats, after: Floats, dt: float, tires: Floats, body: Floa
         part = min(1.0, most / max(abs(left), abs(right), abs(aside), 1e-300))
         out[0], out[1], out[2] = out[0] - part * left, out[1] - part * right, out[2] - part * aside
     return size < FAILED
+
+
+@kernel
+def rims_of(now: Floats, change: Floats, tires: Floats, grip: float, gyration: float, most: float, out: Floats) -> None:
+    """Write the speeds [m/s] of the left and of the right rims at which the tyres give a base its acceleration.
+
+    Unlike in :func:`slide_of`, the lateral speed and the loads are those of the moment.
+
+    Args:
+        now: ``[3]`` speed [m/s], turn rate [rad/s] and lateral speed [m/s] of the middle of the wheels.
+        change: ``[2]`` acceleration [m/s2] and angular acceleration [rad/s2].
+        tires: ``[W, 5]`` as in :func:`slide_of`, with the share of the weight that each bears now.
+        grip: friction coefficient times gravity [m/s2].
+        gyration: squared radius of gyration [m2].
+        most: largest difference [m/s] of a rim from the speed; reached if the friction does not suffice.
+        out: ``[2]`` the result; at the call, a guess.
+    """
+    forward, turn, left = now[0], now[1], now[2]
+    mass_x, mass_y = tires[0, 0] - tires[0, 3], tires[0, 1] - tires[0, 4]
+    ahead = (change[0] - change[1] * mass_y - turn * turn * mass_x - turn * left) / grip
+    spin = gyration * change[1] / grip
+    for _ in range(ROUNDS):
+        rx, rz, a, b, g, h = -ahead, -spin, 0.0, 0.0, 0.0, 0.0
+        for k in range(len(tires)):
+            x, y, share, px, py = tires[k, 0], tires[k, 1], tires[k, 2], tires[k, 3], tires[k, 4]
+            sx, sy = forward - turn * y - (out[0] if y > 0.0 else out[1]), left + turn * x
+            slip = math.sqrt(sx * sx + sy * sy + SOFT * SOFT)
+            rx, rz = rx - share * sx / slip, rz + share * (py * sx - px * sy) / slip
+            cube = share / (slip * slip * slip)
+            xx, xy = (slip * slip - sx * sx) * cube, sx * sy * cube
+            if y > 0.0:
+                a, g = a + xx, g - px * xy - py * xx
+            else:
+                b, h = b + xx, h - px * xy - py * xx
+        if abs(rx) + abs(rz) < CLOSE:
+            break
+        whole = a * h - b * g
+        if abs(whole) < 1e-12:
+            break
+        first, second = (rx * h - b * rz) / whole, (a * rz - g * rx) / whole
+        part = min(1.0, PART * most / max(abs(first), abs(second), 1e-300))
+        out[0] = min(max(out[0] - part * first, forward - most), forward + most)
+        out[1] = min(max(out[1] - part * second, forward - most), forward + most)
 
 
 @kernel

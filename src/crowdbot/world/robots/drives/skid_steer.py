@@ -19,6 +19,11 @@ __all__ = ["SkidSteerDrive", "slip_of"]
 SHARE = 0.4
 """Largest product of speed and turn rate, as a share of friction coefficient times gravity: sliding wheels need the
 rest of the friction to turn the base."""
+SLIDING = 0.3
+"""Smallest lateral slip of a tyre in a curve, as a share of that on the spot. The curve shifts the slip of the inner
+end to 0; tyres that begin to stick there turn the base faster than its wheels say."""
+LEAST_SHARE = 0.05
+"""Least share for bases that never slide in this way: with the centre of mass above an axle."""
 
 
 def slip_of(track: float, wheelbase: float) -> float:
@@ -144,12 +149,36 @@ class SkidSteerDrive(WheeledDrive):
         load = np.maximum(load, 0.0) / np.maximum(load, 0.0).sum()
         return np.concatenate([place, load[:, None], place - (self.center_x, self.center_y)], axis=1)
 
+    @functools.cached_property
+    def curve_share(self) -> float:
+        """Largest product of speed and turn rate, as a share of friction coefficient times gravity: at most 0.4, and
+        so small that all tyres slide sideways in the curve.
+
+        >>> drives = [SkidSteerDrive(track=0.4, wheelbase=0.4, center_x=x) for x in (0.0, 0.05)]
+        >>> [round(drive.curve_share, 2) for drive in drives]
+        [0.27, 0.06]
+        """
+        low, high = 0.0, SHARE
+        for _ in range(12):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self._slides_in_curve(middle) else (low, middle)
+        return max(low, LEAST_SHARE)
+
+    def _slides_in_curve(self, share: float) -> bool:
+        """Return whether all tyres slide sideways in a steady curve with this product of speed and turn rate."""
+        turn = 1.0
+        ahead = share * self.friction * GRAVITY / turn
+        before = Twists(np.array([ahead]), np.array([turn]), np.zeros(1))
+        aside = float(self.slide(before, before, 1e6)[0, 2])
+        on_spot = 0.5 * float(np.ptp(self._tires[:, 0])) * turn
+        return bool((np.abs(aside + turn * self._tires[:, 0]) >= SLIDING * on_spot).all())
+
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later, with the lateral speed at which the base slides."""
         count = len(pose.heading)
         wanted, still = Twists.of(command, count), np.zeros(count)
         bend = np.abs(wanted.forward * np.clip(wanted.turn, -self.max_turn_rate, self.max_turn_rate))
-        share = np.minimum(1.0, np.sqrt(SHARE * self.friction * GRAVITY / np.maximum(bend, 1e-300)))
+        share = np.minimum(1.0, np.sqrt(self.curve_share * self.friction * GRAVITY / np.maximum(bend, 1e-300)))
         slower = Twists(wanted.forward * share, wanted.turn * share, still)
         _, after = super().step(pose, Twists(twist.forward, twist.turn, still), slower, dt)
         left = self.slide(twist, after, dt)[:, 2] - after.turn * self.wheels_x

@@ -1,0 +1,50 @@
+// Strips: every run of an evaluation as a mark on the axis of one statistic, one strip for each row of the table.
+const NS = "http://www.w3.org/2000/svg";
+const WIDTH = 720;
+const LEFT = 190;
+const HEIGHT = 26;
+const MARKS = { success: "circle", collision: "cross", timeout: "square" };
+
+function s(tag, attributes, ...children) {
+  const element = document.createElementNS(NS, tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+/** The picture of one statistic; `watch(cell, seed)` is called for a run that is chosen. */
+export function makeStrips(cells, index, title, watch) {
+  const values = cells.flatMap((cell) => cell.runs.map((run) => run.values[index])).filter((one) => one !== null);
+  const low = Math.min(0, ...values);
+  const high = Math.max(...values, low + 1e-9);
+  const x = (value) => LEFT + ((WIDTH - LEFT - 20) * (value - low)) / (high - low);
+  const height = cells.length * HEIGHT + 30;
+  const picture = s("svg", { viewBox: `0 0 ${WIDTH} ${height}`, class: "strips", role: "group", "aria-label": `Runs by ${title}` });
+  cells.forEach((cell, row) => {
+    const y = row * HEIGHT + HEIGHT / 2;
+    picture.append(s("text", { x: LEFT - 10, y: y + 4, "text-anchor": "end" }, `${cell.trial} ${cell.navigator}`.slice(0, 30)));
+    picture.append(s("line", { x1: LEFT, x2: WIDTH - 20, y1: y, y2: y, class: "axis" }));
+    for (const run of cell.runs) if (run.values[index] !== null) picture.append(mark(cell, run, x(run.values[index]), y, watch));
+  });
+  for (const value of [low, (low + high) / 2, high]) {
+    picture.append(s("text", { x: x(value), y: height - 8, "text-anchor": "middle" }, value.toPrecision(3)));
+  }
+  return picture;
+}
+
+function mark(cell, run, x, y, watch) {
+  const kind = MARKS[run.outcome] ?? "cross";
+  const shapes = {
+    circle: () => s("circle", { cx: x, cy: y, r: 4 }),
+    square: () => s("rect", { x: x - 4, y: y - 4, width: 8, height: 8 }),
+    cross: () => s("path", { d: `M${x - 4} ${y - 4}L${x + 4} ${y + 4}M${x + 4} ${y - 4}L${x - 4} ${y + 4}` }),
+  };
+  const shape = shapes[kind]();
+  shape.setAttribute("class", `mark ${kind}`);
+  shape.addEventListener("click", () => watch(cell.number, run.seed));
+  shape.append(s("title", {}, `seed ${run.seed}: ${run.outcome}`));
+  return shape;
+}

@@ -1,0 +1,195 @@
+// Evaluation tab: compare navigators, see the table, watch a run.
+import { attempt } from "../ui/dialog.mjs";
+import { field, fill, h } from "../ui/dom.mjs";
+import { makeStrips } from "./strips.mjs";
+
+const GOOD = new Set(["success"]);
+
+class EvaluationTab {
+  constructor(root, app) {
+    Object.assign(this, { app, table: null, chosen: null, onlyFailures: true, statistic: 3 });
+    this.side = h("aside", { "aria-label": "Evaluations" });
+    this.main = h("div", { class: "results" }, h("p", { class: "note" }, "Run an evaluation, or choose one of the list."));
+    root.classList.add("evaluation");
+    fill(root, this.side, this.main);
+    app.connection.on("evaluation.state", (state) => this.update(state));
+    app.connection.on("evaluation.progress", (share) => this.progress(share));
+    this.form();
+  }
+
+  call(command, args = {}) {
+    return attempt(() => this.app.connection.call(`evaluation.${command}`, args));
+  }
+
+  form() {
+    this.trials = h("select", { multiple: true, size: 8 });
+    this.navigators = h("input", { type: "text", value: "straight, orca" });
+    this.known = h("small", {});
+    this.seeds = h("input", { type: "text", value: "0:20" });
+    this.safety = h("input", { type: "checkbox" });
+    this.label = h("input", { type: "text", value: "first" });
+    this.runButton = h("button", { type: "submit", class: "main" }, "Run");
+    this.cancel = h("button", { type: "button", hidden: true, onclick: () => this.call("cancel") }, "Cancel");
+    this.bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Progress of the evaluation" });
+    this.note = h("p", { class: "note", "aria-live": "polite" });
+    this.list = h("ul", { class: "sources" });
+    const start = (event) => {
+      event.preventDefault();
+      this.start();
+    };
+    fill(
+      this.side,
+      h("h2", {}, "New evaluation"),
+      h(
+        "form",
+        { onsubmit: start },
+        field("Trials", this.trials),
+        field("Navigators", this.navigators),
+        this.known,
+        field("Seeds", this.seeds),
+        h("label", { class: "option" }, this.safety, "Each also with a safety layer"),
+        field("Name", this.label),
+        h("div", { class: "row" }, this.runButton, this.cancel),
+      ),
+      this.bar,
+      this.note,
+      h("h2", {}, "Evaluations"),
+      this.list,
+    );
+  }
+
+  async greet(state) {
+    this.update(state);
+    const sources = await this.call("sources");
+    if (!sources) return;
+    const chosen = new Set([...this.trials.selectedOptions].map((one) => one.value));
+    const names = [...sources.files, ...sources.trials.map((one) => one.name)];
+    fill(this.trials, names.map((one) => h("option", { selected: chosen.size ? chosen.has(one) : one === "frontal" }, one)));
+    this.known.textContent = `With parameters, such as "orca safety=0.2". Built-in: ${sources.navigators.join(", ")}`;
+  }
+
+  async start() {
+    const trials = [...this.trials.selectedOptions].map((one) => one.value);
+    const args = { name: this.label.value, trials, navigators: this.navigators.value, seeds: this.seeds.value, safety: this.safety.checked };
+    const state = await this.call("run", args);
+    if (state) this.update(state);
+  }
+
+  update(state) {
+    const before = this.state;
+    this.state = state;
+    const running = Boolean(state.running);
+    this.runButton.disabled = running;
+    this.cancel.hidden = !running;
+    this.bar.hidden = !running;
+    this.bar.value = state.share;
+    this.note.textContent = running ? `${state.running} is running` : state.problem;
+    const row = ({ name, done }) =>
+      h("li", {}, h("button", { type: "button", class: "link", disabled: !done, onclick: () => this.open(name) }, name), done ? null : h("small", {}, "not complete; run it again with the same name to continue"));
+    fill(this.list, state.evaluations.map(row));
+    if (before?.running && !running && !state.problem) this.open(before.running);
+  }
+
+  progress(share) {
+    this.bar.value = share;
+  }
+
+  async open(name) {
+    const table = await this.call("table", { name });
+    if (!table) return;
+    this.table = table;
+    this.chosen = null;
+    this.statistic = this.mostKnown();
+    this.show();
+  }
+
+  /** The statistic that is not a rate and that most runs have. */
+  mostKnown() {
+    const { statistics, cells } = this.table;
+    const count = (i) => cells.flatMap((cell) => cell.runs).filter((run) => run.values[i] !== null).length;
+    const known = statistics.map((name, i) => (name.endsWith("-rate") ? 0 : count(i)));
+    return known.indexOf(Math.max(...known));
+  }
+
+  show() {
+    const { table } = this;
+    const choice = h(
+      "select",
+      { onchange: () => ((this.statistic = Number(choice.value)), this.show()) },
+      table.statistics.map((one, i) => h("option", { value: i, selected: i === this.statistic }, one)),
+    );
+    const report = this.app.connection.address("evaluation", `${table.name}/report.html`);
+    fill(
+      this.main,
+      h("h2", {}, table.name),
+      h("p", { class: "note" }, h("code", {}, table.command)),
+      this.rows(),
+      h("ul", { class: "comparisons" }, table.comparisons.map((one) => h("li", {}, one))),
+      h("div", { class: "row" }, field("Picture of each run by", choice), table.report ? h("a", { href: report, target: "_blank", rel: "noopener" }, "Report") : null),
+      makeStrips(table.cells, this.statistic, table.statistics[this.statistic], (cell, seed) => this.watch(cell, seed)),
+      h("p", { class: "note" }, "Circle: success. Cross: collision or error. Square: timeout. Choose a mark to watch the run."),
+      this.runs(),
+    );
+  }
+
+  rows() {
+    const { cells, statistics } = this.table;
+    const head = ["Trial", "Navigator", "Robot", "Visible", "Senses", ...statistics, "Runs"];
+    const row = (cell) =>
+      h(
+        "tr",
+        { "aria-selected": String(cell.number === this.chosen) },
+        [cell.trial, cell.navigator, cell.robot, cell.visible ? "yes" : "no", cell.senses.join(", ") || "true people"].map((one) => h("td", {}, one)),
+        cell.estimates.map((one) => h("td", { class: "number" }, one)),
+        h("td", {}, h("button", { type: "button", onclick: () => this.choose(cell.number) }, `${cell.runs.length} runs`)),
+      );
+    return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table" }, h("table", {}, h("thead", {}, h("tr", {}, head.map((one) => h("th", { scope: "col" }, one)))), h("tbody", {}, cells.map(row))));
+  }
+
+  choose(number) {
+    this.chosen = number;
+    this.show();
+  }
+
+  runs() {
+    if (this.chosen === null) return null;
+    const cell = this.table.cells[this.chosen];
+    const failures = cell.runs.filter((run) => !GOOD.has(run.outcome));
+    const shown = this.onlyFailures && failures.length ? failures : cell.runs;
+    const toggle = h("input", { type: "checkbox", checked: this.onlyFailures, onchange: () => ((this.onlyFailures = toggle.checked), this.show()) });
+    const head = ["Seed", "Outcome", ...this.table.statistics, "Message", ""];
+    const row = (run) =>
+      h(
+        "tr",
+        {},
+        h("td", { class: "number" }, String(run.seed)),
+        h("td", {}, run.outcome),
+        run.values.map((one) => h("td", { class: "number" }, one === null ? "-" : one.toPrecision(3))),
+        h("td", {}, run.message),
+        h("td", {}, h("button", { type: "button", onclick: () => this.watch(cell.number, run.seed) }, `Watch seed ${run.seed}`)),
+      );
+    return h(
+      "div",
+      {},
+      h("h3", {}, `${cell.trial}, ${cell.navigator}`),
+      h("label", { class: "option" }, toggle, `Only the ${failures.length} failures`),
+      h("table", {}, h("thead", {}, h("tr", {}, head.map((one) => h("th", { scope: "col" }, one || "Watch")))), h("tbody", {}, shown.slice(0, 500).map(row))),
+    );
+  }
+
+  async watch(cell, seed) {
+    const found = await this.call("watch", { name: this.table.name, cell, seed });
+    if (!found) return;
+    this.app.select("simulator");
+    document.dispatchEvent(new CustomEvent("open-trial", { detail: found }));
+  }
+}
+
+export const evaluation = {
+  name: "evaluation",
+  title: "Evaluation",
+  mount(root, app) {
+    const tab = new EvaluationTab(root, app);
+    return { tab, greet: (state) => tab.greet(state) };
+  },
+};

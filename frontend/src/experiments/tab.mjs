@@ -1,0 +1,171 @@
+// Experiments tab: the screens for the participant, and the controls of the operator beside them.
+import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { field, fill, h } from "../ui/dom.mjs";
+import { pageNodes } from "./page_nodes.mjs";
+import { makeQuestions } from "./questions.mjs";
+import { TrialCanvas } from "./trial_canvas.mjs";
+
+class ExperimentsTab {
+  constructor(root, app) {
+    Object.assign(this, { root, app, state: { open: false }, form: null });
+    this.participant = app.address.get("role") === "participant";
+    this.trial = new TrialCanvas();
+    this.screen = h("div", { class: "screen", "aria-live": "polite" });
+    this.side = h("aside", { "aria-label": "Operator" });
+    root.classList.add("experiments");
+    if (this.participant) document.body.classList.add("participant");
+    fill(root, this.screen, this.participant ? null : this.side);
+    app.connection.on("experiments.state", (state) => this.update(state));
+    app.connection.on("experiments.progress", (share) => this.progress(share));
+    app.connection.draw("trial", (frame) => this.trial.show(frame));
+  }
+
+  async call(command, args = {}) {
+    const state = await attempt(() => this.app.connection.call(`experiments.${command}`, args));
+    if (state && "open" in state) this.update(state);
+    return state;
+  }
+
+  update(state) {
+    const same = JSON.stringify(state) === JSON.stringify(this.state) && this.drawn;
+    this.state = state;
+    if (same) return;
+    this.drawn = true;
+    this.form = null;
+    if (!state.open) this.showStart();
+    else if (state.phase === "screen") this.showScreen();
+    else if (state.phase === "running") this.showTrial();
+    else if (state.phase === "pause") this.showPause();
+    else this.showEnd();
+    if (!this.participant) this.showOperator();
+  }
+
+  async showStart() {
+    if (this.participant) return fill(this.screen, h("h2", {}, "The experiment has not started yet."));
+    const sources = await this.call("sources");
+    if (!sources) return;
+    const choice = h("select", {}, sources.map((one) => h("option", { value: one.name }, `${one.name}: ${one.about}`)));
+    const number = h("input", { type: "number", min: 1, value: 1 });
+    const rate = h("input", { type: "number", min: 0.1, max: 100, step: "any", value: 1 });
+    const resume = h("input", { type: "checkbox" });
+    const start = () =>
+      this.call("open", { experiment: choice.value, participant: Number(number.value), resume: resume.checked, rate: Number(rate.value) });
+    fill(
+      this.screen,
+      h("h2", {}, "Start a session"),
+      field("Experiment", choice),
+      field("Participant", number),
+      field("Speed of the trials (1: real time)", rate),
+      h("label", { class: "option" }, resume, "Continue an interrupted session"),
+      h("p", {}, h("button", { type: "button", class: "main", onclick: start }, "Start")),
+    );
+  }
+
+  showScreen() {
+    const { html, questions, answers } = this.state;
+    this.form = makeQuestions(questions, answers);
+    const next = h("button", { type: "submit", class: "main" }, "Continue");
+    const form = h("form", { onsubmit: (event) => this.submit(event) }, pageNodes(html), this.form.element, h("p", {}, next));
+    fill(this.screen, form);
+  }
+
+  async submit(event) {
+    event.preventDefault();
+    const missing = this.form.missing();
+    if (missing.length) return say(`Please answer: ${missing.join("; ")}`, "error");
+    const answers = this.form.values();
+    if (Object.keys(answers).length && !(await this.call("answer", { answers }))) return undefined;
+    return this.call("next");
+  }
+
+  showTrial() {
+    this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress of the trial" });
+    fill(this.screen, h("h2", {}, "Watch the trial"), this.trial.element, this.bar);
+    this.trial.setStage(this.state.stage);
+  }
+
+  progress(share) {
+    if (this.bar) this.bar.value = share;
+  }
+
+  showPause() {
+    const failed = this.state.waiting === "failed";
+    const why = failed ? `The trial has failed: ${this.state.reason}` : "The experiment is paused.";
+    fill(this.screen, h("h2", {}, this.participant ? "Please wait." : why));
+  }
+
+  showEnd() {
+    const text = this.state.phase === "done" ? "The session is complete. Thank you." : `The session has ended: ${this.state.reason || this.state.phase}`;
+    fill(this.screen, h("h2", {}, text));
+  }
+
+  showOperator() {
+    const { state } = this;
+    if (!state.open) return fill(this.side, h("h2", {}, "Operator"), h("p", { class: "note" }, "Start a session. A second window for the participant can be opened then."));
+    const can = (name) => state.possible.includes(name);
+    const button = (text, name, args) => (can(name) ? h("button", { type: "button", onclick: () => this.call(name, args) }, text) : null);
+    const skip = state.phase === "pause" && can("next") ? h("button", { type: "button", onclick: () => this.call("next") }, "Continue without this trial") : null;
+    const over = state.phase === "done" || state.phase === "aborted";
+    return fill(
+      this.side,
+      h("h2", {}, `${state.experiment}, participant ${state.participant}`),
+      h("p", {}, `State: ${state.phase}${state.reason ? ` (${state.reason})` : ""}`),
+      h("ol", { class: "steps" }, state.steps.map((one, i) => this.step(one, i))),
+      h("div", { class: "row" }, button("Pause", "pause"), button("Resume", "resume"), button("Repeat the trial", "repeat"), skip),
+      h(
+        "div",
+        { class: "row" },
+        can("abort") ? h("button", { type: "button", onclick: () => this.askAbort() }, "Abort") : null,
+        h("button", { type: "button", onclick: () => this.call("leave") }, over ? "New session" : "Leave for now"),
+        h("button", { type: "button", onclick: () => this.showAnswers() }, "Answers"),
+      ),
+      h("p", {}, h("a", { href: this.participantAddress(), target: "_blank", rel: "noopener" }, "Window for the participant")),
+      h("p", { class: "note" }, `Files: ${state.folder}`),
+    );
+  }
+
+  step(one, i) {
+    const { index, outcomes, phase } = this.state;
+    const over = phase === "done" || i < index;
+    const words = `${one.name} (${one.role})${outcomes[i] ? `: ${outcomes[i]}` : ""}`;
+    return h("li", { "aria-current": i === index && !over ? "step" : null, class: over ? "over" : "" }, words);
+  }
+
+  participantAddress() {
+    const address = new URLSearchParams(this.app.address);
+    address.set("role", "participant");
+    address.set("tab", "experiments");
+    return `?window=participant#${address}`;
+  }
+
+  askAbort() {
+    const reason = h("input", { type: "text" });
+    openDialog("End the session permanently?", field("Reason", reason), [
+      ["Cancel", () => true],
+      ["Abort the session", () => void this.call("abort", { reason: reason.value || "operator" })],
+    ]);
+  }
+
+  async showAnswers() {
+    const rows = await this.call("answers");
+    if (!rows) return;
+    const names = [...new Set(rows.flatMap(Object.keys))];
+    const cell = (value) => h("td", {}, value === null || value === undefined ? "" : String(value));
+    const table = h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, names.map((one) => h("th", { scope: "col" }, one)))),
+      h("tbody", {}, rows.map((row) => h("tr", {}, names.map((one) => cell(row[one]))))),
+    );
+    openDialog("Answers", rows.length ? table : h("p", {}, "No answers yet."));
+  }
+}
+
+export const experiments = {
+  name: "experiments",
+  title: "Experiments",
+  mount(root, app) {
+    const tab = new ExperimentsTab(root, app);
+    return { tab, greet: (state) => tab.update(state) };
+  },
+};

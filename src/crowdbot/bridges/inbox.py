@@ -1,0 +1,197 @@
+"""Inbox: what other programs ask of a running simulation, from all threads of all transports."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.simulation import Order, VelocityOrder
+
+from .interface import InputTopic, RobotInterface
+from .latency import CommandLatency
+
+__all__ = ["Inbox", "ServiceCall"]
+
+MOST_ORDERS, MOST_CALLS = 2000, 200
+"""Largest number of orders and of calls that wait for the next step."""
+
+Fields = Mapping[str, Any]
+Answer = Callable[[dict[str, Any]], None]
+"""Receives the fields of a response, or raises nothing if the caller has gone."""
+
+
+class ServiceCall(NamedTuple):
+    """A call of a service.
+
+    Fields:
+        service: name of the service.
+        request: fields of the request.
+        answer: called once with the fields of the response, in the thread of the simulation.
+        sender: name of the transport.
+    """
+
+    service: str
+    request: Fields
+    answer: Answer
+    sender: str
+
+
+@dataclass
+class _Count:
+    """Numbers of messages since the start."""
+
+    received: int = 0
+    refused: int = 0
+
+
+class Inbox:
+    """Collects commands, orders and calls until the simulation takes them between two steps.
+
+    Memory is bounded: of the velocity commands for a robot only the newest waits, and other orders and calls are
+    refused when too many wait.
+
+    >>> from crowdbot.trials import load_trial
+    >>> inbox = Inbox(RobotInterface.of(load_trial("frontal")))
+    >>> inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.5}, "angular": {"z": 0.1}}, "test")
+    >>> [order.forward for order in inbox.take_orders()]
+    [0.5]
+    """
+
+    def __init__(self, interface: RobotInterface) -> None:
+        self.interface = interface
+        self.count = _Count()
+        self.latency = CommandLatency()
+        self.external_time: int | None = None
+        """Latest time [ns] received on ``/clock``, for a simulation that follows it."""
+        self.commanded: set[str] = set()
+        """Robots that have received a velocity command since :meth:`take_orders`."""
+        self._velocity: dict[str, VelocityOrder] = {}
+        self._orders: deque[Order] = deque()
+        self._calls: deque[ServiceCall] = deque()
+        self._arrivals = self._seen = 0
+        self._closed = False
+        self._news = threading.Condition()
+
+    def receive(self, topic: str, fields: Fields, sender: str) -> None:
+        """Take a message from another program.
+
+        Args:
+            topic: an input topic of the interface.
+            fields: the message as nested mappings; missing fields are 0.
+            sender: name of the transport, the source of the orders.
+
+        Raises:
+            InputError: there is no such input topic, a value is not allowed, or too many orders wait.
+        """
+        try:
+            orders = self._input(topic).orders(fields, sender)
+        except InputError:
+            self.count.refused += 1
+            raise
+        with self._news:
+            self.count.received += 1
+            for order in orders:
+                self._add(order)
+            if topic == "/clock":
+                stamp = fields["clock"]
+                self.external_time = int(stamp.get("sec", 0)) * 10**9 + int(stamp.get("nanosec", 0))
+            self._note()
+
+    def call(self, service: str, request: Fields, answer: Answer, sender: str) -> None:
+        """Take a call of a service; ``answer`` receives the response later.
+
+        Raises:
+            InputError: there is no such service, or too many calls wait.
+        """
+        known = [one.name for one in self.interface.services]
+        if service not in known:
+            raise InputError(f"there is no service {service!r}{did_you_mean(service, known)}")
+        with self._news:
+            if self._closed:
+                raise InputError("the run has ended")
+            if len(self._calls) >= MOST_CALLS:
+                raise InputError(f"{MOST_CALLS} calls wait for the simulation; wait for their responses")
+            self._calls.append(ServiceCall(service, request, answer, sender))
+            self._note()
+
+    def add(self, order: Order) -> None:
+        """Add an order for the current instant.
+
+        Raises:
+            InputError: too many orders wait.
+        """
+        with self._news:
+            self._add(order)
+
+    def count_orders(self, kind: type[Order], text: str = "") -> int:
+        """Return the number of orders of a kind that wait, with a text in their element."""
+        with self._news:
+            return sum(isinstance(one, kind) and text in getattr(one, "xml", text) for one in self._orders)
+
+    def wait(self, seconds: float) -> None:
+        """Wait until something arrives, at most this time."""
+        with self._news:
+            if not self._calls and self._arrivals == self._seen:
+                self._news.wait(seconds)
+            self._seen = self._arrivals
+
+    def wake(self) -> None:
+        """End :meth:`wait` now."""
+        with self._news:
+            self._note()
+
+    def take_orders(self) -> list[Order]:
+        """Return the orders that wait, and forget them."""
+        with self._news:
+            found: list[Order] = [*self._orders, *self._velocity.values()]
+            self._orders.clear()
+            self._velocity.clear()
+            self.commanded.clear()
+            return found
+
+    def take_calls(self) -> list[ServiceCall]:
+        """Return the calls that wait, and forget them."""
+        with self._news:
+            found = list(self._calls)
+            self._calls.clear()
+            return found
+
+    def close(self) -> list[ServiceCall]:
+        """Refuse further calls, and return those that wait."""
+        with self._news:
+            self._closed = True
+        return self.take_calls()
+
+    def clear(self, interface: RobotInterface) -> None:
+        """Begin another run: forget commands and orders; calls stay."""
+        with self._news:
+            self.interface, self.external_time = interface, None
+            self._orders.clear()
+            self._velocity.clear()
+            self.commanded.clear()
+
+    def _note(self) -> None:
+        self._arrivals += 1
+        self._news.notify_all()
+
+    def _add(self, order: Order) -> None:
+        if isinstance(order, VelocityOrder):
+            self._velocity[order.robot] = order
+            self.latency.note_command(order.robot)
+            self.commanded.add(order.robot)
+            return
+        if len(self._orders) >= MOST_ORDERS:
+            self.count.refused += 1
+            raise InputError(f"{MOST_ORDERS} orders wait for the next step; send fewer")
+        self._orders.append(order)
+
+    def _input(self, topic: str) -> InputTopic:
+        for one in self.interface.inputs:
+            if one.name == topic:
+                return one
+        known = [one.name for one in self.interface.inputs]
+        raise InputError(f"{topic!r} is not an input{did_you_mean(topic, known)}; inputs are {', '.join(known)}")

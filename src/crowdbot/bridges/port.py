@@ -1,0 +1,164 @@
+"""BridgePort: carries a running simulation over transports, and brings orders and calls in."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+from crowdbot.core import InputError
+from crowdbot.navigation import ExternalNavigator
+from crowdbot.recording import StepMessage, StepMessages
+from crowdbot.simulation import Order, Simulation, StepRecord
+from crowdbot.trials import Trial
+
+from .inbox import Inbox
+from .interface import RobotInterface
+from .map_message import map_message
+from .run_control import RunControl
+from .transport import Transport
+from .verbs.verbs import answer_call
+
+__all__ = ["BridgePort", "steered_trial"]
+
+
+def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
+    """Return the trial with robots that other programs drive.
+
+    Robots with the navigator ``external`` are driven from outside; if there is none, all robots are.
+
+    Args:
+        trial: the trial.
+        timeout: simulated time [s] without a command after which a robot stops.
+
+    >>> from crowdbot.trials import load_trial
+    >>> steered_trial(load_trial("frontal")).robots[0].navigator
+    ExternalNavigator(timeout=0.5)
+    """
+    if any(isinstance(one.navigator, ExternalNavigator) for one in trial.robots):
+        return trial
+    navigator = ExternalNavigator(timeout=timeout)
+    robots = tuple(dataclasses.replace(one, navigator=navigator) for one in trial.robots)
+    return dataclasses.replace(trial, robots=robots)
+
+
+class BridgePort:
+    """Topics, commands and services of a running trial, over any number of transports.
+
+    The messages are those of the recorder: :class:`crowdbot.recording.StepMessages` converts the records of steps.
+    Clock, transforms, odometry, joints and readings are sent after every step, the scene at its recording period.
+    Commands, orders and calls wait in :attr:`inbox` until the instant between two steps.
+
+    Args:
+        trial: the trial.
+        transports: connections to other programs.
+        control: state of the run.
+        follows_clock: whether ``/clock`` is received instead of sent.
+
+    >>> from crowdbot.trials import load_trial
+    >>> port = BridgePort(load_trial("frontal"), [])
+    >>> port.interface.output("/map").quality.latched
+    True
+    """
+
+    def __init__(
+        self,
+        trial: Trial,
+        transports: Sequence[Transport],
+        control: RunControl | None = None,
+        follows_clock: bool = False,
+    ) -> None:
+        self.transports = list(transports)
+        self.control = control or RunControl()
+        self.follows_clock = follows_clock
+        self.interface = RobotInterface.of(trial, follows_clock)
+        self.inbox = Inbox(self.interface)
+        self._steps: StepMessages | None = None
+        self._skipped: set[str] = set()
+
+    def start(self) -> None:
+        """Open all transports."""
+        for one in self.transports:
+            one.start(self.interface, self.inbox)
+
+    def stop(self) -> None:
+        """Close all transports."""
+        for one in self.transports:
+            one.stop()
+
+    def change_trial(self, trial: Trial) -> None:
+        """Announce another trial, or the same one from its beginning; clients stay connected."""
+        self._announce(trial)
+        self.inbox.clear(self.interface)
+        self.control.spawned.clear()
+
+    def begin(self, simulation: Simulation) -> None:
+        """Send the map and the first instant of a simulation that has begun."""
+        trial = simulation.trial
+        self._steps = StepMessages(trial, {}, simulation)
+        self._skipped = {one.name for one in self.interface.inputs}
+        self._scene_every = simulation.world.clock.schedule(trial.recording.period)
+        make, now = self._steps.make, simulation.world.clock.nanoseconds
+        grid = map_message(make, trial.stage, simulation.world.scene)
+        self._send([StepMessage("/map", grid.__msgtype__, now, make, grid)])
+        self.publish(simulation)
+
+    def publish(self, simulation: Simulation) -> None:
+        """Send the messages of the current instant, before its orders."""
+        assert self._steps is not None
+        if simulation.trial.robots != self.interface.trial.robots:
+            self._announce(simulation.trial)
+        due = bool(self._scene_every.is_due(simulation.ticks)[0])
+        frame = simulation.record(0, due=True, collisions=False)
+
+        def wants(topic: str) -> bool:
+            if topic in self._skipped or (not due and topic in ("/people", "/crowdbot/reactions")):
+                return False
+            return topic in ("/tf_static",) or topic.endswith("/robot_description") or self._is_wanted(topic)
+
+        messages = list(self._steps.messages(frame, wants))
+        self.inbox.latency.note_step()
+        self._send(messages)
+
+    def take(self, frame: StepRecord) -> None:
+        """Send what is known at the end of a step only: orders that were applied and contacts that have ended."""
+        if self._steps is not None and (frame.orders or frame.collisions):
+            self._send(list(self._steps.endings(frame, self._is_wanted)))
+
+    def take_orders(self, simulation: Simulation) -> list[Order]:
+        """Return the orders for the current instant; what is impossible now is reported to the other programs."""
+        found = []
+        for order in self.inbox.take_orders():
+            try:
+                order.check(simulation)
+            except InputError as error:
+                self.inbox.count.refused += 1
+                self.report("error", str(error))
+                continue
+            found.append(order)
+        return found
+
+    def serve(self, simulation: Simulation) -> None:
+        """Answer the calls that wait."""
+        for one in self.transports:
+            one.poll()
+        for call in self.inbox.take_calls():
+            answer_call(call, simulation, self.control, self.inbox)
+
+    def report(self, level: str, text: str) -> None:
+        """Tell all other programs about a problem."""
+        for one in self.transports:
+            one.report(level, text)
+
+    def _announce(self, trial: Trial) -> None:
+        self.interface = self.inbox.interface = RobotInterface.of(trial, self.follows_clock)
+        self._skipped = {one.name for one in self.interface.inputs}
+        for one in self.transports:
+            one.start(self.interface, self.inbox)
+
+    def _is_wanted(self, topic: str) -> bool:
+        return any(one.wants(topic) for one in self.transports)
+
+    def _send(self, messages: list[StepMessage]) -> None:
+        if messages:
+            for one in self.transports:
+                one.publish(messages)

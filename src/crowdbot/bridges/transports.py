@@ -1,0 +1,52 @@
+"""Transports by their name on the command line: ``rosbridge:9090`` is the transport ``rosbridge`` with ``9090``."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Mapping
+from typing import Any
+
+from crowdbot.core import InputError, did_you_mean
+
+from .transport import Transport
+
+__all__ = ["TRANSPORTS", "open_transport"]
+
+TRANSPORTS: dict[str, tuple[str, str]] = {
+    "rosbridge": ("rosbridge.server:RosbridgeServer.of", "rosbridge[:PORT], a server for roslibpy and roslib.js"),
+    "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),
+}
+"""Module and function of each transport, relative to this room, and a line for people.
+
+The function takes the text after the name, and options of the command line by name (``host``, ``token``, ``topics``).
+"""
+
+
+def open_transport(text: str, options: Mapping[str, Any] | None = None) -> Transport:
+    """Return a transport by its name and address.
+
+    Raises:
+        InputError: there is no such transport, or its address is not allowed.
+
+    >>> open_transport("rosbridge:9091").name
+    'rosbridge'
+    >>> open_transport("rosbrige")
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: there is no bridge 'rosbrige', did you mean 'rosbridge'? Bridges are ...
+    """
+    name, _, address = text.partition(":")
+    if name not in TRANSPORTS:
+        raise InputError(
+            f"there is no bridge {name!r}{did_you_mean(name, TRANSPORTS)}; bridges are {', '.join(TRANSPORTS)}"
+        )
+    module, _, path = TRANSPORTS[name][0].partition(":")
+    made: Any = importlib.import_module(f"crowdbot.bridges.{module}")
+    for word in path.split("."):
+        made = getattr(made, word)
+    try:
+        inspect.signature(made).bind(address, **(options or {}))
+    except TypeError:
+        raise InputError(f"bridge {name!r} does not take {', '.join(options or {})}") from None
+    found: Transport = made(address, **(options or {}))
+    return found

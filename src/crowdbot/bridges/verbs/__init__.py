@@ -1,0 +1,1 @@
+"""The verbs of ``simulation_interfaces``: what the services of a port do."""

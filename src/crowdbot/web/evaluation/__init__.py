@@ -1,0 +1,6 @@
+"""The evaluation tab: navigators compared over many runs, each of which can be watched."""
+
+from .evaluation_desk import EvaluationDesk
+from .evaluation_request import EvaluationRequest
+
+__all__ = ["EvaluationDesk", "EvaluationRequest"]

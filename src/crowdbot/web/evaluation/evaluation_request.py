@@ -1,0 +1,95 @@
+"""EvaluationRequest: what an evaluation of the app runs, as JSON beside its results."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from crowdbot.core import InputError
+from crowdbot.evaluation import EvaluationPlan, families_of, parse_methods, parse_seeds, parse_statistic, with_safety
+from crowdbot.metrics import LOG_FAMILIES
+from crowdbot.trials import builtin_trials, load_trial
+
+__all__ = ["FILE", "EvaluationRequest"]
+
+FILE = "request.json"
+MOST_RUNS = 100_000
+
+
+@dataclass(frozen=True)
+class EvaluationRequest:
+    """Trials, navigators and seeds of an evaluation, in the words of ``crowdbot evaluate``.
+
+    Fields:
+        trials: built-in names, or trial files relative to the folder.
+        navigators: as for ``--navigators``.
+        seeds: as for ``--seeds``.
+        metrics: statistics, the columns of the table.
+        safety: each navigator without and with a safety layer.
+    """
+
+    trials: tuple[str, ...]
+    navigators: str
+    seeds: str
+    metrics: tuple[str, ...]
+    safety: bool = False
+
+    def plan(self, folder: Path) -> EvaluationPlan:
+        """Return the plan.
+
+        Args:
+            folder: folder of the trial files.
+
+        Raises:
+            InputError: a trial, navigator, seed or metric is wrong, or there are more than 100 000 runs.
+        """
+        if not self.trials:
+            raise InputError("an evaluation needs a trial")
+        found = [load_trial(one if one in builtin_trials() else str(_inside(folder, one))) for one in self.trials]
+        statistics = [parse_statistic(name) for name in self.metrics]
+        families = (*LOG_FAMILIES, *families_of([one.metric for one in statistics]))
+        methods = parse_methods(self.navigators)
+        methods = with_safety(methods) if self.safety else methods
+        plan = EvaluationPlan(found, methods, seeds=parse_seeds(self.seeds), families=families)
+        if (runs := len(plan.cells) * len(plan.seeds)) > MOST_RUNS:
+            raise InputError(f"the evaluation has {runs} runs, at most {MOST_RUNS}; take fewer seeds or trials")
+        return plan
+
+    @property
+    def command(self) -> str:
+        """The same evaluation on the command line."""
+        words = ["crowdbot evaluate", *self.trials, f'--navigators "{self.navigators}"', f"--seeds {self.seeds}"]
+        words += [f'--metrics "{", ".join(self.metrics)}"', *(["--safety both"] if self.safety else [])]
+        return " ".join(words)
+
+    def save(self, folder: Path) -> None:
+        """Write the request into the folder of the results."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / FILE).write_text(json.dumps(asdict(self), indent=1) + "\n", encoding="utf-8")
+
+    @staticmethod
+    def load(folder: Path) -> EvaluationRequest:
+        """Read the request in the folder of results.
+
+        Raises:
+            InputError: there is none, or it is damaged.
+        """
+        try:
+            values = json.loads((folder / FILE).read_text(encoding="utf-8"))
+            rows = {name: tuple(map(str, values[name])) for name in ("trials", "metrics")}
+            return EvaluationRequest(
+                navigators=str(values["navigators"]), seeds=str(values["seeds"]), safety=bool(values["safety"]), **rows
+            )
+        except OSError:
+            raise InputError(f"{folder.name} was not made by the app; its runs cannot be repeated here") from None
+        except (ValueError, KeyError, TypeError):
+            raise InputError(f"{FILE} of {folder.name} is damaged; run the evaluation again") from None
+
+
+def _inside(folder: Path, name: str) -> Path:
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()) or path.suffix != ".xml":
+        load_trial(name) if not path.suffix else None  # raises the sentence with near names
+        raise InputError(f"{name!r} is neither a built-in trial nor a trial file in the folder of the app")
+    return path

@@ -1,0 +1,231 @@
+"""ExperimentDesk: the session of a participant in the browser."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import threading
+import time
+from pathlib import Path
+from typing import Any, ClassVar
+
+from crowdbot.core import CrowdbotError, InputError, PacedClock
+from crowdbot.experiments import (
+    Abort,
+    Answered,
+    BackgroundRun,
+    Event,
+    Next,
+    Pause,
+    Repeat,
+    Resume,
+    SessionRunner,
+    Start,
+    builtin_experiments,
+    is_experiment,
+    load_experiment,
+    summary,
+)
+from crowdbot.web.command import command
+from crowdbot.web.desk import Desk, DeskWindows
+
+from .question_form import question_form
+from .trial_view import TrialView, stage_outline
+
+__all__ = ["ExperimentDesk"]
+
+
+class ExperimentDesk(Desk):
+    """The experiments tab: one session of a participant, which the operator and the participant see.
+
+    The session is that of ``crowdbot experiment run``: the same folder, log, answers and episodes. Trials run at a
+    chosen rate, so that the participant watches them.
+    """
+
+    name: ClassVar[str] = "experiments"
+
+    def __init__(self, session: DeskWindows) -> None:
+        super().__init__(session)
+        self._runner: SessionRunner | None = None
+        self._run: BackgroundRun | None = None
+        self._rate = 1.0
+        self._stage: dict[str, Any] = {}
+        self._shown = ""
+        self._lock = threading.RLock()
+
+    def greet(self) -> dict[str, Any]:
+        """Return the state for a new window."""
+        with self._lock:
+            return self._state()
+
+    @command
+    def sources(self) -> list[dict[str, str]]:
+        """Return the built-in experiments and those in the folder of the session."""
+        rows = [{"name": name, "about": load_experiment(name).about} for name in builtin_experiments()]
+        for file in self.session.workspace.files("*.xml"):
+            with contextlib.suppress(CrowdbotError):
+                if is_experiment(self.session.workspace.readable(file)):
+                    rows.append({"name": file, "about": "file of this session"})
+        return rows
+
+    @command
+    def open(self, experiment: str, participant: int, resume: bool = False, rate: float = 1.0) -> dict[str, Any]:
+        """Begin or continue the session of a participant; trials run at ``rate`` times real time."""
+        if not 0.1 <= rate <= 100.0:
+            raise InputError(f"rate = {rate:g}: expected 0.1 to 100")
+        with self._lock:
+            if self._runner is not None and not self._runner.session.over:
+                raise InputError(f"participant {self._runner.participant} has not finished; close that session first")
+            self._close()
+            builtin = experiment in builtin_experiments()
+            found = load_experiment(experiment if builtin else self.session.workspace.readable(experiment))
+            out = self.session.workspace.folder / "experiments" / re.sub(r"\W+", "-", found.name)
+            self._runner = SessionRunner(found, participant, out, time.time, resume=resume)
+            self._rate = rate
+            return self._do(Start()) if self._runner.session.phase == "ready" else self._moved()
+
+    @command
+    def answer(self, answers: dict) -> dict[str, Any]:  # type: ignore[type-arg]
+        """Answer questions of the screen: values by the names of the questions."""
+        with self._lock:
+            runner = self._opened()
+            for name, value in answers.items():
+                runner.do(Answered(str(name), value))
+            return self._tell()
+
+    @command
+    def next(self) -> dict[str, Any]:
+        """Go on to the next screen or trial."""
+        return self._do(Next())
+
+    @command
+    def pause(self, reason: str = "operator") -> dict[str, Any]:
+        """Pause the session, also inside a trial."""
+        with self._lock:
+            if self._run is not None:
+                self._run.hold()
+            return self._do(Pause(reason))
+
+    @command
+    def resume(self) -> dict[str, Any]:
+        """Continue after a pause."""
+        with self._lock:
+            state = self._do(Resume())
+            if self._run is not None:
+                self._run.go()
+            return state
+
+    @command
+    def repeat(self) -> dict[str, Any]:
+        """Repeat the trial from its start; the answers after it are asked again."""
+        with self._lock:
+            self._give_up()
+            return self._do(Repeat())
+
+    @command
+    def abort(self, reason: str) -> dict[str, Any]:
+        """End the session permanently."""
+        with self._lock:
+            self._give_up()
+            return self._do(Abort(reason))
+
+    @command
+    def leave(self) -> dict[str, Any]:
+        """Close the session; it can be continued later."""
+        with self._lock:
+            self._close()
+            return self._tell()
+
+    @command
+    def answers(self) -> list[dict[str, Any]]:
+        """Return the answers of all participants of the experiment, as ``crowdbot experiment summary`` has them."""
+        with self._lock:
+            return summary(self._opened().folder.parent)
+
+    def close(self) -> None:
+        """Stop a trial and close the log."""
+        with self._lock:
+            self._close()
+
+    def _close(self) -> None:
+        self._give_up()
+        if self._runner is not None:
+            self._runner.close()
+            self._runner = None
+
+    def _opened(self) -> SessionRunner:
+        if self._runner is None:
+            raise InputError("no session is open; choose an experiment and a participant")
+        return self._runner
+
+    def _do(self, event: Event) -> dict[str, Any]:
+        with self._lock:
+            self._opened().do(event)
+            return self._moved()
+
+    def _moved(self) -> dict[str, Any]:
+        """Begin the trial or log the screen that the session has come to."""
+        runner = self._opened()
+        if runner.session.phase == "trial":
+            self._begin(runner)
+        elif runner.session.phase == "screen" and runner.page is not None and runner.page.text != self._shown:
+            self._shown = runner.page.text
+            if self._shown:
+                runner.log_screen(self._shown)
+        return self._tell()
+
+    def _begin(self, runner: SessionRunner) -> None:
+        trial, seed, folder = runner.begin()
+        self._stage, self._shown = stage_outline(trial), ""
+        clock = PacedClock(trial.step, rate=self._rate)
+        self._run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, [TrialView(self.session)])
+        threading.Thread(target=self._watch, args=(self._run, folder), daemon=True).start()
+
+    def _watch(self, run: BackgroundRun, folder: Path) -> None:
+        """Tell the progress of a trial, and end it in the session."""
+        while not run.wait(0.5):
+            self.session.tell("experiments.progress", run.share)
+        with self._lock:
+            if self._run is run and self._runner is not None:
+                if self._runner.session.phase == "pause":
+                    self._runner.do(Resume())
+                self._run = None
+                self._runner.end(run.result, folder)
+                self._moved()
+
+    def _give_up(self) -> None:
+        run, self._run = self._run, None
+        if run is not None:
+            run.give_up()
+            run.wait(30.0)
+
+    def _tell(self) -> dict[str, Any]:
+        state = self._state()
+        self.session.tell("experiments.state", state)
+        return state
+
+    def _state(self) -> dict[str, Any]:
+        runner = self._runner
+        if runner is None:
+            return {"open": False}
+        now = runner.session
+        page = runner.page if now.phase == "screen" else None
+        screen = now.step.screen if page else None
+        return {
+            "open": True,
+            "experiment": runner.experiment.name,
+            "participant": runner.participant,
+            "folder": runner.folder.relative_to(self.session.workspace.folder).as_posix(),
+            "phase": now.phase,
+            "waiting": now.waiting,
+            "reason": now.reason,
+            "index": now.index,
+            "steps": [{"name": one.name, "role": one.role, "number": one.number} for one in now.steps],
+            "possible": list(now.possible_events),
+            "html": page.html if page else "",
+            "questions": [question_form(one) for one in screen.questions] if screen else [],  # type: ignore[arg-type]
+            "answers": dict(now.answers.get(now.index, {})),
+            "stage": self._stage if now.phase in ("running", "pause") else {},
+            "outcomes": {str(index): one.outcome for index, one in now.results.items()},
+            "rate": self._rate,
+        }

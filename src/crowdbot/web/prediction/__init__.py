@@ -1,0 +1,7 @@
+"""The prediction tab: recordings, predictors, runs in worker processes, and their results."""
+
+from .prediction_desk import EXAMPLES, PredictionDesk
+from .prediction_run import PredictionRun
+from .predictor_choice import PredictorChoice
+
+__all__ = ["EXAMPLES", "PredictionDesk", "PredictionRun", "PredictorChoice"]

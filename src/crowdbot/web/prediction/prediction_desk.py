@@ -1,0 +1,302 @@
+"""PredictionDesk: the prediction tab: recordings, predictors, runs and their results."""
+
+from __future__ import annotations
+
+import io
+import shutil
+import tempfile
+from importlib import resources
+from pathlib import Path
+from typing import Any, ClassVar
+
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.web.command import command
+from crowdbot.web.desk import Desk, DeskWindows, Resource
+
+from .background_picture import BackgroundPicture, read_homography
+from .form_rows import scheme_tables
+from .prediction_board import CLEAN, DEGRADED, BoardMember, PredictionBoard
+from .prediction_results import clean_json
+from .prediction_run import PredictionRun
+from .prediction_setup import DegradationChoice, PredictionSetup
+from .result_tables import frame_table, horizon_rows, person_table, score_table, variable_names, variable_rows
+from .scene_frame import window_frame
+
+__all__ = ["EXAMPLES", "PredictionDesk"]
+
+EXAMPLES = {
+    "bottleneck": "people leave a hall through a door, with walls and a robot (simulated)",
+    "crossing-flows": "a robot crosses a corridor with a two-way flow of 40 people (simulated)",
+}
+"""Recordings that ship, made by the built-in trials of the same names with seed 3."""
+RECENT = 30
+
+
+class PredictionDesk(Desk):
+    """The prediction tab of one session.
+
+    Args:
+        session: the windows and the folder of the session.
+    """
+
+    name: ClassVar[str] = "prediction"
+
+    def __init__(self, session: DeskWindows) -> None:
+        super().__init__(session)
+        self.board = PredictionBoard()
+        self._run: PredictionRun | None = None
+        self._queue: list[Any] = []
+        self._share = 0.0
+        self._tables: dict[str, Any] | None = None
+
+    def greet(self) -> dict[str, Any]:
+        """Return the state that a new window needs."""
+        return {**self.board.facts(), "run": self._run_facts()}
+
+    @command
+    def tables(self) -> dict[str, Any]:
+        """Return all lists of the dialogs."""
+        if self._tables is None:
+            self._tables = clean_json(scheme_tables())
+        return self._tables
+
+    @command
+    def files(self) -> dict[str, Any]:
+        """Return the files of the session, newest first, and the examples."""
+        space = self.session.workspace
+        names = [one for one in space.files() if not one.startswith(("sessions/", "examples/"))]
+        facts = [(space.folder / name).stat() for name in names]
+        newest = sorted(zip(names, facts, strict=True), key=lambda pair: -pair[1].st_mtime)
+        rows = [{"name": name, "bytes": one.st_size, "changed": one.st_mtime} for name, one in newest]
+        return {"files": rows[:RECENT], "examples": [{"name": n, "about": a} for n, a in EXAMPLES.items()]}
+
+    @command
+    def open(self, file: str, options: dict | None = None) -> dict[str, Any]:  # type: ignore[type-arg]
+        """Open a recording of the folder of the session."""
+        self._must_rest()
+        path = self.session.workspace.readable(file)
+        try:
+            self.board.open(path, options or {}, file)
+        except InputError as error:
+            raise InputError(str(error).replace(str(path), file)) from None
+        return self._changed()
+
+    @command
+    def example(self, name: str) -> dict[str, Any]:
+        """Copy a recording that ships into the folder of the session and open it."""
+        self._must_rest()
+        if name not in EXAMPLES:
+            raise InputError(f"example {name!r:.40} does not exist{did_you_mean(name, EXAMPLES)}")
+        path = self.session.workspace.writable(f"examples/{name}.parquet")
+        with resources.as_file(resources.files("crowdbot").joinpath("assets", "recordings", path.name)) as source:
+            shutil.copyfile(source, path)
+        self.board.open(path, {}, f"examples/{path.name}")
+        return self._changed()
+
+    @command
+    def background(self, file: str, homography: str = "") -> dict[str, Any]:
+        """Put a picture behind the scene; without a homography, that of the recording, else pixels are coordinates."""
+        path = self.session.workspace.readable(file)
+        tracks = self.board.recording.tracks
+        matrix = read_homography(homography) if homography.strip() else tracks.homography
+        if matrix is None and tracks.units == "m":
+            raise InputError("give nine numbers of a homography, or metres per pixel: the recording is in metres")
+        self.board.background = BackgroundPicture(path, matrix)
+        return self._changed()
+
+    @command
+    def add(self, settings: dict) -> str:  # type: ignore[type-arg]
+        """Add a predictor and return its key."""
+        self._must_rest()
+        key = self.board.add(settings).key
+        self._changed()
+        return key
+
+    @command
+    def remove(self, key: str) -> None:
+        """Remove a predictor and its results."""
+        self._must_rest()
+        self.board.members.remove(self.board.member(key))
+        self._changed()
+
+    @command
+    def degrade(self, name: str, values: dict) -> dict[str, Any]:  # type: ignore[type-arg]
+        """Degrade the observed rows; an empty name ends it."""
+        self._must_rest()
+        self.board.degrade(DegradationChoice.of(name, values) if name else None)
+        return self._changed()
+
+    @command
+    def run(self, seed: int = 0, live: bool = False) -> None:
+        """Run all predictors in a worker process, on the recording and on its degraded rows."""
+        self._must_rest()
+        self._queue = self.board.prepare(seed, live)
+        self._changed()
+        self._start()
+
+    @command
+    def calibrate(self, key: str) -> None:
+        """Calibrate the crowd of a predictor on all windows, as `crowdbot calibrate`."""
+        self._must_rest()
+        self._share = 0.0
+        self._run = PredictionRun(self.board.task([self.board.member(key)]), {}, self._note, calibrates=True)
+        self.session.tell("prediction.progress", {"share": 0.0, "active": True})
+
+    @command
+    def cancel(self) -> None:
+        """End the run; results so far are kept."""
+        self._queue = []
+        if self._run is not None and self._run.alive:
+            self._run.cancel()
+
+    @command
+    def log(self) -> list[Any]:
+        """Return the lines of the log of all predictors."""
+        pairs = [(m, name, one) for m in self.board.members for name, one in m.results.items()]
+        return [{"key": m.key, "input": name, "lines": one.log()} for m, name, one in pairs]
+
+    @command
+    def variables(self) -> list[Any]:
+        """Return the variables that can be plotted."""
+        return variable_names(self.board)
+
+    @command
+    def series(self, variable: str, person: int | None = None) -> dict[str, Any]:
+        """Return a variable by frame, for everybody or one person."""
+        return variable_rows(self.board, variable, person)
+
+    @command
+    def results(self) -> dict[str, Any]:
+        """Return the table of metrics and the error by horizon."""
+        return {"table": score_table(self.board), "horizon": horizon_rows(self.board)}
+
+    @command
+    def person(self, index: int, id: int) -> dict[str, Any]:
+        """Return what is known of a person in a window."""
+        past, future = self.board.windows()
+        slots = (past.id[self.board.index(index)] == id).nonzero()[0]
+        if not len(slots):
+            raise InputError(f"person {id} is not in this frame")
+        slot, dt = slots[0], self.board.tracks.dt
+        place = past.position[index, :, slot][past.present[index, :, slot]]
+        speed = float(((place[-1] - place[-2]) ** 2).sum() ** 0.5 / dt) if len(place) > 1 else None
+        found = [
+            {"key": m.key, "slot": m.slot, "label": m.label, "input": name, **one.person(index, id)}
+            for m in self.board.members
+            for name, one in m.results.items()
+        ]
+        own = {"id": id, "robot": bool(past.robot[index, slot]), "scored": bool(future.scored[index, slot])}
+        return {**own, "place": place[-1].tolist(), "speed": speed, "rows": len(place), "results": found}
+
+    @command
+    def command_line(self, degraded: bool = False) -> str:
+        """Return the commands that give the numbers on the screen, one for each predictor."""
+        choice = self.board.degradation if degraded else None
+        return "\n".join(self._setup.command(one.choice, choice) for one in self._members())
+
+    @command
+    def python(self, degraded: bool = False) -> str:
+        """Return a Python program that gives the numbers on the screen."""
+        choice = self.board.degradation if degraded else None
+        return self._setup.python([one.choice for one in self._members()], choice)
+
+    @command
+    def calibrate_line(self, key: str) -> str:
+        """Return the command that calibrates the crowd of a predictor."""
+        return self._setup.calibrate_command(self.board.member(key).choice)
+
+    def resource(self, path: str, query: dict[str, str]) -> Resource:
+        """Return the frame of a window, the background, or a file of results."""
+        if path == "window":
+            return Resource(self._window(query).encode())
+        if path == "background.png" and self.board.background is not None:
+            return Resource(self.board.background.data, "image/png")
+        if path in ("frames.csv", "people.csv"):
+            table = frame_table(self.board) if path.startswith("frames") else person_table(self.board)
+            return Resource(table.to_csv(index=False).encode(), "text/csv", path)
+        if path == "frames.parquet":
+            buffer = io.BytesIO()
+            frame_table(self.board).to_parquet(buffer, index=False)
+            return Resource(buffer.getvalue(), name=path)
+        if path == "animation.gif":
+            return self._animation(query)
+        raise KeyError(path)
+
+    def close(self) -> None:
+        """End the run."""
+        self.cancel()
+
+    def _window(self, query: dict[str, str]) -> Any:
+        index = self.board.index(_whole(query, "index"))
+        name = DEGRADED if query.get("input") == DEGRADED and self.board.degradation is not None else CLEAN
+        hidden = set(query.get("hide", "").split(","))
+        shown = [(m.slot, m.results[name]) for m in self.board.members if name in m.results and m.key not in hidden]
+        near = self.board.windows(DEGRADED)[0] if name == DEGRADED else None
+        return window_frame(index, self.board.windows(), 1.0 / self.board.tracks.fps, shown, near)
+
+    def _animation(self, query: dict[str, str]) -> Resource:
+        from crowdbot.benchmark import Evaluation, animate_window
+
+        setup, members = self._setup, self._members()
+        frame = int(self.board.windows()[0].frame[self.board.index(_whole(query, "index")), -1])
+        samples = max(one.choice.samples for one in members)
+        evaluation = Evaluation(
+            (setup.recording,), tuple(one.spec for one in members), samples, setup.best_of, setup.seed
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            data = animate_window(evaluation, frame, Path(folder) / "frame.gif").read_bytes()
+        return Resource(data, "image/gif", f"frame-{frame}.gif")
+
+    @property
+    def _setup(self) -> PredictionSetup:
+        _ = self.board.recording
+        assert self.board.setup is not None
+        return self.board.setup
+
+    def _members(self) -> list[BoardMember]:
+        if not self.board.members:
+            raise InputError("there is no predictor; add one first")
+        return self.board.members
+
+    def _must_rest(self) -> None:
+        if self._run is not None and self._run.alive:
+            raise InputError("a run is going on; cancel it or wait for its end")
+
+    def _start(self) -> None:
+        task, results = self._queue.pop(0)
+        self._share = 0.0
+        self._run = PredictionRun(task, results, self._note)
+        self.session.tell("prediction.progress", {"share": 0.0, "active": True})
+
+    def _note(self, event: str, data: Any) -> None:
+        """Pass an event of the run on to the windows; called from the thread of the run."""
+        if event == "fit":
+            self.board.member(data["key"]).fit = data["fit"]
+            self._changed()
+        elif event == "ended" and self._queue and not data["problem"] and not data["cancelled"]:
+            self._start()
+        elif event == "ended":
+            self._share = 1.0
+            self.session.tell("prediction.board", {**self.board.facts(), "run": self._run_facts(ended=True)})
+            self.session.tell("prediction.ended", data)
+        else:
+            if event == "progress":
+                self._share = data["share"]
+                data = {**data, "active": True}
+            self.session.tell(f"prediction.{event}", clean_json(data))
+
+    def _changed(self) -> dict[str, Any]:
+        facts = {**self.board.facts(), "run": self._run_facts()}
+        self.session.tell("prediction.board", facts)
+        return facts
+
+    def _run_facts(self, ended: bool = False) -> dict[str, Any]:
+        active = self._run is not None and self._run.alive and not ended
+        return {"active": active, "share": self._share}
+
+
+def _whole(query: dict[str, str], name: str) -> int:
+    try:
+        return int(query.get(name, ""))
+    except ValueError:
+        raise InputError(f"{name} = {query.get(name, '')!r:.40} is not a whole number") from None

@@ -1,0 +1,53 @@
+"""A prediction desk without a server, for tests."""
+
+import json
+import time
+
+from crowdbot.web import Workspace, call_command
+from crowdbot.web.prediction import PredictionDesk
+
+
+class LonelySession:
+    """A session without windows that keeps the events."""
+
+    name = "main"
+
+    def __init__(self, folder):
+        self.workspace, self.events = Workspace(folder), []
+
+    def tell(self, event, data):
+        self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
+
+    def show(self, frame):
+        raise AssertionError("the prediction desk sends no frames by itself")
+
+
+class DeskCaller:
+    """Calls commands of a prediction desk as the page does."""
+
+    def __init__(self, folder):
+        self.session = LonelySession(folder)
+        self.desk = PredictionDesk(self.session)
+        self.folder = self.session.workspace.folder
+
+    def __call__(self, command, /, **arguments):
+        return json.loads(json.dumps(call_command(self.desk, command, arguments), allow_nan=False))
+
+    def events(self, name):
+        return [data for event, data in list(self.session.events) if event == f"prediction.{name}"]
+
+    def run(self, seconds=180, **arguments):
+        """Run all predictors to the end."""
+        before = len(self.events("ended"))
+        self("run", **arguments)
+        return self.wait(before, seconds)
+
+    def wait(self, before, seconds=180):
+        end = time.monotonic() + seconds
+        while len(self.events("ended")) == before:
+            assert time.monotonic() < end, self.session.events[-3:]
+            time.sleep(0.02)
+        return self.events("ended")[-1]
+
+    def predictor(self, label):
+        return next(one for one in self.desk.greet()["predictors"] if one["label"].startswith(label))

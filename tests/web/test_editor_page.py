@@ -1,0 +1,155 @@
+"""A person's path through the editor: draw a stage, people and a robot, correct an error, undo, save, open again."""
+
+import pytest
+
+from crowdbot.trials import load_trial, parse_trial, trial_xml
+
+
+@pytest.fixture
+def editor(page):
+    """The editor tab of an empty start."""
+    page.get_by_role("tab", name="Editor").click()
+    page.wait_for_function("() => document.querySelector('.editor textarea').value.includes('new-trial')")
+    return page
+
+
+def text_of(page):
+    return page.get_by_label("XML of the trial").input_value()
+
+
+def draw(page, tool, *places):
+    """Click places of the canvas, as shares of its width and height."""
+    page.get_by_role("button", name=tool, exact=True).click()
+    box = page.locator(".editor canvas").bounding_box()
+    for x, y in places:
+        page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+
+
+def wait_for_text(page, word):
+    page.wait_for_function("word => document.querySelector('.editor textarea').value.includes(word)", arg=word)
+
+
+def test_a_trial_is_drawn_checked_saved_and_opened_again(editor, app):
+    page = editor
+    draw(page, "Wall", (0.1, 0.2), (0.9, 0.2))
+    page.keyboard.press("Enter")
+    wait_for_text(page, "<wall")
+    draw(page, "People", (0.1, 0.4), (0.3, 0.6), (0.7, 0.4), (0.9, 0.6))
+    wait_for_text(page, "<spawner")
+    draw(page, "Robot", (0.5, 0.8), (0.5, 0.3))
+    wait_for_text(page, "<robot")
+    page.get_by_text("No errors").wait_for()
+    trial = parse_trial(text_of(page))
+    assert (len(trial.stage.walls), trial.spawners[0].count, len(trial.robots)) == (1, 5, 1)
+
+    page.get_by_role("option", name="spawner").click()
+    count = page.locator(".inspector").get_by_label("count")
+    count.fill("-2")
+    count.press("Tab")
+    problem = page.locator(".editor .below .problems button").first
+    problem.wait_for()
+    assert "must be at least 0" in problem.inner_text()
+    assert page.get_by_role("button", name="Run").is_disabled()
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_text("No errors").wait_for()
+
+    page.get_by_role("button", name="Make single people").click()
+    wait_for_text(page, "<agent")
+    page.get_by_role("button", name="Places").click()
+    page.wait_for_function("() => crowdbot._views.get('editor').tab.model.people?.people.length === 5")
+
+    page.get_by_role("button", name="Save").click()
+    page.get_by_label("Name in the folder of the app").fill("hall")
+    page.get_by_role("dialog").get_by_role("button", name="Save").click()
+    page.get_by_text("saved as hall.xml").wait_for()
+    saved = (app.folder / "hall.xml").read_text()
+    assert saved == text_of(page)
+    assert len(parse_trial(saved).agents) == 5
+
+    page.get_by_role("button", name="Open").click()
+    page.get_by_role("button", name="frontal", exact=True).click()
+    wait_for_text(page, 'name="frontal"')
+    assert text_of(page) == trial_xml(load_trial("frontal"))
+    page.get_by_role("button", name="Open").click()
+    page.get_by_role("button", name="hall.xml").click()
+    wait_for_text(page, "<agent")
+    assert text_of(page) == saved
+
+
+def test_an_element_is_dragged_and_the_xml_follows(editor):
+    page = editor
+    page.evaluate("crowdbot.connection.call('editor.start', {trial: 'frontal'})")
+    wait_for_text(page, 'name="frontal"')
+    page.get_by_role("button", name="Whole view").click()
+    before = parse_trial(text_of(page)).robots[0].x
+    at = page.evaluate(
+        """() => {
+          const view = crowdbot._views.get('editor').tab.view;
+          const robot = view.shapes.find((one) => one.tag === 'robot');
+          const bounds = view.canvas.getBoundingClientRect();
+          const [x, y] = view.pixel(robot.centre);
+          return [x + bounds.left, y + bounds.top, view.scale];
+        }"""
+    )
+    page.mouse.move(at[0], at[1])
+    page.mouse.down()
+    page.mouse.move(at[0] + at[2], at[1], steps=4)
+    page.mouse.up()
+    page.wait_for_function(f"() => !document.querySelector('.editor textarea').value.includes('x=\"{before:g}\"')")
+    assert parse_trial(text_of(page)).robots[0].x == pytest.approx(before + 1.0, abs=0.051)
+
+
+def test_text_and_elements_follow_each_other_in_two_windows(editor, browser, app):
+    page = editor
+    other = browser.new_page()
+    other.goto(app.url + "#tab=editor")
+    wait_for_text(other, "new-trial")
+    area = page.get_by_label("XML of the trial")
+    area.fill(text_of(page).replace("<stage/>", '<stage>\n    <!-- mine -->\n    <wall points="0,0 3,0"/>\n  </stage>'))
+    wait_for_text(other, "<!-- mine -->")
+    other.get_by_role("option", name="wall").click()
+    other.locator(".inspector").get_by_label("points").fill("0,0 5,0")
+    other.keyboard.press("Tab")
+    wait_for_text(page, "0,0 5,0")
+    assert "<!-- mine -->" in text_of(page)
+    other.close()
+
+
+def test_ways_follow_an_edit_of_a_wall(editor):
+    page = editor
+    text = (
+        '<trial name="t" duration="9"><stage><wall points="2,-3 2,3"/></stage><crowd type="orca"/>'
+        '<agent x="0" y="0" goal="4,0"/></trial>'
+    )
+    page.get_by_label("XML of the trial").fill(text)
+    page.get_by_role("button", name="Places").click()
+    ways = "crowdbot._views.get('editor').tab.model.people?.ways[0].length"
+    page.wait_for_function(f"() => {ways} > 2")
+    page.get_by_role("option", name="wall").click()
+    page.keyboard.press("Delete")
+    page.wait_for_function(f"() => {ways} === 2")
+    assert page.evaluate(ways) == 2
+
+
+def test_the_keyboard_alone_is_enough(editor):
+    page = editor
+    page.get_by_role("listbox", name="Elements").focus()
+    page.keyboard.press("Home")
+    page.get_by_label("Element to add").select_option("agent")
+    page.get_by_role("button", name="Add inside").focus()
+    page.keyboard.press("Enter")
+    wait_for_text(page, "<agent")
+    page.get_by_role("listbox", name="Elements").focus()
+    page.keyboard.press("End")
+    page.keyboard.press("Delete")
+    page.wait_for_function("() => !document.querySelector('.editor textarea').value.includes('<agent')")
+    assert "<agent" not in text_of(page)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing(editor, axe, theme):
+    page = editor
+    page.evaluate("theme => document.documentElement.dataset.theme = theme", theme)
+    page.evaluate("crowdbot.connection.call('editor.start', {trial: 'crossing-flows'})")
+    wait_for_text(page, "crossing-flows")
+    assert axe(page) == []
