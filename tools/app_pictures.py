@@ -50,10 +50,25 @@ def evaluation(page: Page) -> None:
     page.get_by_role("heading", name="first").wait_for(timeout=300_000)
 
 
+def simulator(page: Page) -> None:
+    """Show the first trial after some seconds, with the robot chosen."""
+    status = "() => crowdbot._views.get('simulator').status"
+    page.wait_for_function(f"{status}.time > 6", timeout=300_000)
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_label("Choose a person or robot").focus()
+    page.wait_for_function("() => document.querySelectorAll('option[value^=robot]').length > 0")
+    robot = page.evaluate("document.querySelector('option[value^=robot]').value")
+    page.get_by_label("Choose a person or robot").select_option(robot)
+    page.get_by_role("rowheader", name="navigator").wait_for()
+    page.get_by_label("Choose a person or robot").evaluate("(one) => one.blur()")
+    page.wait_for_timeout(4000)
+
+
 PICTURES: dict[str, tuple[str, Callable[[Page], None]]] = {
     "editor": ("editor", editor),
     "evaluation": ("evaluation", evaluation),
     "experiments": ("experiments", experiments),
+    "simulator": ("simulator", simulator),
 }
 """Pictures: the tab, and what is done in it."""
 

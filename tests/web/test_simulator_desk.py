@@ -148,7 +148,7 @@ def test_errors_of_a_trial_are_those_of_check(tmp_path):
         with pytest.raises(TrialError) as checked:
             load_trial(tmp_path / "bad.xml")
         assert shown.value.problems == checked.value.problems
-        assert [one["name"] for one in desk.trials()][0] == "bad.xml"
+        assert next(one["name"] for one in desk.trials()) == "bad.xml"
         with pytest.raises(InputError, match="outside the folder of the app"):
             desk.open("../bad.xml")
         with pytest.raises(InputError, match="nothing is open"):
@@ -182,7 +182,8 @@ def test_one_run_at_a_time_and_a_restart_has_another_seed(tmp_path):
         ready(desk)
         rows = {row["path"]: row for row in desk.values()}
         assert rows["robot/drive/max-speed"]["text"] == "0.2"
-        assert rows["robot/drive/max-speed"]["live"] and not rows["step"]["live"]
+        assert rows["robot/drive/max-speed"]["live"]
+        assert not rows["step"]["live"]
         for speed in (0.0, -1.0, 1e9, float("nan")):
             with pytest.raises(InputError, match="expected 0.1 to 100"):
                 desk.speed(speed)
@@ -220,6 +221,7 @@ def test_thumbnails_are_pictures_of_the_builtin_trials(tmp_path):
     with simulator(tmp_path) as desk:
         found = desk.resource("thumbnail/frontal.svg", {})
         assert found.kind == "image/svg+xml"
-        assert found.data.startswith(b"<svg") and b'xmlns="http://www.w3.org/2000/svg"' in found.data
+        assert found.data.startswith(b"<svg")
+        assert b'xmlns="http://www.w3.org/2000/svg"' in found.data
         with pytest.raises(KeyError):
             desk.resource("thumbnail/../../x.svg", {})

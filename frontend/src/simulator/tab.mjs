@@ -75,7 +75,7 @@ class SimulatorView {
     this.plots = new PlotsPanel(app);
     this.episode = new EpisodePanel(app, { transport: this.transport, library: this.library, names: () => this.tools.names });
     this.line = h("p", { class: "status-line" });
-    this.summary = h("p", { class: "summary", "aria-live": "polite", "aria-label": "Summary of the picture" });
+    this.summary = h("p", { class: "summary", role: "status", "aria-label": "Summary of the picture" });
     this.side = h("aside", { class: "side", "aria-label": "Inspector, display and plots" },
       this.episode.element, this.inspector.element, this.display.element, this.plots.element, this.values.element);
   }

@@ -11,7 +11,7 @@ export class Transport {
     this.app = app;
     this.status = { state: "none" };
     const button = (text, label, action, key) =>
-      h("button", { type: "button", "aria-label": label, title: key ? `${label} (${key})` : label, onclick: action }, text);
+      h("button", { type: "button", title: key ? `${label} (${key})` : label, onclick: action }, text);
     this.run = button("Run", "Run", () => this.toggle(), "Space");
     this.run.classList.add("main");
     this.stepButton = button("Step", "Step", () => this.step(), ".");
@@ -44,6 +44,7 @@ export class Transport {
   change(by) {
     const at = SPEEDS.findIndex((one) => one === this.status.speed);
     const next = SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, (at < 0 ? 3 : at) + by))];
+    this.status.speed = next;
     return this._call("speed", { speed: next });
   }
 
@@ -74,7 +75,6 @@ export class Transport {
     const episode = status.kind === "episode";
     const goes = status.state === "running" || status.state === "preparing";
     this.run.textContent = goes ? "Pause" : "Run";
-    this.run.setAttribute("aria-label", goes ? "Pause" : "Run");
     const over = ["failed", "none"].includes(status.state) || (status.state === "ended" && !episode);
     this.run.disabled = this.stepButton.disabled = over;
     for (const one of [this.again, this.seed, this.save]) one.hidden = episode;

@@ -197,6 +197,10 @@ class Recorder:
         except OSError as error:
             raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
 
+    def flush(self) -> None:
+        """Write all pending steps, so that the file can be read up to the latest one."""
+        self._flush()
+
     def _flush(self) -> None:
         assert self.tape is not None
         try:

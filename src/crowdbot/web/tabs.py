@@ -36,10 +36,10 @@ def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[D
     if path.suffix in (".xml", ".mcap"):
         if not path.is_file():
             raise InputError(f"--open {name}: the file does not exist")
-        first, readable = str(path.resolve()), (path.resolve().parent,)
+        first, readable = str(path.resolve()), [path.resolve().parent]
     elif name in builtin_trials():
-        first, readable = name, ()
+        first, readable = name, list[Path]()
     else:
         raise InputError(f"--open {name}: no file and no built-in trial{did_you_mean(name, builtin_trials())}")
     own = type("SimulatorDesk", (SimulatorDesk,), {"first": first, "__doc__": SimulatorDesk.__doc__})
-    return tuple(own if desk is SimulatorDesk else desk for desk in desks), readable
+    return tuple(own if desk is SimulatorDesk else desk for desk in desks), tuple(readable)

@@ -13,7 +13,7 @@ from typing import Any
 
 from crowdbot.core import CrowdbotError, InputError, TrialError, notify_compiling
 from crowdbot.navigation import Navigator
-from crowdbot.recording import open_run, repair
+from crowdbot.recording import Recorder, open_run, repair
 from crowdbot.simulation import EpisodeStatistics, Order, Simulation, SimulationRun
 from crowdbot.trials import Trial
 
@@ -105,9 +105,13 @@ class LiveRun:
         self.do(begin)
 
     def save(self, path: Path) -> None:
-        """Copy the recording; that of a run in progress ends at the latest written instant."""
+        """Copy the recording; that of a run in progress ends before the current instant."""
 
         def copy() -> None:
+            if self._run is not None and self._run.outcome is None:
+                for sink in self._run.sinks:
+                    if isinstance(sink, Recorder):
+                        sink.flush()
             if not self.file.is_file():
                 raise InputError("nothing is recorded yet: run the trial first")
             shutil.copyfile(self.file, path)

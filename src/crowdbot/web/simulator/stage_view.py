@@ -16,6 +16,8 @@ __all__ = ["StageView"]
 
 FRAME = 1.0 / 60.0
 """Shortest real time [s] between two frames."""
+SHARE = 0.15
+"""Largest share of a processor core for the frames; large crowds get fewer of them."""
 STATUS = 0.2
 """Shortest real time [s] between two events with the status."""
 
@@ -33,6 +35,7 @@ class StageView:
         self._bodies: WalkingBodies | None = None
         self._simulation: Simulation | None = None
         self._shown = self._told = 0.0
+        self._closed, self._cost = False, 0.0
         self._rate: tuple[float, float] | None = None
         self.factor: float | None = None
         """Simulated time over real time since the status before."""
@@ -42,8 +45,8 @@ class StageView:
         self._simulation, self._bodies, self._rate = simulation, WalkingBodies(simulation), None
 
     def close(self) -> None:
-        """Send nothing more: the windows show something else."""
-        self._simulation = None
+        """Send nothing more: the windows show something else. Called from any thread."""
+        self._closed = True
 
     def description(self) -> dict[str, Any]:
         """Return what stands still."""
@@ -54,12 +57,16 @@ class StageView:
     def show(self, always: bool = False) -> bool:
         """Send a frame if one is due; return whether it was sent."""
         now = time.monotonic()
-        if self._simulation is None or self._bodies is None or (now - self._shown < FRAME and not always):
+        if self._closed or self._simulation is None or self._bodies is None:
+            return False
+        if now - self._shown < max(FRAME, self._cost / SHARE) and not always:
             return False
         self._shown = now
-        self._bodies.follow(self._simulation)
         layers = [name for name in LAYERS if name in self.layers]
+        begin = time.thread_time()
+        self._bodies.follow(self._simulation)
         self.session.show(scene_frame(self._simulation, layers, self._bodies.motion))
+        self._cost = time.thread_time() - begin
         return True
 
     def is_status_due(self) -> bool:

@@ -71,7 +71,8 @@ class SteeringDesk(Desk):
         It has the sensors of its type if the people of the trial have limbs for them, otherwise a planar laser scanner.
         """
         run = self._live()
-        name, limbs = run.do(lambda: _free_name(run.simulation))
+        free: tuple[str, bool] = run.do(lambda: _free_name(run.simulation))
+        name, limbs = free
         scan = "" if limbs else '<sensor type="lidar2d"/>'
         xml = (
             f'<robot name="{name}" type={quoteattr(type)} x="{x:g}" y="{y:g}" default-sensors="{str(limbs).lower()}">'

@@ -65,7 +65,8 @@ def _stop(journey: Any) -> Floats | None:
     for stop in journey.stops:
         points = getattr(stop, "points", None)
         if points:
-            return np.asarray(points, dtype=np.float64).mean(axis=0)
+            middle: Floats = np.asarray(points, dtype=np.float64).mean(axis=0)
+            return middle
         if hasattr(stop, "x"):
             return np.array([stop.x, stop.y], dtype=np.float64)
     return None

@@ -34,7 +34,8 @@ def value_rows(trial: Trial) -> list[dict[str, Any]]:
 
 
 def _rows(thing: Any, path: str) -> Iterator[dict[str, Any]]:
-    for part in outline(type(thing)):
+    cls: type = type(thing)
+    for part in outline(cls):
         value = getattr(thing, part.name)
         where = f"{path}/{part.word}" if path else part.word
         if part.role == "attribute":
@@ -55,7 +56,8 @@ def _rows(thing: Any, path: str) -> Iterator[dict[str, Any]]:
 
 
 def _word(part: Any, value: Any) -> str:
-    return next(word for word, kind in part.elements.items() if isinstance(value, kind))
+    words: dict[str, Any] = dict(part.elements)
+    return next(word for word, kind in words.items() if isinstance(value, kind))
 
 
 def _attribute_row(path: str, part: Any, value: Any) -> dict[str, Any]:

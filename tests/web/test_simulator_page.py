@@ -1,0 +1,209 @@
+"""A person's path through the simulator tab in a real browser, from an empty start."""
+
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crowdbot.recording import read_episode, record, replay
+from crowdbot.trials import load_trial
+from crowdbot.web.simulator.simulator_desk import FIRST
+
+FRONTEND = Path(__file__).parents[2] / "frontend"
+VIEW = "window.crowdbot._views.get('simulator')"
+FIRST_RUN = 300_000
+"""Longest time [ms] of a first run, which compiles kernels."""
+
+
+def wait(page, expression, seconds=60.0):
+    """Wait until a JavaScript expression is true; the page forbids functions made from text."""
+    end = time.monotonic() + seconds
+    while not page.evaluate(expression):
+        assert time.monotonic() < end, f"{expression}: {page.evaluate(f'JSON.stringify({VIEW}.status)')[:500]}"
+        page.wait_for_timeout(50)
+
+
+def state(page, *names):
+    wait(page, f"{list(names)}.includes({VIEW}.status.state)", FIRST_RUN / 1000)
+
+
+def status(page, name):
+    return page.evaluate(f"{VIEW}.status.{name}")
+
+
+def show_from_above(page):
+    """The picture in space takes long without a graphics card."""
+    page.get_by_label("View", exact=True).select_option("2d")
+
+
+def open_trial(page, name):
+    page.get_by_label("Search trials").fill(name)
+    page.locator(f"button[data-name='{name}']").click()
+    wait(page, f"{VIEW}.status.trial === '{name}'")
+    state(page, "running", "paused", "ended")
+
+
+@pytest.fixture
+def files(app):
+    return app.folder
+
+
+def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
+    assert page.get_by_role("tab", name="Simulator").get_attribute("aria-selected") == "true"
+    wait(page, f"{VIEW}.status.trial === '{FIRST[0]}'")
+    wait(page, "document.querySelectorAll('.trials li img').length > 30")
+    state(page, "running")
+    wait(page, f"{VIEW}.picture.scene.info().people > 20 && {VIEW}.picture.scene.info().robots === 1", 120)
+    assert page.evaluate(f"{VIEW}.picture.scene.info().calls") > 0  # drawn in space
+    show_from_above(page)
+    at = status(page, "time")
+    wait(page, f"{VIEW}.status.time > {at} + 0.5")
+    page.get_by_role("button", name="Pause").click()
+    state(page, "paused")
+    page.reload()
+    page.wait_for_selector(".connection:not(.lost):has-text('connected')")
+    state(page, "paused")
+    assert "view=2d" in page.url  # a link shows the same
+    assert page.get_by_label("View", exact=True).input_value() == "2d"
+    assert page.evaluate(f"{VIEW}.plots.rows.length") > 1
+
+
+def test_a_run_is_steered_saved_and_replays(page, files):
+    show_from_above(page)
+    open_trial(page, "circle-crossing")
+    page.get_by_role("button", name="Pause").click()
+    state(page, "paused")
+    wait(page, f"{VIEW}.picture.scene.info().people === 5")
+    at = status(page, "time")
+    page.get_by_role("button", name="Step", exact=True).click()
+    wait(page, f"Math.abs({VIEW}.status.time - {at} - 0.05) < 1e-6")
+
+    page.get_by_role("button", name="Add person").click()
+    box = page.locator("canvas.stage").bounding_box()
+    for x, y in ((0.3, 0.5), (0.7, 0.5)):
+        page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+    wait(page, f"{VIEW}.status.values.people === 6")
+
+    page.get_by_label("Choose a person or robot").focus()
+    wait(page, "document.querySelectorAll('option[value=\"person 6\"]').length === 1")
+    page.get_by_label("Choose a person or robot").select_option("person 6")
+    page.get_by_role("rowheader", name="preferred speed").wait_for()
+    page.get_by_label("x [m]", exact=True).fill("2")
+    page.get_by_label("y [m]", exact=True).fill("3")
+    page.get_by_role("button", name="Set goal").click()
+    page.get_by_role("cell", name="2.00, 3.00 m").wait_for()
+    page.get_by_role("button", name="Push +x").click()
+    wait(page, f"{VIEW}.status.orders === 3")
+
+    page.get_by_label("Choose a person or robot").select_option("robot 5")
+    page.get_by_label("Navigator").select_option("straight")
+    page.get_by_role("cell", name="straight").wait_for()
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("button", name="circle-crossing-seed").wait_for()
+    saved = next(files.glob("circle-crossing-seed-*.mcap"))
+    assert len(read_episode(saved).orders) == 4
+    assert replay(saved).equal
+
+
+def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):
+    show_from_above(page)
+    open_trial(page, "static-crowd")
+    page.get_by_label("Choose a person or robot").focus()
+    wait(page, "[...document.querySelectorAll('option')].some((one) => one.value.startsWith('robot'))")
+    robot = page.evaluate("[...document.querySelectorAll('option')].find((one) => one.value.startsWith('robot')).value")
+    page.get_by_label("Choose a person or robot").select_option(robot)
+    page.get_by_role("button", name="Drive").click()
+    page.locator(".drive").wait_for()
+    page.keyboard.down("a")
+    page.get_by_role("cell", name="0.00 m/s, 1.20 rad/s, 0.00 m/s").wait_for()
+    page.keyboard.up("a")
+    page.get_by_role("cell", name="0.00 m/s, 0.00 rad/s, 0.00 m/s").wait_for()
+    pad = page.locator(".joystick").bounding_box()
+    page.mouse.move(pad["x"] + pad["width"] / 2, pad["y"] + 4)
+    page.mouse.down()
+    page.get_by_role("cell", name="0.5").first.wait_for()
+    page.mouse.up()
+    page.keyboard.press("Escape")
+    wait(page, f"{VIEW}.drive.subject === null")
+    page.get_by_role("cell", name="orca", exact=True).wait_for()
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("button", name="static-crowd-seed").wait_for()
+    saved = next(files.glob("static-crowd-seed-*.mcap"))
+    assert replay(saved).equal
+    kinds = {type(order).__name__ for _, order in read_episode(saved).orders}
+    assert {"ParameterOrder", "VelocityOrder"} <= kinds
+
+
+def test_the_keyboard_alone_runs_restarts_and_ends_with_the_digest_of_the_command_line(page, files):
+    show_from_above(page)
+    open_trial(page, "circle-crossing")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("n")  # another seed
+    wait(page, f"{VIEW}.source.seed !== 1 && {VIEW}.status.trial === 'circle-crossing'")
+    state(page, "running", "paused", "ended")
+    for _ in range(5):
+        page.keyboard.press("]")
+    wait(page, f"{VIEW}.status.speed === null")
+    state(page, "ended")
+    page.get_by_role("button", name="Save", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="circle-crossing-seed").wait_for()
+    episode = read_episode(next(files.glob("circle-crossing-seed-*.mcap")))
+    assert episode.digest == record(load_trial("circle-crossing"), episode.seed).digest
+
+
+def test_an_episode_is_opened_scrubbed_and_branched_and_two_windows_agree(page, files, browser, app):
+    record(load_trial("circle-crossing"), 4, files / "one.mcap")
+    show_from_above(page)
+    page.evaluate(f"{VIEW}.library.loadEpisodes()")
+    page.get_by_role("button", name="one.mcap").click()
+    wait(page, f"{VIEW}.status.name === 'one.mcap'")
+    state(page, "paused")
+    wait(page, f"{VIEW}.plots.rows.length > 20")
+    page.get_by_role("slider", name="Time").fill("5")
+    wait(page, f"Math.abs({VIEW}.status.time - 5) < 0.051")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("ArrowLeft")
+    wait(page, f"Math.abs({VIEW}.status.time - 4) < 0.051")
+    other = browser.new_page(reduced_motion="reduce")
+    other.goto(app.url + "#view=2d")
+    wait(other, f"{VIEW}?.status.name === 'one.mcap' && {VIEW}.picture.scene.info().people === 5")
+    assert abs(other.evaluate(f"{VIEW}.status.time") - 4) < 0.051
+    other.close()
+    page.get_by_role("button", name="Branch from here").click()
+    page.get_by_label("Navigator of the robot").select_option("straight")
+    page.get_by_role("dialog").get_by_role("button", name="Branch", exact=True).click()
+    wait(page, f"{VIEW}.status.name?.startsWith('one-from-4s') ?? false")
+    state(page, "paused")
+    assert status(page, "begin") == 4.0
+
+
+def test_axe_finds_nothing_in_both_themes(page, tmp_path):
+    show_from_above(page)
+    open_trial(page, "circle-crossing")
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_label("Choose a person or robot").focus()
+    wait(page, "document.querySelectorAll('option[value=\"person 0\"]').length === 1")
+    page.get_by_label("Choose a person or robot").select_option("person 0")
+    page.get_by_text("Values of the trial").click()
+    page.get_by_label("Search values").fill("robot/drive")
+    shutil.copy(FRONTEND / "package.json", tmp_path)
+    shutil.copy(FRONTEND / "package-lock.json", tmp_path)
+    subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=tmp_path, check=True, capture_output=True)
+    axe = (tmp_path / "node_modules/axe-core/axe.min.js").read_text()
+    page.evaluate(axe + "; 0")
+    for _ in range(2):
+        found = page.evaluate("axe.run().then((one) => one.violations.map((v) => [v.id, v.nodes.map((n) => n.html)]))")
+        assert found == []
+        page.get_by_role("button", name="Theme").click()
+
+
+def test_a_lost_server_is_said_and_the_page_connects_again(page, app):
+    page.evaluate("window.crowdbot.connection._socket.close()")
+    page.wait_for_selector(".connection.lost")
+    page.wait_for_selector(".connection:not(.lost):has-text('connected')")
+    wait(page, f"{VIEW}.status.state !== 'none'")
+    assert np.isfinite(status(page, "time"))
