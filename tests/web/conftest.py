@@ -64,8 +64,11 @@ def app(tmp_path):
 
 
 @pytest.fixture
-def page(browser, app):
-    """A window with the app; fails on console errors, errors of the page, and requests beyond the server."""
+def page(request, browser, app):
+    """A window with the app; fails on console errors, errors of the page, and requests beyond the server.
+
+    It opens the tab that the module names in ``TAB``, by default the first one.
+    """
     context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     page = context.new_page()
     page.set_default_timeout(30_000)
@@ -73,7 +76,7 @@ def page(browser, app):
     page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
     page.on("pageerror", lambda one: faults.append(str(one)))
     page.on("request", lambda one: None if one.url.startswith((app.url, "data:", "blob:")) else faults.append(one.url))
-    page.goto(app.url)
+    page.goto(app.url + getattr(request.module, "TAB", ""))
     page.wait_for_selector(".connection:not(.lost):has-text('connected')")
     yield page
     context.close()

@@ -4,6 +4,8 @@ import pytest
 
 from crowdbot.trials import load_trial, parse_trial, trial_xml
 
+TAB = "#tab=editor"
+
 
 @pytest.fixture
 def editor(page):

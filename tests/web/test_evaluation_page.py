@@ -2,6 +2,8 @@
 
 import pytest
 
+TAB = "#tab=evaluation"
+
 
 @pytest.fixture
 def results(page):

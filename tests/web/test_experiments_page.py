@@ -2,6 +2,8 @@
 
 import pytest
 
+TAB = "#tab=experiments"
+
 
 @pytest.fixture
 def experiments(page):

@@ -13,6 +13,8 @@ from crowdbot.cli import main
 LONG = 180_000
 expect.set_options(timeout=60_000)
 
+TAB = "#tab=prediction"
+
 
 @pytest.fixture
 def tab(page):
