@@ -28,6 +28,15 @@ from .clock import MODES, BridgeClock, Pace
 from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
+from .motion_capture import (
+    MotionBinding,
+    MotionCapture,
+    MotionSample,
+    PoseStream,
+    StreamStatistics,
+    open_stream,
+    parse_captures,
+)
 from .port import RobotPort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
@@ -42,18 +51,25 @@ __all__ = [
     "BridgeRun",
     "Inbox",
     "InputTopic",
+    "MotionBinding",
+    "MotionCapture",
+    "MotionSample",
     "OutputTopic",
     "Pace",
+    "PoseStream",
     "QualityOfService",
     "RobotInterface",
     "RobotPort",
     "RunControl",
     "Service",
     "ServiceCall",
+    "StreamStatistics",
     "Transport",
     "fields_of",
     "interface_store",
     "message_of",
+    "open_stream",
+    "parse_captures",
     "plain_fields",
     "request_kind",
     "response_kind",

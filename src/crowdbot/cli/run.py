@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,9 @@ from .output import add_json, note, number, print_json, print_metrics, print_tab
 from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
+    from crowdbot.bridges import MotionCapture
     from crowdbot.simulation import RunSummary
+    from crowdbot.trials import Trial
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,6 +28,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_world(parser)
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
+    parser.add_argument(
+        "--mocap",
+        action="append",
+        default=[],
+        metavar="SOURCE=NAME",
+        help="motion capture that moves an avatar or mirrored robot: xsens:9763=guide, natnet:HOST#Cart=twin or"
+        " walk.bvh=guide@X,Y,HEADING; repeatable",
+    )
     add_json(parser)
 
 
@@ -38,9 +49,12 @@ def main(options: argparse.Namespace) -> int:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
+    captures = _captures(options, trial)
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
-    with print_warnings(), progress(options.json) as report:
+    with contextlib.ExitStack() as stack, print_warnings(), progress(options.json) as report:
+        for one in captures:
+            stack.enter_context(one)
         done = record(
             trial,
             options.seed,
@@ -48,8 +62,27 @@ def main(options: argparse.Namespace) -> int:
             progress=lambda share: report(f"run {trial.name}", share),
             clock=clock,
             force=options.force,
+            sources=captures,
         )
+    for remark in (remark for one in captures for remark in one.remarks()):
+        note(f"motion capture {remark}")
     return print_run(done, options, time.perf_counter() - begin)
+
+
+def _captures(options: argparse.Namespace, trial: Trial) -> list[MotionCapture]:
+    """Return the motion captures of the command line; live ones set the pace to real time."""
+    from crowdbot.core import InputError
+
+    if not options.mocap:
+        return []
+    from crowdbot.bridges import parse_captures
+
+    captures = parse_captures(options.mocap, trial)
+    if any(one.stream.live for one in captures):
+        if options.pace not in (None, 1.0):
+            raise InputError(f"--pace {options.pace:g} does not fit live motion capture, which needs real time")
+        options.pace = 1.0
+    return captures
 
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:

@@ -12,6 +12,7 @@ from .person import Person, names, person, persons
 from .pose_file import read_pose_file
 from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
+from .rest_bones import RestSkeleton, rest_skeleton
 from .seat import CHAIR, WHEELCHAIR, Seat
 from .uneven import ankle_positions, stand_on_ground
 from .wardrobe import Outfit, outfit
@@ -34,6 +35,7 @@ __all__ = [
     "PoseSource",
     "PoseTrack",
     "Posture",
+    "RestSkeleton",
     "Seat",
     "ankle_positions",
     "limb_chain",
@@ -45,6 +47,7 @@ __all__ = [
     "posing_and_skinning",
     "reach_poses",
     "read_pose_file",
+    "rest_skeleton",
     "stand_on_ground",
     "striking_mass",
 ]
