@@ -41,12 +41,14 @@ from .port import RobotPort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
 from .transport import Transport
+from .transports import TRANSPORTS, open_transport
 from .verbs.definitions import SERVICES, interface_store, request_kind, response_kind
 
 __all__ = [
     "MODES",
     "QUALITIES",
     "SERVICES",
+    "TRANSPORTS",
     "BridgeClock",
     "BridgeRun",
     "Inbox",
@@ -69,6 +71,7 @@ __all__ = [
     "interface_store",
     "message_of",
     "open_stream",
+    "open_transport",
     "parse_captures",
     "plain_fields",
     "request_kind",

@@ -11,6 +11,7 @@ from crowdbot.recording import Recorder, episode_path
 from crowdbot.simulation import (
     EpisodeDigest,
     EpisodeStatistics,
+    OrderSource,
     RunSummary,
     Simulation,
     SimulationRun,
@@ -25,6 +26,7 @@ from .clock import BridgeClock, Pace
 from .port import RobotPort, steered_trial
 from .run_control import PAUSED, PLAYING, RunControl
 from .transport import Transport
+from .verbs.results import FAILED, result
 
 __all__ = ["BridgeRun", "run_bridge"]
 
@@ -40,6 +42,7 @@ def run_bridge(
     clock: BridgeClock | None = None,
     force: bool = False,
     note: Callable[[str], None] | None = None,
+    sources: Sequence[OrderSource] = (),
 ) -> RunSummary:
     """Run a trial whose robots other programs drive, see :class:`BridgeRun`.
 
@@ -51,6 +54,7 @@ def run_bridge(
         clock: when steps are taken (default: in real time).
         force: whether existing files may be overwritten.
         note: receives remarks for people.
+        sources: other programs that steer the simulation, such as motion capture.
 
     Returns:
         The summary of the last run.
@@ -59,7 +63,7 @@ def run_bridge(
     >>> run_bridge(load_trial("frontal", duration=1.0), [], clock=BridgeClock("free")).steps
     20
     """
-    return BridgeRun(trial, transports, seed, out, clock or BridgeClock(), force, note).run()
+    return BridgeRun(trial, transports, seed, out, clock or BridgeClock(), force, note, sources).run()
 
 
 class BridgeRun:
@@ -82,7 +86,9 @@ class BridgeRun:
         clock: BridgeClock,
         force: bool = False,
         note: Callable[[str], None] | None = None,
+        sources: Sequence[OrderSource] = (),
     ) -> None:
+        self.sources = sources
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
         self.control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
@@ -103,9 +109,13 @@ class BridgeRun:
                 summary = self._run_once(number)
                 following = self.control.restart
                 if following is None or self.stop.asked:
-                    return summary
+                    break
                 number += 1
                 self.trial = steered_trial(following)
+            self.control.finish_restart("the run has ended")
+            for call in self.port.inbox.close():
+                call.answer(result(FAILED, "the run has ended"))
+        return summary
 
     def _run_once(self, number: int) -> RunSummary:
         chosen = self.trial.seed if self.seed is None else int(self.seed)
@@ -126,7 +136,7 @@ class BridgeRun:
             if out is not None:
                 recorder = stack.enter_context(Recorder(out, tally, force=self.force, simulation=simulation))
                 sinks.append(recorder)
-            running = SimulationRun(simulation, [*sinks, self.port], stop=self.stop)
+            running = SimulationRun(simulation, [*sinks, self.port], self.sources, stop=self.stop)
             outcome = self._drive(running)
             if recorder is not None:
                 recorder.complete(outcome, running.simulation.tick, running.failure)
@@ -138,7 +148,6 @@ class BridgeRun:
         port, control = self.port, self.control
         self.pace.restart()
         port.begin(running.simulation)
-        port.inbox.expect_commands()
         control.finish_restart()
         while running.outcome is None:
             port.serve(running.simulation)
@@ -151,7 +160,6 @@ class BridgeRun:
                 port.report("error", f"{type(order).__name__}: {reason}")
             running.refusals.clear()
             port.publish(running.simulation)
-            port.inbox.expect_commands()
             control.note_step()
             if self.clock.mode == "paced" and (remark := self.pace.note_step()):
                 port.report("warning", remark)

@@ -66,11 +66,12 @@ class Inbox:
         self.external_time: int | None = None
         """Latest time [ns] received on ``/clock``, for a simulation that follows it."""
         self.commanded: set[str] = set()
-        """Robots that have received a velocity command since :meth:`expect_commands`."""
+        """Robots that have received a velocity command since :meth:`take_orders`."""
         self._velocity: dict[str, VelocityOrder] = {}
         self._orders: deque[Order] = deque()
         self._calls: deque[ServiceCall] = deque()
         self._arrivals = self._seen = 0
+        self._closed = False
         self._news = threading.Condition()
 
     def receive(self, topic: str, fields: Fields, sender: str) -> None:
@@ -108,6 +109,8 @@ class Inbox:
         if service not in known:
             raise InputError(f"there is no service {service!r}{did_you_mean(service, known)}")
         with self._news:
+            if self._closed:
+                raise InputError("the run has ended")
             if len(self._calls) >= MOST_CALLS:
                 raise InputError(f"{MOST_CALLS} calls wait for the simulation; wait for their responses")
             self._calls.append(ServiceCall(service, request, answer, sender))
@@ -145,6 +148,7 @@ class Inbox:
             found: list[Order] = [*self._orders, *self._velocity.values()]
             self._orders.clear()
             self._velocity.clear()
+            self.commanded.clear()
             return found
 
     def take_calls(self) -> list[ServiceCall]:
@@ -154,10 +158,11 @@ class Inbox:
             self._calls.clear()
             return found
 
-    def expect_commands(self) -> None:
-        """Forget which robots have received a command."""
+    def close(self) -> list[ServiceCall]:
+        """Refuse further calls, and return those that wait."""
         with self._news:
-            self.commanded.clear()
+            self._closed = True
+        return self.take_calls()
 
     def clear(self, interface: RobotInterface) -> None:
         """Begin another run: forget commands and orders; calls stay."""

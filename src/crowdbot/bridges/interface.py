@@ -157,7 +157,7 @@ def _scene_outputs(trial: Trial, follows_clock: bool) -> list[OutputTopic]:
         OutputTopic(FORCES, "crowdbot_msgs/msg/Forces", MAP, 0.0, STATE, about="contact forces (physics world)"),
         OutputTopic(COLLISIONS, "crowdbot_msgs/msg/Collisions", MAP, 0.0, STATE, about="contacts that have ended"),
         OutputTopic("/crowdbot/orders", "std_msgs/msg/String", "", 0.0, STATE, about="orders that were applied"),
-        OutputTopic("/crowdbot/reactions", "std_msgs/msg/String", "", period, STATE, about="reactions to robots"),
+        OutputTopic("/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots"),
     ]
 
 

@@ -119,8 +119,7 @@ class RobotPort:
 
     def take(self, frame: StepRecord) -> None:
         """Send what is known at the end of a step only: orders that were applied and contacts that have ended."""
-        assert self._steps is not None
-        if frame.orders or frame.collisions:
+        if self._steps is not None and (frame.orders or frame.collisions):
             self._send(list(self._steps.endings(frame, self._is_wanted)))
 
     def take_orders(self, simulation: Simulation) -> list[Order]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 from collections.abc import Mapping
 from typing import Any
 
@@ -43,5 +44,9 @@ def open_transport(text: str, options: Mapping[str, Any] | None = None) -> Trans
     made: Any = importlib.import_module(f"crowdbot.bridges.{module}")
     for word in path.split("."):
         made = getattr(made, word)
+    try:
+        inspect.signature(made).bind(address, **(options or {}))
+    except TypeError:
+        raise InputError(f"bridge {name!r} does not take {', '.join(options or {})}") from None
     found: Transport = made(address, **(options or {}))
     return found

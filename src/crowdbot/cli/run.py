@@ -5,9 +5,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .bridge import add_bridge, check_bridge_options, run_with_bridge
+from .bridge.mocap import add_mocap, open_captures, print_captures
 from .output import add_json, note, number, print_json, print_metrics, print_table, print_warnings, progress
 from .settings import add_settings, add_world, select_variant, settings
 
@@ -28,33 +31,39 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_world(parser)
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
-    parser.add_argument(
-        "--mocap",
-        action="append",
-        default=[],
-        metavar="SOURCE=NAME",
-        help="motion capture that moves an avatar or mirrored robot: xsens:9763=guide, natnet:HOST#Cart=twin or"
-        " walk.bvh=guide@X,Y,HEADING; repeatable",
-    )
+    add_bridge(parser)
+    add_mocap(parser)
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
-    from crowdbot.core import InputError, PacedClock
-    from crowdbot.recording import record
+    from crowdbot.core import InputError
     from crowdbot.trials import load_trial
 
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    with contextlib.ExitStack() as stack:
+        captures = open_captures(trial, options, stack)
+        if options.bridge:
+            done, wall = run_with_bridge(trial, options, captures)
+        else:
+            check_bridge_options(options)
+            done, wall = _run(trial, options, captures)
+    print_captures(captures)
+    return print_run(done, options, wall)
+
+
+def _run(trial: Trial, options: argparse.Namespace, captures: Sequence[MotionCapture]) -> tuple[RunSummary, float]:
+    """Run the trial and return its summary and the real time [s]."""
+    from crowdbot.core import PacedClock
+    from crowdbot.recording import record
+
     file = None if options.out is None else options.out / "episode.mcap"
-    captures = _captures(options, trial)
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
-    with contextlib.ExitStack() as stack, print_warnings(), progress(options.json) as report:
-        for one in captures:
-            stack.enter_context(one)
+    with print_warnings(), progress(options.json) as report:
         done = record(
             trial,
             options.seed,
@@ -64,25 +73,7 @@ def main(options: argparse.Namespace) -> int:
             force=options.force,
             sources=captures,
         )
-    for remark in (remark for one in captures for remark in one.remarks()):
-        note(f"motion capture {remark}")
-    return print_run(done, options, time.perf_counter() - begin)
-
-
-def _captures(options: argparse.Namespace, trial: Trial) -> list[MotionCapture]:
-    """Return the motion captures of the command line; live ones set the pace to real time."""
-    from crowdbot.core import InputError
-
-    if not options.mocap:
-        return []
-    from crowdbot.bridges import parse_captures
-
-    captures = parse_captures(options.mocap, trial)
-    if any(one.stream.live for one in captures):
-        if options.pace not in (None, 1.0):
-            raise InputError(f"--pace {options.pace:g} does not fit live motion capture, which needs real time")
-        options.pace = 1.0
-    return captures
+    return done, time.perf_counter() - begin
 
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:

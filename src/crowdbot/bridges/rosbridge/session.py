@@ -1,0 +1,183 @@
+"""ClientSession: the state of one client of a rosbridge server, without any connection."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from crowdbot.core import InputError
+
+from .calls import CallRelay
+from .encoding import OutgoingMessage, dump_json, fragments, png_frame
+from .frames import FrameReader, field
+from .graph import RosGraph, ros2_type
+from .subscription import Subscription
+
+__all__ = ["ClientSession"]
+
+LEVELS = ("info", "warning", "error", "none")
+MOST_REPLIES, MOST_SUBSCRIPTIONS = 500, 500
+Frame = Mapping[str, Any]
+
+
+class ClientSession:
+    """Takes the frames of a client and holds the frames for it.
+
+    Every error is answered with a status message; nothing that a client sends raises an exception.
+
+    Args:
+        graph: topics and services.
+        wake: called when frames wait.
+        clock: source of real time [s].
+    """
+
+    def __init__(self, graph: RosGraph, wake: Callable[[], None], clock: Callable[[], float] = time.monotonic) -> None:
+        self.graph, self.wake, self.clock = graph, wake, clock
+        self.subscriptions: dict[str, Subscription] = {}
+        self.level = "error"
+        self.calls = CallRelay(self, graph)
+        self.errors = 0
+        self._replies: deque[str] = deque(maxlen=MOST_REPLIES)
+        self._reader = FrameReader()
+        self._advertised: dict[str, set[str]] = {}
+        self._turn: deque[str] = deque()
+        graph.sessions.append(self)
+
+    def handle(self, text: str) -> None:
+        """Do what a frame of the client asks."""
+        frame: Frame | None = None
+        try:
+            frame = self._reader.read(text)
+            if frame is not None:
+                self._operate(frame)
+        except InputError as error:
+            self.refuse(str(error), frame)
+        except (RecursionError, ValueError, TypeError, AttributeError, KeyError, OverflowError) as error:
+            self.refuse(f"the frame has a wrong form: {str(error)[:100]}", frame)
+
+    def refuse(self, text: str, frame: Frame | None = None) -> None:
+        """Answer an error."""
+        self.errors += 1
+        name = frame.get("id") if frame is not None else None
+        self.status("error", text, name if isinstance(name, str) else None)
+
+    def status(self, level: str, text: str, name: str | None = None) -> None:
+        """Send a status message, if the client wants messages of this level."""
+        if LEVELS.index(level) >= LEVELS.index(self.level) and self.level != "none":
+            self.reply({"op": "status", "level": level, "msg": text, **({} if name is None else {"id": name})})
+
+    def reply(self, frame: Frame, fragment_size: int | None = None, compression: str = "none") -> None:
+        """Send a frame; the oldest replies are dropped if the client does not read them."""
+        text = dump_json(frame)
+        text = png_frame(text) if compression == "png" else text
+        self._replies.extend(fragments(text, fragment_size, f"reply:{id(frame)}"))
+        self.wake()
+
+    def offer(self, message: OutgoingMessage) -> None:
+        """Let a message wait if the client subscribes its topic."""
+        found = self.subscriptions.get(message.topic)
+        if found is not None:
+            found.offer(message)
+            self.wake()
+
+    def take(self) -> tuple[list[str | bytes], float | None]:
+        """Return the next frames, or the time [s] until there are some (None: nothing waits)."""
+        if self._replies:
+            return [self._replies.popleft()], 0.0
+        now, first = self.clock(), None
+        for _ in range(len(self._turn)):
+            topic = self._turn[0]
+            self._turn.rotate(-1)
+            wait = self.subscriptions[topic].wait_time(now)
+            if wait == 0.0:
+                return self._encode(self.subscriptions[topic], now), 0.0
+            if wait is not None:
+                first = wait if first is None else min(first, wait)
+        return [], first
+
+    def close(self) -> None:
+        """Forget the client; callers of its services get an error."""
+        self.calls.close()
+        self.graph.remove(self)
+        for session in self.graph.sessions:
+            session.calls.forget(self)
+
+    def _encode(self, subscription: Subscription, now: float) -> list[str | bytes]:
+        try:
+            return subscription.take(now)
+        except (ValueError, TypeError, RecursionError, InputError) as error:  # a message of another client
+            self.status("warning", f"{subscription.topic}: a message was left out: {str(error)[:100]}")
+            return []
+
+    def _operate(self, frame: Frame) -> None:
+        operations: dict[str, Callable[[Frame], None]] = {
+            "advertise": self._advertise,
+            "unadvertise": self._unadvertise,
+            "publish": self._publish,
+            "subscribe": self._subscribe,
+            "unsubscribe": self._unsubscribe,
+            "set_level": self._set_level,
+            "status": lambda frame: None,
+            "auth": lambda frame: None,
+            **self.calls.operations,
+        }
+        name = frame["op"]
+        if name not in operations:
+            raise InputError(f"the operation {name[:40]!r} is unknown; known are {', '.join(operations)}, fragment")
+        operations[name](frame)
+
+    def _advertise(self, frame: Frame) -> None:
+        topic, kind = field(frame, "topic", str), field(frame, "type", str)
+        self.graph.advertise(self, topic, kind)
+        self._advertised.setdefault(topic, set()).add(str(frame.get("id", "")))
+
+    def _unadvertise(self, frame: Frame) -> None:
+        topic = field(frame, "topic", str)
+        if topic not in self._advertised:
+            raise InputError(f"{topic[:60]!r} is not advertised")
+        self._advertised[topic].discard(str(frame.get("id", "")))
+        if "id" not in frame or not self._advertised[topic]:
+            del self._advertised[topic]
+            self.graph.unadvertise(self, topic)
+
+    def _publish(self, frame: Frame) -> None:
+        topic, fields = field(frame, "topic", str), field(frame, "msg", dict, {})
+        self.graph.publish(self, topic, fields, field(frame, "latch", bool, False))
+
+    def _subscribe(self, frame: Frame) -> None:
+        topic, kind = field(frame, "topic", str), field(frame, "type", str, "")
+        self.graph.check_name(topic)
+        known = self.graph.topic_types(topic)
+        if kind and known and ros2_type(kind) not in known:
+            raise InputError(f"{topic!r} has the type {known[0]}, not {kind[:80]!r}")
+        found = self.subscriptions.get(topic)
+        if found is None:
+            if len(self.subscriptions) >= MOST_SUBSCRIPTIONS:
+                raise InputError(f"{MOST_SUBSCRIPTIONS} subscriptions are too many")
+            found = Subscription(topic, self.graph.queue_depth(topic))
+        found.add(str(frame.get("id", "")), frame)
+        if topic not in self.subscriptions:
+            self.subscriptions[topic] = found
+            self._turn.append(topic)
+            self.graph.update_wanted()
+            if topic in self.graph.latched:
+                self.offer(self.graph.latched[topic])
+
+    def _unsubscribe(self, frame: Frame) -> None:
+        topic = field(frame, "topic", str)
+        found = self.subscriptions.get(topic)
+        if found is None:
+            raise InputError(f"{topic[:60]!r} is not subscribed")
+        name = frame.get("id")
+        if found.remove(None if name is None else str(name)):
+            del self.subscriptions[topic]
+            self._turn.remove(topic)
+            self.graph.update_wanted()
+
+    def _set_level(self, frame: Frame) -> None:
+        level = field(frame, "level", str)
+        if level not in LEVELS:
+            raise InputError(f"level {level[:40]!r} must be one of {', '.join(LEVELS)}")
+        self.level = level

@@ -1,0 +1,89 @@
+"""Options of ``crowdbot run`` for bridges: ``--bridge rosbridge``."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from crowdbot.cli.output import note, print_warnings
+
+if TYPE_CHECKING:
+    from crowdbot.simulation import OrderSource, RunSummary
+    from crowdbot.trials import Trial
+
+__all__ = ["add_bridge", "check_bridge_options", "run_with_bridge"]
+
+CLOCKS = ("paced", "free", "step", "follow", "commands")
+
+
+def add_bridge(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of bridges."""
+    group = parser.add_argument_group("bridges to robot software")
+    group.add_argument(
+        "--bridge",
+        action="append",
+        metavar="NAME[:ADDRESS]",
+        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT; several are"
+        " possible",
+    )
+    group.add_argument(
+        "--clock",
+        choices=CLOCKS,
+        help="time of a run with a bridge: paced (default; --pace X times real time), free, step (on the service"
+        " step_simulation), follow (the time on /clock), commands (when all robots have a command)",
+    )
+    group.add_argument("--bridge-host", metavar="HOST", help="address on which a server listens (default: 127.0.0.1)")
+    group.add_argument("--bridge-token", metavar="TOKEN", help="token that clients must send")
+    group.add_argument(
+        "--bridge-topics",
+        metavar="PATTERNS",
+        help="topics and services that clients may use, separated by commas, such as '/robot/*,/tf' (default: all)",
+    )
+
+
+def run_with_bridge(
+    trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSource] = ()
+) -> tuple[RunSummary, float]:
+    """Run a trial with bridges and return its summary and the real time [s].
+
+    Raises:
+        InputError: a bridge does not exist or cannot start, or an option does not fit.
+    """
+    from crowdbot.bridges import BridgeClock, open_transport, run_bridge
+    from crowdbot.core import InputError
+
+    mode = options.clock or "paced"
+    if mode != "paced" and options.pace is not None:
+        raise InputError(f"--pace needs the clock paced, not --clock {mode}")
+    given = {"host": options.bridge_host, "token": options.bridge_token, "topics": options.bridge_topics}
+    values = {key: value for key, value in given.items() if value is not None}
+    if "topics" in values:
+        values["topics"] = [one.strip() for one in values["topics"].split(",") if one.strip()]
+    transports = [open_transport(text, values) for text in options.bridge]
+    for text in options.bridge:
+        note(f"crowdbot: bridge {text}, trial {trial.name}; Ctrl-C ends the run")
+    begin = time.perf_counter()
+    out = None if options.out is None else options.out / "episode.mcap"
+    with print_warnings():
+        done = run_bridge(
+            trial,
+            transports,
+            options.seed,
+            out,
+            BridgeClock(mode, options.pace or 1.0),
+            options.force,
+            note=lambda text: note(f"crowdbot: {text}"),
+            sources=sources,
+        )
+    return done, time.perf_counter() - begin
+
+
+def check_bridge_options(options: argparse.Namespace) -> None:
+    """Raise :class:`InputError` if options of bridges are given without a bridge."""
+    from crowdbot.core import InputError
+
+    for name in ("clock", "bridge_host", "bridge_token", "bridge_topics"):
+        if getattr(options, name) is not None:
+            raise InputError(f"--{name.replace('_', '-')} needs --bridge")

@@ -1,0 +1,99 @@
+"""Helpers of the tests of bridges: a run in a thread, and a transport in memory."""
+
+import contextlib
+import threading
+
+from crowdbot.bridges import BridgeClock, BridgeRun
+from crowdbot.bridges.rosbridge.server import RosbridgeServer
+
+
+class MemoryTransport:
+    """A transport that keeps everything in lists."""
+
+    name = "memory"
+
+    def __init__(self, topics=None):
+        self.topics, self.sent, self.reports, self.interfaces = topics, [], [], []
+        self.inbox = None
+        self.stopped = 0
+
+    def start(self, interface, inbox):
+        self.interfaces.append(interface)
+        self.inbox = inbox
+
+    def publish(self, messages):
+        self.sent += messages
+
+    def poll(self):
+        """Nothing arrives by itself."""
+
+    def report(self, level, text):
+        self.reports.append((level, text))
+
+    def wants(self, topic):
+        return self.topics is None or topic in self.topics
+
+    def stop(self):
+        self.stopped += 1
+
+    def call(self, service, request=None):
+        """Call a service from another thread and return its response."""
+        done, found = threading.Event(), []
+
+        def answer(response):
+            found.append(response)
+            done.set()
+
+        self.inbox.call(f"/crowdbot/{service}", request or {}, answer, self.name)
+        assert done.wait(30.0), service
+        return found[0]
+
+
+class Running(contextlib.AbstractContextManager):
+    """A bridge run in a thread; leaving the context ends it."""
+
+    def __init__(self, trial, transports, mode="paced", rate=1.0, out=None, seed=0):
+        self.notes = []
+        self.run = BridgeRun(trial, transports, seed, out, BridgeClock(mode, rate), note=self.notes.append)
+        self.summary = self.error = None
+        self._started = threading.Event()
+        begin = self.run.port.begin
+
+        def note_begin(simulation):
+            begin(simulation)
+            self._started.set()
+
+        self.run.port.begin = note_begin
+        self.thread = threading.Thread(target=self._work, daemon=True)
+
+    def _work(self):
+        try:
+            self.summary = self.run.run()
+        except BaseException as error:
+            self.error = error
+        finally:
+            self._started.set()
+
+    def __enter__(self):
+        self.thread.start()
+        assert self._started.wait(120.0)
+        return self
+
+    def end(self, seconds=60.0):
+        """Wait for the end of the run and return its summary."""
+        self.thread.join(seconds)
+        assert not self.thread.is_alive()
+        if self.error is not None:
+            raise self.error
+        return self.summary
+
+    def __exit__(self, *error):
+        self.run.stop.asked = True
+        self.run.port.inbox.wake()
+        self.end()
+
+
+def serve(trial, mode="paced", rate=1.0, out=None, **options):
+    """Return a run with a rosbridge server on a free port, and the server."""
+    server = RosbridgeServer(port=0, **options)
+    return Running(trial, [server], mode, rate, out), server

@@ -1,0 +1,187 @@
+"""The verbs of simulation_interfaces: entities, spawning, steps, reset and worlds; everything replays."""
+
+import pytest
+from bridge_runs import MemoryTransport, Running
+
+from crowdbot.bridges import SERVICES, RobotInterface, message_of, request_kind, response_kind
+from crowdbot.bridges.verbs.verbs import Verbs
+from crowdbot.recording import read_episode, replay
+from crowdbot.trials import load_trial
+
+OK, NOT_FOUND, INCORRECT, FAILED = 1, 2, 3, 4
+
+
+@pytest.fixture(scope="module")
+def trial():
+    return load_trial("frontal", duration=4.0)
+
+
+def code(response):
+    return response["result"]["result"]
+
+
+def pose(x, y, frame="map"):
+    return {"header": {"frame_id": frame}, "pose": {"position": {"x": x, "y": y}, "orientation": {"w": 1.0}}}
+
+
+def test_every_service_is_a_verb_and_its_response_has_the_type_of_the_standard(trial):
+    transport = MemoryTransport()
+    names = [one.name for one in RobotInterface.of(trial).services]
+    assert names == [f"/crowdbot/{name}" for name in SERVICES]
+    assert all(callable(getattr(Verbs, name)) for name in SERVICES)
+    requests = {
+        "get_entity_state": {"entity": "robot"},
+        "get_entity_info": {"entity": "person_0"},
+        "set_entity_state": {"entity": "robot", "state": pose(-4.0, 0.2)},
+        "spawn_entity": {"entity_resource": {"uri": "person"}, "initial_pose": pose(0.0, 1.0)},
+        "spawn_entities": {"spawn_requests": []},
+        "delete_entity": {"entity": "person_0"},
+        "load_world": {"world_resource": {"uri": "nothing"}},
+        "reset_simulation": {"scope": 4},
+        "set_simulation_state": {"state": {"state": 2}},
+    }
+    with Running(trial, [transport], "step"):
+        for name, service in SERVICES.items():
+            message_of(requests.get(name, {}), request_kind(service))
+            response = transport.call(name, requests.get(name))
+            message_of(response, response_kind(service))
+            assert name == "load_world" or name == "set_simulation_state" or response.get("features") or code(response) == OK
+
+
+def test_people_robots_and_props_are_added_moved_and_removed(trial, tmp_path):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "step", out=tmp_path) as running:
+
+        def step(steps=1):
+            assert code(transport.call("step_simulation", {"steps": steps})) == OK
+
+        step(3)
+        first = transport.call("spawn_entity", {"entity_resource": {"uri": "person"}, "initial_pose": pose(0.0, 1.0)})
+        second = transport.call(
+            "spawn_entity",
+            {"uri": "person?goal_x=3&goal_y=-1&speed=1.0", "initial_pose": pose(-2.0, -1.0)},
+        )
+        assert (first["entity_name"], second["entity_name"]) == ("person_2", "person_3")
+        bot = transport.call(
+            "spawn_entity",
+            {"name": "bot", "entity_resource": {"uri": "robot/turtlebot2"}, "initial_pose": pose(2.0, -0.8)},
+        )
+        assert bot["entity_name"] == "bot"
+        assert code(transport.call("spawn_entity", {"uri": "cube", "initial_pose": pose(6.0, 1.0)})) == OK
+        step()
+        names = transport.call("get_entities")["entities"]
+        assert {*names} == {"robot", "bot", "person_0", "person_2", "person_3"}
+        assert transport.call("get_entities", {"filters": {"filter": "^person_[23]$"}})["entities"] == [
+            "person_2",
+            "person_3",
+        ]
+        assert transport.call("get_entities", {"filters": {"categories": [{"category": 2}]}})["entities"] == [
+            "robot",
+            "bot",
+        ]
+        near = {"type": 2, "points": [{"x": 2.0, "y": -0.8}, {"x": 0.5}]}
+        assert transport.call("get_entities", {"filters": {"bounds": near}})["entities"] == ["bot"]
+        assert "/bot/cmd_vel" in {one.name for one in transport.interfaces[-1].inputs}
+        transport.inbox.receive("/bot/cmd_vel", {"linear": {"x": 0.3}}, "test")
+        assert code(transport.call("set_entity_state", {"entity": "person_2", "state": pose(1.0, 1.2)})) == OK
+        step(4)
+        state = transport.call("get_entity_state", {"entity": "bot"})["state"]
+        assert state["twist"]["linear"]["x"] > 0.1
+        assert transport.call("get_entity_state", {"entity": "person_2"})["state"]["pose"]["position"]["y"] > 0.9
+        assert code(transport.call("delete_entity", {"entity": "person_3"})) == OK
+        assert code(transport.call("delete_entity", {"entity": "bot"})) == OK
+        step()
+        assert {*transport.call("get_entities")["entities"]} == {"robot", "person_0", "person_2"}
+        assert code(transport.call("reset_simulation", {"scope": 4})) == OK
+        step(20)
+        assert {*transport.call("get_entities")["entities"]} == {"robot", "person_0"}
+        transport.call("set_simulation_state", {"state": {"state": 3}})
+        done = running.end()
+    assert done.outcome == "interrupted"
+    assert replay(done.path).equal
+
+
+def test_a_reset_begins_the_same_run_again_in_another_file(trial, tmp_path):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "step", out=tmp_path) as running:
+        for _ in range(2):
+            assert code(transport.call("step_simulation", {"steps": 20})) == OK
+            assert code(transport.call("reset_simulation", {"scope": 255})) == OK
+        assert transport.call("get_simulation_state")["state"]["state"] == 2
+        transport.call("step_simulation", {"steps": 20})
+        transport.call("set_simulation_state", {"state": {"state": 3}})
+        running.end()
+    files = [tmp_path / name for name in ("episode.mcap", "episode-2.mcap", "episode-3.mcap")]
+    assert len({read_episode(path).digest for path in files}) == 1
+    assert len({path.read_bytes() for path in files}) == 1
+    times = [one.nanoseconds for one in transport.sent if one.topic == "/clock"]
+    assert times.count(0) == 3
+
+
+def test_another_world_is_loaded_stopped_and_its_topics_are_announced(trial):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "free") as running:
+        transport.call("set_simulation_state", {"state": {"state": 2}})
+        assert code(transport.call("load_world", {"world_resource": {"uri": "circle-crossing"}})) == OK
+        assert transport.call("get_simulation_state")["state"]["state"] == 0
+        assert transport.call("get_current_world")["world"]["name"] == "circle-crossing"
+        text = transport.call("get_current_world")["world"]["world_resource"]["resource_string"]
+        assert code(transport.call("load_world", {"world_resource": {"resource_string": text}})) == OK
+        assert len(transport.call("get_entities")["entities"]) > 3
+        assert running.run.trial.name == "circle-crossing"
+
+
+@pytest.mark.parametrize(
+    ("service", "request_", "result", "message"),
+    [
+        ("get_entity_state", {"entity": "robt"}, NOT_FOUND, "did you mean 'robot'"),
+        ("get_entity_state", {}, NOT_FOUND, "there is no entity"),
+        ("delete_entity", {"entity": ["robot"]}, FAILED, "unhashable"),
+        ("step_simulation", {"steps": -1}, FAILED, "steps = -1"),
+        ("step_simulation", {"steps": 1e300}, FAILED, "steps = 1e"),
+        ("set_simulation_state", {}, NOT_FOUND, "state"),
+        ("set_simulation_state", {"state": {"state": 9}}, FAILED, "there is no state 9"),
+        ("reset_simulation", {"scope": 1}, 0, "use scope 0, 4 or 255"),
+        ("get_entities", {"filters": {"filter": "(a+)+$"}}, FAILED, "single characters"),
+        ("get_entities", {"filters": {"filter": "a" * 300}}, FAILED, "at most 200"),
+        ("get_entities", {"filters": {"filter": "["}}, FAILED, "no regular expression"),
+        ("get_entities", {"filters": {"tags": {"tags": ["x"]}}}, 0, "no tags"),
+        ("get_entities", {"filters": {"bounds": {"type": 0, "points": [1, 2]}}}, 0, "must be a sphere"),
+        ("set_entity_state", {"entity": "robot", "state": pose(0, 0, "odom")}, 0, "frame map"),
+        ("set_entity_state", {"entity": "robot", "state": pose(float("inf"), 0)}, FAILED, "must be a finite"),
+        ("spawn_entity", {}, 104, "give a uri"),
+        ("spawn_entity", {"uri": "cat"}, FAILED, "get_spawnables lists"),
+        ("spawn_entity", {"uri": "person?speed=fast"}, FAILED, "must be a number"),
+        ("spawn_entity", {"uri": "person?colour=1"}, FAILED, "it has goal_x"),
+        ("spawn_entity", {"uri": "robot/pepper", "name": "robot"}, 101, "there is an entity 'robot'"),
+        ("spawn_entity", {"resource_string": "<robot"}, FAILED, "add-element"),
+        ("load_world", {}, 102, "give a uri"),
+        ("load_world", {"world_resource": {"uri": "../../etc/passwd"}}, FAILED, "neither a built-in trial"),
+        ("load_world", {"world_resource": {"resource_string": "<trial"}}, 103, "load_world"),
+    ],
+)
+def test_impossible_requests_are_answered_with_a_reason(trial, service, request_, result, message):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "step"):
+        answer = transport.call(service, request_)
+        assert code(answer) == result, answer
+        assert message in answer["result"]["error_message"]
+        assert code(transport.call("step_simulation", {"steps": 1})) == OK
+
+
+def test_steps_need_a_paused_simulation(trial):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "paced"):
+        assert code(transport.call("step_simulation", {"steps": 1})) == INCORRECT
+        assert code(transport.call("set_simulation_state", {"state": {"state": 1}})) == 101
+        assert code(transport.call("set_simulation_state", {"state": {"state": 2}})) == OK
+        sent = len(transport.sent)
+        assert code(transport.call("step_simulation", {"steps": 2})) == OK
+        assert [one.topic for one in transport.sent[sent:]].count("/clock") == 2
+
+
+def test_steps_beyond_the_end_are_answered(trial):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "step") as running:
+        assert "ended before the last step" in transport.call("step_simulation", {"steps": 500})["result"]["error_message"]
+        assert running.end().outcome == "timeout"
