@@ -79,7 +79,9 @@ def test_what_is_recorded_is_what_is_sent(trial, tmp_path):
 
 
 def test_topics_keep_the_announced_type_frame_and_rate(tmp_path):
-    robot = '<robot name="bot" type="pepper" x="0" y="0" cameras="false"><goal x="9" y="0"/><navigator type="straight"/>'
+    robot = (
+        '<robot name="bot" type="pepper" x="0" y="0" cameras="false"><goal x="9" y="0"/><navigator type="straight"/>'
+    )
     text = f'<trial name="all" duration="2"><crowd type="orca"/>{robot}</robot></trial>'
     trial = parse_trial(text, place="all")
     transport = MemoryTransport()
@@ -237,7 +239,7 @@ def test_a_run_that_cannot_keep_up_says_so(trial):
     now = iter(range(10**6))
     pace = Pace(0.05, 1.0, monotonic=lambda: next(now) * 1.0)
     remarks = [pace.note_step() for _ in range(8)]
-    assert [one for one in remarks if one][0] == "the run cannot keep up: 0.06 instead of 1 times real time"
+    assert next(one for one in remarks if one) == "the run cannot keep up: 0.06 instead of 1 times real time"
     transport = Slow()
     assert run_bridge(load_trial("frontal", duration=0.5), [transport], 0).steps == 10
 

@@ -28,6 +28,7 @@ from .clock import MODES, BridgeClock, Pace
 from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
+from .latency import CommandLatency, LatencySummary
 from .motion_capture import (
     MotionBinding,
     MotionCapture,
@@ -51,8 +52,10 @@ __all__ = [
     "TRANSPORTS",
     "BridgeClock",
     "BridgeRun",
+    "CommandLatency",
     "Inbox",
     "InputTopic",
+    "LatencySummary",
     "MotionBinding",
     "MotionCapture",
     "MotionSample",

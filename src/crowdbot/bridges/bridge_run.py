@@ -115,6 +115,12 @@ class BridgeRun:
             self.control.finish_restart("the run has ended")
             for call in self.port.inbox.close():
                 call.answer(result(FAILED, "the run has ended"))
+        latency = self.port.inbox.latency.summary()
+        if latency.count:
+            self.note(
+                f"{self.port.inbox.count.received} messages received; {latency.count} commands answered a step after"
+                f" {1e3 * latency.median:.1f} ms (median), {1e3 * latency.p99:.1f} ms (99 %)"
+            )
         return summary
 
     def _run_once(self, number: int) -> RunSummary:

@@ -12,6 +12,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
 from .interface import InputTopic, RobotInterface
+from .latency import CommandLatency
 
 __all__ = ["Inbox", "ServiceCall"]
 
@@ -63,6 +64,7 @@ class Inbox:
     def __init__(self, interface: RobotInterface) -> None:
         self.interface = interface
         self.count = _Count()
+        self.latency = CommandLatency()
         self.external_time: int | None = None
         """Latest time [ns] received on ``/clock``, for a simulation that follows it."""
         self.commanded: set[str] = set()
@@ -179,6 +181,7 @@ class Inbox:
     def _add(self, order: Order) -> None:
         if isinstance(order, VelocityOrder):
             self._velocity[order.robot] = order
+            self.latency.note_command(order.robot)
             self.commanded.add(order.robot)
             return
         if len(self._orders) >= MOST_ORDERS:

@@ -115,7 +115,9 @@ class RobotPort:
                 return False
             return topic in ("/tf_static",) or topic.endswith("/robot_description") or self._is_wanted(topic)
 
-        self._send(list(self._steps.messages(frame, wants)))
+        messages = list(self._steps.messages(frame, wants))
+        self.inbox.latency.note_step()
+        self._send(messages)
 
     def take(self, frame: StepRecord) -> None:
         """Send what is known at the end of a step only: orders that were applied and contacts that have ended."""

@@ -103,7 +103,7 @@ class CallRelay:
         self._open += 1
 
     def _respond(self, frame: Frame, values: Any, good: bool) -> None:
-        name = {"id": frame["id"]} if "id" in frame else {}
+        name = _identity(frame)
         size, compression = frame.get("fragment_size"), frame.get("compression", "none")
         size = size if isinstance(size, int) and size > 0 else None
         row = {"op": "service_response", **name, "service": frame["service"], "values": values, "result": good}
@@ -152,8 +152,13 @@ class CallRelay:
         if number not in self._asked:
             raise InputError(f"nobody waits for {number[:60]!r}")
         caller, asked = self._asked.pop(number) if done else self._asked[number]
-        name = {"id": asked["id"]} if "id" in asked else {}
-        caller.reply({key: value for key, value in frame.items() if key != "id"} | name)
+        name = _identity(asked)
+        try:
+            caller.reply({key: value for key, value in frame.items() if key != "id"} | name)
+        except ValueError:
+            if done:
+                caller.calls.fail(asked, "the response has numbers that are not finite")
+            raise
 
     def _send_goal(self, frame: Frame) -> None:
         action, name = field(frame, "action", str), field(frame, "id", str, "")
@@ -206,10 +211,16 @@ class CallRelay:
         self._goals[name] = False
 
     def _feedback(self, frame: Frame, values: Frame) -> None:
-        name = {"id": frame["id"]} if "id" in frame else {}
+        name = _identity(frame)
         self.session.reply({"op": "action_feedback", **name, "action": frame["action"], "values": values})
 
     def _result(self, frame: Frame, values: Any, state: int, good: bool, text: str = "") -> None:
-        name = {"id": frame["id"]} if "id" in frame else {}
+        name = _identity(frame)
         row = {"op": "action_result", **name, "action": frame["action"], "status": state, "result": good}
         self.session.reply({**row, "values": values if good else text or values})
+
+
+def _identity(frame: Frame) -> dict[str, Any]:
+    """Return the id of a frame, if it is one."""
+    name = frame.get("id")
+    return {"id": name} if isinstance(name, str | int) else {}

@@ -60,6 +60,8 @@ class RosGraph:
         self.services: dict[str, tuple[Peer, str]] = {}
         self.actions: dict[str, tuple[Peer, str]] = {}
         self.advertised: dict[str, dict[Peer, str]] = {}
+        self._latching: set[str] = set()
+        """Topics of clients whose latest message late subscribers get."""
         self._outputs = {one.name: one for one in interface.outputs}
         self._inputs = {one.name: one for one in interface.inputs}
 
@@ -93,15 +95,15 @@ class RosGraph:
         if topic in self._outputs:
             raise InputError(f"{topic!r} is sent by the simulation")
         if topic not in self.advertised:
-            self.advertise(sender, topic, "")
+            self.advertise(sender, topic, "", latch)
         kind = self.advertised[topic].get(sender, "")
         message = OutgoingMessage(topic, kind, self.now, lambda: fields)
-        if latch:
+        if latch or topic in self._latching:
             self.latched[topic] = message
         for session in self.sessions:
             session.offer(message)
 
-    def advertise(self, sender: Peer, topic: str, kind: str) -> None:
+    def advertise(self, sender: Peer, topic: str, kind: str, latch: bool = False) -> None:
         """Note that a client publishes a topic.
 
         Raises:
@@ -116,12 +118,15 @@ class RosGraph:
         if topic not in self.advertised and len(self.advertised) >= MOST_TOPICS:
             raise InputError(f"{MOST_TOPICS} topics of clients are too many")
         self.advertised.setdefault(topic, {})[sender] = ros2_type(kind)
+        if latch:
+            self._latching.add(topic)
 
     def unadvertise(self, sender: Peer, topic: str) -> None:
         """Forget that a client publishes a topic."""
         self.advertised.get(topic, {}).pop(sender, None)
         if not self.advertised.get(topic):
             self.advertised.pop(topic, None)
+            self._latching.discard(topic)
             if topic not in self._outputs:
                 self.latched.pop(topic, None)
 

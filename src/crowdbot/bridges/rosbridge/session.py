@@ -130,7 +130,7 @@ class ClientSession:
 
     def _advertise(self, frame: Frame) -> None:
         topic, kind = field(frame, "topic", str), field(frame, "type", str)
-        self.graph.advertise(self, topic, kind)
+        self.graph.advertise(self, topic, kind, field(frame, "latch", bool, False))
         self._advertised.setdefault(topic, set()).add(str(frame.get("id", "")))
 
     def _unadvertise(self, frame: Frame) -> None:

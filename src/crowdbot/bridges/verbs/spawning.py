@@ -89,6 +89,7 @@ def _order(
         xml = f'<{kind} x="{x!r}" y="{y!r}"{f" heading={chr(34)}{heading!r}{chr(34)}" if kind != "tree" else ""}/>'
         return AddElementOrder(xml=xml, parent="stage", source=SOURCE), name or kind
     if kind in SPAWNABLES:
+        _check_bodies(simulation)
         base = name or kind.removeprefix("robot/")
         name = next(word for k in range(len(taken) + 2) if (word := base if k == 0 else f"{base}_{k}") not in taken)
         xml = (
@@ -97,6 +98,13 @@ def _order(
         )
         return AddElementOrder(xml=xml, source=SOURCE), name
     raise InputError(f"{uri[:80]!r} is not known; get_spawnables lists what can be added")
+
+
+def _check_bodies(simulation: Simulation) -> None:
+    try:
+        simulation.world.body_scene()
+    except InputError:
+        raise InputError('a robot can be added to trials with bodies only: set bodies="limbs" in the trial') from None
 
 
 def _number(key: str, text: str) -> float:

@@ -1,0 +1,82 @@
+"""A client with the real roslibpy in a process of its own: python roslibpy_client.py PORT JOB [NUMBER]."""
+
+import json
+import sys
+import threading
+
+import roslibpy
+
+TWIST = "geometry_msgs/Twist"
+
+
+def look(ros):
+    """Ask rosapi and the simulation."""
+    features = roslibpy.Service(ros, "/crowdbot/get_simulator_features", "simulation_interfaces/GetSimulatorFeatures")
+    state = roslibpy.Service(ros, "/crowdbot/get_entity_state", "simulation_interfaces/GetEntityState")
+    found = state.call(roslibpy.ServiceRequest({"entity": "robot"}))
+    return {
+        "topics": ros.get_topics(),
+        "type": ros.get_topic_type("/robot/scan"),
+        "services": ros.get_services(),
+        "service_type": ros.get_service_type("/crowdbot/step_simulation"),
+        "nodes": ros.get_nodes(),
+        "time": ros.get_time().to_sec(),
+        "details": [one["type"] for one in ros.get_message_details("geometry_msgs/Twist")["typedefs"]],
+        "features": features.call(roslibpy.ServiceRequest())["features"]["features"],
+        "x": found["state"]["pose"]["position"]["x"],
+    }
+
+
+def control(ros, number):
+    """Answer odometry messages with commands, and count scans and map messages."""
+    command = roslibpy.Topic(ros, "/robot/cmd_vel", TWIST, queue_size=10)
+    command.advertise()
+    done, counts = threading.Event(), {"odometry": 0, "scans": 0, "rays": 0, "maps": 0, "sent": 0}
+
+    def answer(message):
+        counts["odometry"] += 1
+        if counts["sent"] < number:
+            command.publish(roslibpy.Message({"linear": {"x": 0.3}, "angular": {"z": 0.0}}))
+            counts["sent"] += 1
+        if counts["sent"] == number:
+            done.set()
+
+    def scan(message):
+        counts["scans"] += 1
+        counts["rays"] = len(message["ranges"])
+
+    def count_map(message):
+        counts["maps"] += 1
+
+    roslibpy.Topic(ros, "/map", "nav_msgs/OccupancyGrid").subscribe(count_map)
+    roslibpy.Topic(ros, "/robot/scan", "sensor_msgs/LaserScan").subscribe(scan)
+    roslibpy.Topic(ros, "/robot/odom", "nav_msgs/Odometry", queue_length=50).subscribe(answer)
+    assert done.wait(60.0)
+    ros.get_time()  # the commands before it have arrived
+    return counts
+
+
+def clock(ros, number):
+    """Send the time in odd portions."""
+    topic = roslibpy.Topic(ros, "/clock", "rosgraph_msgs/Clock")
+    topic.advertise()
+    for k in range(number):
+        now = 37_000_000 * k
+        topic.publish(roslibpy.Message({"clock": {"sec": now // 10**9, "nanosec": now % 10**9}}))
+    ros.get_time()
+    return {"sent": number}
+
+
+def main():
+    port, job = int(sys.argv[1]), sys.argv[2]
+    number = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+    ros = roslibpy.Ros("127.0.0.1", port)
+    ros.run(timeout=30)
+    found = look(ros) if job == "look" else {"control": control, "clock": clock}[job](ros, number)
+    print(json.dumps(found), flush=True)
+    ros.close()
+    ros.terminate()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,231 @@
+"""The rosbridge server and client with real other parties in processes of their own."""
+
+import asyncio
+import json
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import aiohttp
+import pytest
+from bridge_runs import MemoryTransport, Running, serve
+
+from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
+from crowdbot.bridges.rosbridge.client import RosbridgeClient
+from crowdbot.bridges.rosbridge.server import RosbridgeServer
+from crowdbot.core import InputError
+from crowdbot.recording import read_episode, replay
+from crowdbot.trials import load_trial
+
+CLIENT = Path(__file__).with_name("roslibpy_client.py")
+QUIT = {"state": {"state": 3}}
+
+
+def start_client(port, job, number=0):
+    """Start roslibpy in another process."""
+    return subprocess.Popen([sys.executable, CLIENT, str(port), job, str(number)], stdout=subprocess.PIPE, text=True)
+
+
+def answer_of(process):
+    out, _ = process.communicate(timeout=90)
+    assert process.returncode == 0
+    return json.loads(out)
+
+
+@pytest.fixture(scope="module")
+def trial():
+    return load_trial("frontal", duration=60.0)
+
+
+def test_roslibpy_sees_topics_services_and_entities(trial):
+    running, server = serve(trial)
+    with running:
+        found = answer_of(start_client(server.port, "look"))
+    assert {"/robot/scan", "/robot/cmd_vel", "/tf", "/map", "/people"} <= {*found["topics"]}
+    assert found["type"] == "sensor_msgs/msg/LaserScan"
+    assert "/crowdbot/step_simulation" in found["services"]
+    assert found["service_type"] == "simulation_interfaces/srv/StepSimulation"
+    assert "/crowdbot" in found["nodes"]
+    assert found["details"] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3"]
+    assert found["time"] >= 0.0
+    assert 31 in found["features"]
+    assert found["x"] == trial.robots[0].x
+
+
+def control_loop(trial, count, out):
+    """Let roslibpy answer ``count`` steps in real time; return the run, its summary, and the counts of the client."""
+    running, server = serve(trial, out=out)
+    with running:
+        counts = answer_of(start_client(server.port, "control", count))
+        received = running.run.port.inbox.count.received
+        assert server.sessions == []
+    return running, received, counts
+
+
+def test_a_control_loop_of_roslibpy_loses_no_command(trial, tmp_path):
+    running, received, counts = control_loop(trial, 100, tmp_path)
+    assert (counts["sent"], received) == (100, 100)
+    assert counts["rays"] == 360
+    assert counts["scans"] >= 0.4 * 100
+    assert counts["maps"] == 1
+    latency = running.run.port.inbox.latency.summary()
+    assert latency.count >= 90
+    assert latency.median < 0.05
+    assert "ms (median)" in running.notes[-1]
+    assert replay(tmp_path / "episode.mcap").equal
+
+
+@pytest.mark.sweep
+def test_a_long_control_loop_of_roslibpy_loses_no_command(trial, tmp_path):
+    running, received, counts = control_loop(trial, 600, tmp_path)
+    assert (counts["sent"], received) == (600, 600)
+    assert running.run.port.inbox.latency.summary().median < 0.05
+
+
+def test_a_time_in_odd_portions_over_rosbridge_gives_the_digest_of_a_free_run():
+    trial = load_trial("frontal", duration=3.0)
+    running, server = serve(trial, mode="follow")
+    with running:
+        client = start_client(server.port, "clock", 90)
+        done = running.end()
+        answer_of_any = client.communicate(timeout=60)[0]
+    assert answer_of_any is not None
+    assert done.steps == 60
+    assert done.digest == run_bridge(trial, [], 0, None, BridgeClock("free")).digest
+
+
+def speeds(memory):
+    rows = [one.message for one in list(memory.sent) if one.topic == "/robot/ground_truth/odom"]
+    return [one.twist.twist.linear.x for one in rows]
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.sweep)])
+def test_a_killed_client_leaves_a_robot_that_stops_and_a_whole_recording(trial, kills, tmp_path):
+    memory = MemoryTransport(topics=("/robot/ground_truth/odom",))
+    server = RosbridgeServer(port=0)
+    with Running(trial, [server, memory], rate=2.0, out=tmp_path) as running:
+        for _ in range(kills):
+            client, before = start_client(server.port, "control", 100_000), running.run.port.inbox.count.received
+            for _ in range(1500):
+                if running.run.port.inbox.count.received > before + 5:
+                    break
+                threading.Event().wait(0.02)
+            client.kill()
+            client.communicate()
+            for _ in range(500):
+                if not server.sessions and speeds(memory)[-1] == 0.0:
+                    break
+                threading.Event().wait(0.02)
+            assert server.sessions == []
+            assert speeds(memory)[-1] == 0.0
+    assert max(speeds(memory)) > 0.1
+    assert read_episode(tmp_path / "episode.mcap").metadata["outcome"] == "interrupted"
+    assert replay(tmp_path / "episode.mcap").equal
+
+
+def test_the_client_role_joins_a_server_and_comes_back_after_its_death():
+    interface = RobotInterface.of(load_trial("frontal"))
+    empty = RobotInterface(interface.trial, (), (), ())
+    server = RosbridgeServer(port=0)
+    server.start(empty, Inbox(empty))
+    joined = RosbridgeClient(f"ws://127.0.0.1:{server.port}")
+    with Running(load_trial("frontal", duration=120.0), [joined], rate=1.0) as running:
+        found = answer_of(start_client(server.port, "control", 20))
+        assert (found["sent"], found["rays"], found["maps"]) == (20, 360, 1)
+        assert running.run.port.inbox.count.received == 20
+        server.stop()
+        again = RosbridgeServer(port=server.port)
+        again.start(empty, Inbox(empty))
+        found = answer_of(start_client(again.port, "look"))
+        assert joined.connections == 2
+        assert found["x"] > -4.5
+        again.stop()
+
+
+def test_a_client_needs_a_server():
+    with pytest.raises(InputError, match="cannot join ws://127.0.0.1:9"):
+        run_bridge(load_trial("frontal", duration=1.0), [RosbridgeClient("ws://127.0.0.1:9")])
+    with pytest.raises(InputError, match="is no WebSocket address"):
+        open_transport("rosbridge-client:127.0.0.1:9090")
+
+
+async def connect(port, **options):
+    """Return the status of a connection: 101 if it is accepted."""
+    async with aiohttp.ClientSession() as http:
+        try:
+            async with http.ws_connect(f"http://127.0.0.1:{port}/", **options) as socket:
+                await socket.send_str('{"op": "call_service", "service": "/rosapi/get_time", "id": "1"}')
+                return json.loads((await socket.receive(timeout=20)).data)["op"]
+        except aiohttp.WSServerHandshakeError as error:
+            return error.status
+
+
+def test_who_may_connect():
+    interface = RobotInterface.of(load_trial("frontal"))
+    with pytest.raises(InputError, match="is open to everybody"):
+        RosbridgeServer(host="0.0.0.0")
+    server = RosbridgeServer(port=0)
+    server.start(interface, Inbox(interface))
+    answers = [
+        asyncio.run(connect(server.port, **options))
+        for options in ({}, {"origin": "http://localhost:8080"}, {"origin": "https://evil.example"})
+    ]
+    with pytest.raises(InputError, match="rosbridge cannot listen on 127.0.0.1"):
+        RosbridgeServer(port=server.port).start(interface, Inbox(interface))
+    server.stop()
+    assert answers == ["service_response", "service_response", 403]
+    server = RosbridgeServer(port=0, host="0.0.0.0", token="abc")
+    server.start(interface, Inbox(interface))
+    bearer = {"headers": {"Authorization": "Bearer abc"}}
+    answers = [asyncio.run(connect(server.port, **options)) for options in ({}, {"params": {"token": "abd"}})]
+    answers += [asyncio.run(connect(server.port, **options)) for options in (bearer, {"params": {"token": "abc"}})]
+    server.stop()
+    assert answers == [403, 403, "service_response", "service_response"]
+
+
+def test_a_client_that_does_not_read_holds_nobody_up():
+    trial = load_trial("frontal", duration=20.0)
+    server = RosbridgeServer(port=0)
+
+    async def sleep_forever():
+        async with aiohttp.ClientSession() as http, http.ws_connect(f"http://127.0.0.1:{server.port}/") as socket:
+            for topic in ("/robot/scan", "/robot/scan/reading", "/tf", "/people"):
+                await socket.send_str(json.dumps({"op": "subscribe", "topic": topic}))
+            await socket.send_str("\x00" * 1000)
+            await socket.send_bytes(b"\xff" * 1000)
+            while not done.is_set():
+                await asyncio.sleep(0.05)
+
+    done = threading.Event()
+    with Running(trial, [server], "step") as running:
+        thread = threading.Thread(target=asyncio.run, args=(sleep_forever(),))
+        thread.start()
+        for _ in range(500):
+            if server.sessions and len(server.sessions[0].subscriptions) == 4:
+                break
+            threading.Event().wait(0.02)
+        running.run.control.state = 1
+        running.run.clock = BridgeClock("free")
+        running.run.port.inbox.wake()
+        waiting = [len(one._waiting) for session in server.sessions for one in session.subscriptions.values()]
+        summary = running.end(90.0)
+        done.set()
+        thread.join(20.0)
+    assert summary.steps == 400
+    assert max(waiting) <= 1
+
+
+def test_a_frame_that_is_too_large_ends_only_its_own_connection():
+    interface = RobotInterface.of(load_trial("frontal"))
+    server = RosbridgeServer(port=0)
+    server.start(interface, Inbox(interface))
+
+    async def flood():
+        async with aiohttp.ClientSession() as http, http.ws_connect(f"http://127.0.0.1:{server.port}/") as socket:
+            await socket.send_str("[" * (2 << 20))
+            return (await socket.receive(timeout=20)).type, socket.close_code
+
+    assert asyncio.run(flood()) == (aiohttp.WSMsgType.CLOSE, 1009)
+    assert asyncio.run(connect(server.port)) == "service_response"
+    server.stop()
