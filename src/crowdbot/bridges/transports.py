@@ -16,6 +16,7 @@ __all__ = ["TRANSPORTS", "open_transport"]
 TRANSPORTS: dict[str, tuple[str, str]] = {
     "rosbridge": ("rosbridge.server:RosbridgeServer.of", "rosbridge[:PORT], a server for roslibpy and roslib.js"),
     "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),
+    "ros2": ("ros2.node:Ros2Node.of", "ros2[:DOMAIN], a ROS 2 node (rclpy)"),
     "foxglove": ("foxglove.server:FoxgloveServer.of", "foxglove[:PORT], a live server for the Foxglove app"),
 }
 """Module and function of each transport, relative to this room, and a line for people.

@@ -25,8 +25,8 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
         "--bridge",
         action="append",
         metavar="NAME[:ADDRESS]",
-        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT, foxglove[:PORT];"
-        " several are possible",
+        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT, ros2[:DOMAIN],"
+        " foxglove[:PORT]; several are possible",
     )
     group.add_argument(
         "--clock",
