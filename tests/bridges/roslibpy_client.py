@@ -51,7 +51,7 @@ def control(ros, number):
     roslibpy.Topic(ros, "/map", "nav_msgs/OccupancyGrid").subscribe(count_map)
     roslibpy.Topic(ros, "/robot/scan", "sensor_msgs/LaserScan").subscribe(scan)
     roslibpy.Topic(ros, "/robot/odom", "nav_msgs/Odometry", queue_length=50).subscribe(answer)
-    assert done.wait(60.0)
+    assert done.wait(60.0 + number / 10.0)
     ros.get_time()  # the commands before it have arrived
     return counts
 

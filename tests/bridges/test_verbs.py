@@ -5,6 +5,7 @@ from bridge_runs import MemoryTransport, Running
 
 from crowdbot.bridges import SERVICES, RobotInterface, message_of, request_kind, response_kind
 from crowdbot.bridges.verbs.verbs import Verbs
+from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
 
@@ -194,3 +195,18 @@ def test_steps_beyond_the_end_are_answered(trial):
             "ended before the last step" in transport.call("step_simulation", {"steps": 500})["result"]["error_message"]
         )
         assert running.end().outcome == "timeout"
+
+
+def test_a_restart_that_cannot_be_recorded_is_answered(trial, tmp_path):
+    (tmp_path / "episode-2.mcap").write_bytes(b"mine")
+    transport = MemoryTransport()
+    running = Running(trial, [transport], "step", out=tmp_path)
+    running.thread.start()
+    running._started.wait(60.0)
+    assert "the run has ended" in transport.call("reset_simulation")["result"]["error_message"]
+    with pytest.raises(InputError, match=r"episode-2\.mcap"):
+        running.end()
+    assert (tmp_path / "episode-2.mcap").read_bytes() == b"mine"
+    assert transport.stopped == 1
+    with pytest.raises(InputError, match="the run has ended"):
+        transport.call("get_entities")

@@ -4,7 +4,7 @@ The room has one port and several transports. The port is neutral of transport:
 
 * :class:`RobotInterface` lists topics (name, message type, frame, rate, quality of service) and services of a trial
   before anything runs. ``docs/reference/robot-interface.md`` is made from it.
-* :class:`RobotPort` converts each step with :class:`crowdbot.recording.StepMessages`, the conversion of the recorder:
+* :class:`BridgePort` converts each step with :class:`crowdbot.recording.StepMessages`, the conversion of the recorder:
   what is recorded is what is sent. It hands :class:`crowdbot.recording.StepMessage` objects to the transports, which
   take ``message`` (fields) or ``cdr`` (bytes); each is made once, and only if a transport wants the topic.
 * :class:`Inbox` takes what arrives, in any thread: ``receive(topic, fields, sender)`` for messages and ``call(service,
@@ -38,7 +38,7 @@ from .motion_capture import (
     open_stream,
     parse_captures,
 )
-from .port import RobotPort, steered_trial
+from .port import BridgePort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
 from .transport import Transport
@@ -51,6 +51,7 @@ __all__ = [
     "SERVICES",
     "TRANSPORTS",
     "BridgeClock",
+    "BridgePort",
     "BridgeRun",
     "CommandLatency",
     "Inbox",
@@ -64,7 +65,6 @@ __all__ = [
     "PoseStream",
     "QualityOfService",
     "RobotInterface",
-    "RobotPort",
     "RunControl",
     "Service",
     "ServiceCall",

@@ -23,7 +23,7 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, check_trial
 
 from .clock import BridgeClock, Pace
-from .port import RobotPort, steered_trial
+from .port import BridgePort, steered_trial
 from .run_control import PAUSED, PLAYING, RunControl
 from .transport import Transport
 from .verbs.results import FAILED, result
@@ -92,7 +92,7 @@ class BridgeRun:
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
         self.control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
-        self.port = RobotPort(self.trial, transports, self.control, follows_clock=clock.mode == "follow")
+        self.port = BridgePort(self.trial, transports, self.control, follows_clock=clock.mode == "follow")
         self.note = note or (lambda text: None)
         self.stop = StopRequest()
         self.pace = Pace(trial.step, clock.rate)
@@ -104,7 +104,11 @@ class BridgeRun:
         with contextlib.ExitStack() as stack:
             self.stop = stack.enter_context(catch_interrupt())
             stack.callback(self.port.stop)
+            stack.callback(self._answer_rest)
             self.port.start()
+            if self.port.transports:
+                names = ", ".join(one.name for one in self.port.transports)
+                self.note(f"trial {self.trial.name} is open to {names}; Ctrl-C ends the run")
             while True:
                 summary = self._run_once(number)
                 following = self.control.restart
@@ -112,13 +116,10 @@ class BridgeRun:
                     break
                 number += 1
                 self.trial = steered_trial(following)
-            self.control.finish_restart("the run has ended")
-            for call in self.port.inbox.close():
-                call.answer(result(FAILED, "the run has ended"))
         latency = self.port.inbox.latency.summary()
-        if latency.count:
+        if latency.commands:
             self.note(
-                f"{self.port.inbox.count.received} messages received; {latency.count} commands answered a step after"
+                f"{self.port.inbox.count.received} messages received; {latency.commands} commands answered a step after"
                 f" {1e3 * latency.median:.1f} ms (median), {1e3 * latency.p99:.1f} ms (99 %)"
             )
         return summary
@@ -206,6 +207,13 @@ class BridgeRun:
             self._back = now
             self.port.report("error", f"the time on /clock went back to {now / 1e9:g} s from {clock.time:g} s")
         return 0.0 if now >= clock.nanoseconds + clock.step_ns else IDLE
+
+    def _answer_rest(self) -> None:
+        """Answer the calls that still wait at the end."""
+        self.control.finish_steps(False)
+        self.control.finish_restart("the run has ended")
+        for call in self.port.inbox.close():
+            call.answer(result(FAILED, "the run has ended"))
 
     def _file(self, number: int) -> Path | None:
         if self.out is None or number == 1:

@@ -127,7 +127,7 @@ class Inbox:
         with self._news:
             self._add(order)
 
-    def waiting(self, kind: type[Order], text: str = "") -> int:
+    def count_orders(self, kind: type[Order], text: str = "") -> int:
         """Return the number of orders of a kind that wait, with a text in their element."""
         with self._news:
             return sum(isinstance(one, kind) and text in getattr(one, "xml", text) for one in self._orders)

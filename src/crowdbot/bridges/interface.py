@@ -176,7 +176,7 @@ def _robot_outputs(robot: RobotSpec, every: float) -> list[OutputTopic]:
         about = "URDF"
         rows.append(OutputTopic(f"/{name}/robot_description", "std_msgs/msg/String", "", 0.0, LATCHED, name, about))
     for mount in robot.sensors:
-        topic, rate = f"{name}/{mount.name}", float(mount.sensor.rate)
+        topic, rate = f"{name}/{mount.name}", min(every, float(mount.sensor.rate))
         for ending, kind in reading_topics(mount.sensor).items():
             frame = f"{topic}_optical" if ending in OPTICAL else topic
             frame = frames.odom if kind == odometry else frame

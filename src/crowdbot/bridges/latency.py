@@ -19,11 +19,11 @@ class LatencySummary(NamedTuple):
     """Latency of commands in real time.
 
     Fields:
-        count: number of commands that answered a step.
+        commands: number of commands that answered a step.
         median, p99: median and 99th percentile [s]; NaN without commands.
     """
 
-    count: int
+    commands: int
     median: float
     p99: float
 
@@ -59,7 +59,7 @@ class CommandLatency:
             self._found.append(self.monotonic() - self._begin)
 
     def summary(self) -> LatencySummary:
-        """Return count, median and 99th percentile."""
+        """Return the number of commands, median and 99th percentile."""
         found = np.array(self._found)
         if not len(found):
             return LatencySummary(0, float("nan"), float("nan"))

@@ -1,4 +1,4 @@
-"""RobotPort: carries a running simulation over transports, and brings orders and calls in."""
+"""BridgePort: carries a running simulation over transports, and brings orders and calls in."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .run_control import RunControl
 from .transport import Transport
 from .verbs.verbs import answer_call
 
-__all__ = ["RobotPort", "steered_trial"]
+__all__ = ["BridgePort", "steered_trial"]
 
 
 def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
@@ -41,7 +41,7 @@ def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     return dataclasses.replace(trial, robots=robots)
 
 
-class RobotPort:
+class BridgePort:
     """Topics, commands and services of a running trial, over any number of transports.
 
     The messages are those of the recorder: :class:`crowdbot.recording.StepMessages` converts the records of steps.
@@ -55,7 +55,7 @@ class RobotPort:
         follows_clock: whether ``/clock`` is received instead of sent.
 
     >>> from crowdbot.trials import load_trial
-    >>> port = RobotPort(load_trial("frontal"), [])
+    >>> port = BridgePort(load_trial("frontal"), [])
     >>> port.interface.output("/map").quality.latched
     True
     """

@@ -170,7 +170,7 @@ class RosGraph:
         names = re.findall(r"(\w+)$", one.request, flags=re.M) if one is not None else []
         return dict(zip(names, values, strict=False))
 
-    def update_wanted(self) -> None:
+    def collect_subscriptions(self) -> None:
         """Collect the topics that clients subscribe."""
         self.wanted = frozenset(topic for session in self.sessions for topic in session.subscriptions)
 
@@ -183,4 +183,4 @@ class RosGraph:
         for kept in (self.services, self.actions):
             for name in [name for name, (owner, _) in kept.items() if owner is session]:
                 del kept[name]
-        self.update_wanted()
+        self.collect_subscriptions()

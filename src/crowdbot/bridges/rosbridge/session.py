@@ -161,7 +161,7 @@ class ClientSession:
         if topic not in self.subscriptions:
             self.subscriptions[topic] = found
             self._turn.append(topic)
-            self.graph.update_wanted()
+            self.graph.collect_subscriptions()
             if topic in self.graph.latched:
                 self.offer(self.graph.latched[topic])
 
@@ -174,7 +174,7 @@ class ClientSession:
         if found.remove(None if name is None else str(name)):
             del self.subscriptions[topic]
             self._turn.remove(topic)
-            self.graph.update_wanted()
+            self.graph.collect_subscriptions()
 
     def _set_level(self, frame: Frame) -> None:
         level = field(frame, "level", str)

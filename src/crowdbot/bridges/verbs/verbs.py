@@ -128,7 +128,7 @@ class Verbs:
 
     def spawn_entity(self, request: Fields) -> Response:
         """Add a person, a robot or a prop."""
-        waiting = [self.inbox.waiting(AddPersonOrder), self.inbox.waiting(AddElementOrder, "<robot")]
+        waiting = [self.inbox.count_orders(AddPersonOrder), self.inbox.count_orders(AddElementOrder, "<robot")]
         order, response = spawn_order(request, self.simulation, sum(waiting))
         if order is not None:
             self._add(order)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.trials import Trial, builtin_trials, load_trial, parse_trial, trial_xml
+from crowdbot.trials import Trial, builtin_trials, check_trial, load_trial, parse_trial, trial_xml
 
 from .results import FAILED, OK, UNSUPPORTED, result
 
@@ -50,6 +50,7 @@ def load_world(request: Mapping[str, Any], folder: Path | None) -> tuple[Trial |
             trial = parse_trial(text.encode(), place="load_world", folder=None, trust=False)
         else:
             return None, result(NO_RESOURCE, "give a uri or a resource_string", world=_world("", "", {}))
+        check_trial(trial, trial.seed)
     except InputError as error:
         return None, result(PARSE_ERROR if text else FAILED, str(error), world=_world("", "", {}))
     return trial, result(OK, world=_world(trial.name, trial.about, {"uri": uri, "resource_string": ""}))

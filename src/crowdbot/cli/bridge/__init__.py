@@ -62,8 +62,6 @@ def run_with_bridge(
     if "topics" in values:
         values["topics"] = [one.strip() for one in values["topics"].split(",") if one.strip()]
     transports = [open_transport(text, values) for text in options.bridge]
-    for text in options.bridge:
-        note(f"crowdbot: bridge {text}, trial {trial.name}; Ctrl-C ends the run")
     begin = time.perf_counter()
     out = None if options.out is None else options.out / "episode.mcap"
     with print_warnings():

@@ -1,0 +1,105 @@
+"""Print docs/reference/robot-interface.md: topics, types, frames, rates and QoS of a trial, from the code.
+
+python tools/robot_interface.py > docs/reference/robot-interface.md
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from crowdbot.bridges import MODES, QUALITIES, SERVICES, RobotInterface
+from crowdbot.trials import Trial, parse_trial
+
+TRIAL = """<trial name="robot-interface" duration="0.4">
+  <crowd type="orca"/>
+  <robot name="robot" type="pepper" x="0" y="0" cameras="true"><goal x="9" y="0"/><navigator type="external"/>
+    <sensor name="points" type="lidar3d"/><sensor name="imu" type="imu"/><sensor name="wheels" type="wheel-odometry"/>
+    <sensor name="depth" type="depth-camera"/><sensor name="touch" type="bumper"/>
+    <sensor name="tracked" type="ground-truth-people"/>
+  </robot>
+</trial>
+"""
+
+HEAD = """# Robot interface
+
+Topics and services of `crowdbot run TRIAL --bridge ...`, made from the code by `python tools/robot_interface.py`. The
+robot of this page is a Pepper named `robot` with more sensors, at a time step of 0.05 s. In your trial, the first part
+of a topic is the name of the robot, and the second the name of its sensor. Every robot has its own name space.
+
+The messages are those of [recordings](recording.md), converted by the same code: what is recorded is what is sent.
+All time stamps are simulated time.
+
+## Topics that are sent
+
+Rates are in Hz of simulated time. A dash means: when something happens, or once if the topic is latched.
+"""
+INPUTS = """
+## Topics that are received
+
+A command is applied before the next step, recorded, and applied again in a replay. A robot stops if no velocity came
+for 0.5 s of simulated time, or for the `timeout` of its `<navigator type="external"/>`. Robots without this navigator
+are driven from outside if no robot of the trial has it.
+
+`/clock` is received instead of sent with `--clock follow`.
+"""
+SERVICE_TEXT = """
+## Services
+
+The services are those of [simulation_interfaces](https://github.com/ros-simulation/simulation_interfaces) 2.1. An
+entity is a robot by its name, or a person as `person_ID`. What is added or moved is there after the next step. A reset,
+and another world, begin another episode (`episode-2.mcap`). A reset of scope 4 removes only what was added.
+"""
+QUALITY = """
+## Quality of service
+
+The classes of the tables above, as ROS 2 knows them.
+"""
+CLOCKS = """
+## Clocks
+
+No clock changes the result: the same orders at the same instants give the same bytes.
+"""
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [list(head), *(list(row) for row in rows)]
+    lines.insert(1, ["---"] * len(lines[0]))
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+
+
+def example_trial() -> Trial:
+    """Return the trial of the page."""
+    return parse_trial(TRIAL, place="robot-interface")
+
+
+def page() -> str:
+    """Return the page."""
+    interface = RobotInterface.of(example_trial())
+    follows = RobotInterface.of(example_trial(), follows_clock=True)
+    outputs = (
+        (f"`{one.name}`", f"`{one.kind}`", f"`{one.frame}`" if one.frame else "-", f"{one.rate:g}" if one.rate else "-",
+         one.quality.name, one.about)
+        for one in interface.outputs
+    )  # fmt: skip
+    inputs = (
+        (f"`{one.name}`", " or ".join(f"`{kind}`" for kind in one.kinds), one.quality.name, one.about)
+        for one in follows.inputs
+    )
+    services = ((f"`/crowdbot/{name}`", f"`{one.kind}`", one.about) for name, one in SERVICES.items())
+    qualities = (
+        (one.name, "reliable" if one.reliable else "best effort", "transient local" if one.latched else "volatile",
+         str(one.depth))
+        for one in QUALITIES
+    )  # fmt: skip
+    return (
+        HEAD + "\n" + table(("topic", "type", "frame", "rate", "QoS", "content"), outputs)
+        + INPUTS + "\n" + table(("topic", "type", "QoS", "content"), inputs)
+        + SERVICE_TEXT + "\n" + table(("service", "type", "effect"), services)
+        + QUALITY + "\n" + table(("class", "reliability", "durability", "depth"), qualities)
+        + CLOCKS + "\n" + table(("`--clock`", "meaning"), ((f"`{name}`", about) for name, about in MODES.items()))
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    print(page(), end="")
