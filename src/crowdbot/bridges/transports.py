@@ -33,9 +33,6 @@ def open_transport(text: str, options: Mapping[str, Any] | None = None) -> Trans
 
     >>> open_transport("rosbridge:9091").name
     'rosbridge'
-    >>> open_transport("rosbrige")
-    Traceback (most recent call last):
-    crowdbot.core.errors.InputError: there is no bridge 'rosbrige', did you mean 'rosbridge'? Bridges are ...
     """
     name, _, address = text.partition(":")
     if name not in TRANSPORTS:

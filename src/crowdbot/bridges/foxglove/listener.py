@@ -4,34 +4,48 @@ from __future__ import annotations
 
 import re
 import threading
-from typing import TYPE_CHECKING, Any
-
-from foxglove import websocket
+from typing import Any, Protocol
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.run_control import PAUSED, PLAYING
 from crowdbot.core import InputError
 
-from .server import MOST_CHANNELS, decode_fields
-
-if TYPE_CHECKING:
-    from .server import FoxgloveServer
+from .decoding import decode_fields
 
 __all__ = ["ClientListener"]
 
 STATE = "/crowdbot/set_simulation_state"
+MOST_CHANNELS = 256
+"""Largest number of channels that a client may advertise."""
 
 
-class ClientListener(websocket.ServerListener):
+class ServerPart(Protocol):
+    """What a listener needs of its server."""
+
+    name: str
+    now: int
+
+    def allows(self, name: str) -> bool:
+        """Return whether clients may use a topic or service."""
+
+    def report(self, level: str, text: str) -> None:
+        """Send a status message to all clients."""
+
+    def note_subscription(self, topic: str, change: int) -> None:
+        """Count a subscription (1) or its end (-1)."""
+
+
+class ClientListener:
     """Takes subscriptions, messages and playback requests of clients.
 
     Args:
         server: the server.
         inbox: receives commands and calls.
+        websocket: module of the SDK.
     """
 
-    def __init__(self, server: FoxgloveServer, inbox: Inbox) -> None:
-        self.server, self.inbox = server, inbox
+    def __init__(self, server: ServerPart, inbox: Inbox, websocket: Any) -> None:
+        self.server, self.inbox, self.websocket = server, inbox, websocket
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
         self._lock = threading.Lock()
 
@@ -71,15 +85,15 @@ class ClientListener(websocket.ServerListener):
 
     def on_playback_control_request(self, request: Any) -> Any:
         """Pause or play; the time cannot be set, and the speed is that of the run."""
-        wanted = PLAYING if request.playback_command == websocket.PlaybackCommand.Play else PAUSED
+        wanted = PLAYING if request.playback_command == self.websocket.PlaybackCommand.Play else PAUSED
         try:
             if not self.server.allows(STATE):
                 raise InputError(f"{STATE!r} is not among the services that clients may use")
             self.inbox.call(STATE, {"state": {"state": wanted}}, lambda response: None, self.server.name)
         except InputError as error:
             self.server.report("error", str(error))
-        status = websocket.PlaybackStatus.Playing if wanted == PLAYING else websocket.PlaybackStatus.Paused
-        return websocket.PlaybackState(
+        status = self.websocket.PlaybackStatus.Playing if wanted == PLAYING else self.websocket.PlaybackStatus.Paused
+        return self.websocket.PlaybackState(
             status=status, current_time=self.server.now, playback_speed=1.0, did_seek=False,
             request_id=request.request_id,
         )  # fmt: skip

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import fnmatch
 import ipaddress
-import json
 import logging
 import threading
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from crowdbot.bridges.fields import fields_of, message_of
+from crowdbot.bridges.fields import message_of
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
 from crowdbot.bridges.verbs.definitions import SERVICES, interface_store, request_kind, response_kind
@@ -19,15 +18,14 @@ from crowdbot.core import InputError, import_optional
 from crowdbot.messages import Messages
 from crowdbot.recording import StepMessage
 
+from .decoding import decode_fields
+from .listener import ClientListener
+
 __all__ = ["PORT", "FoxgloveServer"]
 
 PORT = 8765
 BACKLOG = 256
 """Messages that wait for a slow client; the oldest are dropped."""
-MOST_CHANNELS = 256
-"""Largest number of channels that a client may advertise."""
-MOST_BYTES = 1 << 20
-"""Largest message or request of a client [bytes]."""
 ANSWER_TIME = 60.0
 """Longest real time [s] that a call waits for its answer."""
 
@@ -101,9 +99,7 @@ class FoxgloveServer:
         self._announce(interface)
 
     def _open(self, interface: RobotInterface, inbox: Inbox) -> None:
-        from .listener import ClientListener
-
-        listener = ClientListener(self, inbox)
+        listener = ClientListener(self, inbox, self._sdk.websocket)
         logging.getLogger("foxglove").addHandler(logging.NullHandler())  # bad frames are no news for the console
         capability = self._sdk.websocket.Capability
         try:
@@ -230,36 +226,6 @@ class FoxgloveServer:
                 raise InputError(f"{name} has no answer: the run has ended or is busy")
         kind = response_kind(service)
         return bytes(interface_store().serialize_cdr(message_of(found[0], kind), kind))
-
-
-def decode_fields(data: bytes, encoding: str, kind: str) -> dict[str, Any]:
-    """Return the fields of a message from a client.
-
-    Raises:
-        InputError: the encoding is not supported, or the data are not of the type.
-
-    >>> decode_fields(b'{"steps": 3}', "json", "simulation_interfaces/msg/StepSimulation_Request")
-    {'steps': 3}
-    """
-    if len(data) > MOST_BYTES:
-        raise InputError(f"a message has {len(data)} bytes; at most {MOST_BYTES} are allowed")
-    if encoding == "json":
-        try:
-            fields = json.loads(data or b"{}")
-        except (ValueError, RecursionError):
-            raise InputError("a message is not JSON") from None
-        if not isinstance(fields, dict):
-            raise InputError("a message must be a JSON object")
-        return fields
-    if encoding != "cdr":
-        raise InputError(f"encoding {encoding[:40]!r} is not supported; use json or cdr")
-    store = interface_store()
-    if kind not in store.fielddefs:
-        raise InputError(f"the message type {kind[:80]!r} is unknown")
-    try:
-        return fields_of(store.deserialize_cdr(data, kind))
-    except Exception:  # rosbags raises many kinds of errors for bytes of another type
-        raise InputError(f"a message is no CDR of {kind}") from None
 
 
 def _definition(kind: str) -> str:
