@@ -29,6 +29,15 @@ from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
 from .latency import CommandLatency, LatencySummary
+from .motion_capture import (
+    MotionBinding,
+    MotionCapture,
+    MotionSample,
+    PoseStream,
+    StreamStatistics,
+    open_stream,
+    parse_captures,
+)
 from .port import BridgePort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
@@ -48,18 +57,25 @@ __all__ = [
     "Inbox",
     "InputTopic",
     "LatencySummary",
+    "MotionBinding",
+    "MotionCapture",
+    "MotionSample",
     "OutputTopic",
     "Pace",
+    "PoseStream",
     "QualityOfService",
     "RobotInterface",
     "RunControl",
     "Service",
     "ServiceCall",
+    "StreamStatistics",
     "Transport",
     "fields_of",
     "interface_store",
     "message_of",
+    "open_stream",
     "open_transport",
+    "parse_captures",
     "plain_fields",
     "request_kind",
     "response_kind",

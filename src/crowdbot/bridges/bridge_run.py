@@ -11,6 +11,7 @@ from crowdbot.recording import Recorder, episode_path
 from crowdbot.simulation import (
     EpisodeDigest,
     EpisodeStatistics,
+    OrderSource,
     RunSummary,
     Simulation,
     SimulationRun,
@@ -41,6 +42,7 @@ def run_bridge(
     clock: BridgeClock | None = None,
     force: bool = False,
     note: Callable[[str], None] | None = None,
+    sources: Sequence[OrderSource] = (),
 ) -> RunSummary:
     """Run a trial whose robots other programs drive, see :class:`BridgeRun`.
 
@@ -52,6 +54,7 @@ def run_bridge(
         clock: when steps are taken (default: in real time).
         force: whether existing files may be overwritten.
         note: receives remarks for people.
+        sources: other programs that steer the simulation, such as motion capture.
 
     Returns:
         The summary of the last run.
@@ -60,7 +63,7 @@ def run_bridge(
     >>> run_bridge(load_trial("frontal", duration=1.0), [], clock=BridgeClock("free")).steps
     20
     """
-    return BridgeRun(trial, transports, seed, out, clock or BridgeClock(), force, note).run()
+    return BridgeRun(trial, transports, seed, out, clock or BridgeClock(), force, note, sources).run()
 
 
 class BridgeRun:
@@ -83,7 +86,9 @@ class BridgeRun:
         clock: BridgeClock,
         force: bool = False,
         note: Callable[[str], None] | None = None,
+        sources: Sequence[OrderSource] = (),
     ) -> None:
+        self.sources = sources
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
         self.control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
@@ -138,7 +143,7 @@ class BridgeRun:
             if out is not None:
                 recorder = stack.enter_context(Recorder(out, tally, force=self.force, simulation=simulation))
                 sinks.append(recorder)
-            running = SimulationRun(simulation, [*sinks, self.port], stop=self.stop)
+            running = SimulationRun(simulation, [*sinks, self.port], self.sources, stop=self.stop)
             outcome = self._drive(running)
             if recorder is not None:
                 recorder.complete(outcome, running.simulation.tick, running.failure)

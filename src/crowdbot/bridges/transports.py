@@ -16,6 +16,8 @@ __all__ = ["TRANSPORTS", "open_transport"]
 TRANSPORTS: dict[str, tuple[str, str]] = {
     "rosbridge": ("rosbridge.server:RosbridgeServer.of", "rosbridge[:PORT], a server for roslibpy and roslib.js"),
     "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),
+    "ros2": ("ros2.node:Ros2Node.of", "ros2[:DOMAIN], a ROS 2 node (rclpy)"),
+    "foxglove": ("foxglove.server:FoxgloveServer.of", "foxglove[:PORT], a live server for the Foxglove app"),
 }
 """Module and function of each transport, relative to this room, and a line for people.
 
@@ -31,9 +33,6 @@ def open_transport(text: str, options: Mapping[str, Any] | None = None) -> Trans
 
     >>> open_transport("rosbridge:9091").name
     'rosbridge'
-    >>> open_transport("rosbrige")
-    Traceback (most recent call last):
-    crowdbot.core.errors.InputError: there is no bridge 'rosbrige', did you mean 'rosbridge'? Bridges are ...
     """
     name, _, address = text.partition(":")
     if name not in TRANSPORTS:

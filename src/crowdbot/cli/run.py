@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .bridge import add_bridge, check_bridge_options, run_with_bridge
+from .bridge.mocap import add_mocap, open_captures, print_captures
 from .output import add_json, note, number, print_json, print_metrics, print_table, print_warnings, progress
 from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
+    from crowdbot.bridges import MotionCapture
     from crowdbot.simulation import RunSummary
+    from crowdbot.trials import Trial
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,22 +32,34 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
     add_bridge(parser)
+    add_mocap(parser)
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
-    from crowdbot.core import InputError, PacedClock
-    from crowdbot.recording import record
+    from crowdbot.core import InputError
     from crowdbot.trials import load_trial
 
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
-    if options.bridge:
-        done, wall = run_with_bridge(trial, options)
-        return print_run(done, options, wall)
-    check_bridge_options(options)
+    with contextlib.ExitStack() as stack:
+        captures = open_captures(trial, options, stack)
+        if options.bridge:
+            done, wall = run_with_bridge(trial, options, captures)
+        else:
+            check_bridge_options(options)
+            done, wall = _run(trial, options, captures)
+    print_captures(captures)
+    return print_run(done, options, wall)
+
+
+def _run(trial: Trial, options: argparse.Namespace, captures: Sequence[MotionCapture]) -> tuple[RunSummary, float]:
+    """Run the trial and return its summary and the real time [s]."""
+    from crowdbot.core import PacedClock
+    from crowdbot.recording import record
+
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
@@ -54,8 +71,9 @@ def main(options: argparse.Namespace) -> int:
             progress=lambda share: report(f"run {trial.name}", share),
             clock=clock,
             force=options.force,
+            sources=captures,
         )
-    return print_run(done, options, time.perf_counter() - begin)
+    return done, time.perf_counter() - begin
 
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:

@@ -13,6 +13,7 @@ from .person import Person, names, person, persons
 from .pose_file import read_pose_file
 from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
+from .rest_bones import RestSkeleton, rest_skeleton
 from .seat import CHAIR, WHEELCHAIR, Seat
 from .uneven import ankle_positions, stand_on_ground
 from .wardrobe import Outfit, outfit, region_colors, worn_parts
@@ -36,6 +37,7 @@ __all__ = [
     "PoseSource",
     "PoseTrack",
     "Posture",
+    "RestSkeleton",
     "Seat",
     "ankle_positions",
     "limb_chain",
@@ -48,6 +50,7 @@ __all__ = [
     "reach_poses",
     "read_pose_file",
     "region_colors",
+    "rest_skeleton",
     "shapes",
     "stand_on_ground",
     "striking_mass",

@@ -81,14 +81,19 @@ def record(
     progress: Progress | None = None,
     clock: Clock | None = None,
     force: bool = False,
+    sources: Sequence[OrderSource] = (),
 ) -> RunSummary:
     """Run a trial like :func:`run`, but without arrays: memory does not grow with the duration.
+
+    Args:
+        trial, seed, out, progress, clock, force: see :func:`run`.
+        sources: programs that steer the simulation.
 
     >>> from crowdbot.models import ORCA
     >>> record(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
     'finished'
     """
-    tally, outcome, simulation = _record(EpisodeStatistics, trial, seed, out, progress, clock, force)
+    tally, outcome, simulation = _record(EpisodeStatistics, trial, seed, out, progress, clock, force, sources)
     warn_of_failure(simulation)
     path = None if out is None else episode_path(out)
     return tally.summary(outcome, simulation.tick, path, simulation.failures[0])
@@ -102,6 +107,7 @@ def _record(
     progress: Progress | None,
     clock: Clock | None,
     force: bool,
+    sources: Sequence[OrderSource] = (),
 ) -> tuple[T, str, Simulation]:
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
@@ -111,9 +117,9 @@ def _record(
         stop = stack.enter_context(catch_interrupt())
         sinks: list[Sink] = [tally]
         if out is None:
-            return tally, run_to_end(simulation, sinks, stop, progress), simulation
+            return tally, run_to_end(simulation, sinks, stop, progress, sources=sources), simulation
         recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force, simulation=simulation))
-        outcome = run_to_end(simulation, [tally, recorder], stop, progress)
+        outcome = run_to_end(simulation, [tally, recorder], stop, progress, sources=sources)
         recorder.complete(outcome, simulation.tick, simulation.failures[0])
         return tally, outcome, simulation
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import note, print_warnings
 
 if TYPE_CHECKING:
-    from crowdbot.simulation import RunSummary
+    from crowdbot.simulation import OrderSource, RunSummary
     from crowdbot.trials import Trial
 
 __all__ = ["add_bridge", "check_bridge_options", "run_with_bridge"]
@@ -24,8 +25,8 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
         "--bridge",
         action="append",
         metavar="NAME[:ADDRESS]",
-        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT; several are"
-        " possible",
+        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT, ros2[:DOMAIN],"
+        " foxglove[:PORT]; several are possible",
     )
     group.add_argument(
         "--clock",
@@ -42,7 +43,9 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run_with_bridge(trial: Trial, options: argparse.Namespace) -> tuple[RunSummary, float]:
+def run_with_bridge(
+    trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSource] = ()
+) -> tuple[RunSummary, float]:
     """Run a trial with bridges and return its summary and the real time [s].
 
     Raises:
@@ -70,6 +73,7 @@ def run_with_bridge(trial: Trial, options: argparse.Namespace) -> tuple[RunSumma
             BridgeClock(mode, options.pace or 1.0),
             options.force,
             note=lambda text: note(f"crowdbot: {text}"),
+            sources=sources,
         )
     return done, time.perf_counter() - begin
 

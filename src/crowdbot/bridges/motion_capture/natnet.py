@@ -1,0 +1,262 @@
+"""NatNetStream: rigid bodies and skeletons from OptiTrack Motive, by the NatNet protocol."""
+
+from __future__ import annotations
+
+import ipaddress
+import select
+import socket
+import struct
+import time
+from collections.abc import Callable, Iterable
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+
+from . import natnet_packets as packets
+from .csv_take import FROM_Y_UP
+from .natnet_packets import Body, BoneDescription, Frame, ServerInfo
+from .pose_receiver import BadDatagram, PoseReceiver, bind_socket
+from .pose_stream import MotionSample
+from .rotations import normalize, to_matrices
+from .source_skeleton import SourceSkeleton
+
+__all__ = ["PORT", "NatNetStream"]
+
+Floats = NDArray[np.float64]
+PORT, DATA_PORT = 1510, 1511
+"""Default ports of the server for commands and for multicast frames."""
+FARTHEST = 1e4
+AGAIN = 0.5
+"""Time [s] between two requests, and between two signs of life."""
+LOCAL_OFFSET = 0.003
+"""Largest difference [m] between positions and offsets of bones if they are relative to their parents."""
+
+
+class NatNetStream(PoseReceiver):
+    """Receives rigid bodies and skeletons from Motive 2 or newer (NatNet 3.0 to 4.x), by unicast or multicast.
+
+    Subjects are called as in Motive. The server says which axis is up; without an answer, it is y, as by default. The
+    bones of a skeleton may be streamed in global or local coordinates.
+
+    Args:
+        server: address of the computer that runs Motive.
+        port: command port of the server.
+        monotonic: local clock [s].
+        timeout: longest time [s] to wait for the server.
+
+    Raises:
+        InputError: (when opened) the server does not answer, or is too old.
+    """
+
+    def __init__(
+        self,
+        server: str = "127.0.0.1",
+        port: int = PORT,
+        monotonic: Callable[[], float] = time.monotonic,
+        timeout: float = 5.0,
+    ) -> None:
+        super().__init__(monotonic)
+        self.server, self.port, self.timeout = server, port, timeout
+        self.info: ServerInfo | None = None
+        self.axes = FROM_Y_UP
+        self._names: dict[int, str] = {}
+        self._skeletons: dict[int, tuple[str, tuple[int, ...], SourceSkeleton, Floats]] = {}
+        self._command: socket.socket | None = None
+        self._sent = -1e9
+
+    def open_socket(self) -> socket.socket:
+        """Return the socket for answers and unicast frames."""
+        try:
+            local = "127.0.0.1" if ipaddress.ip_address(self.server).is_loopback else ""
+        except ValueError:
+            local = ""
+        return bind_socket(local, 0)
+
+    def name_sender(self, address: tuple[str, int]) -> str:
+        """Return the address of the sender: a server sends from more than one port."""
+        return address[0]
+
+    def begin(self, connection: socket.socket) -> socket.socket:
+        """Connect, wait until the server has described its bodies, and return the socket for frames."""
+        self._wait(connection)
+        self._command = connection
+        if self.info is None or self.info.multicast is None:
+            return connection
+        return _join(self.info.multicast, self.info.data_port or DATA_PORT, connection.getsockname()[0])
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the thread and close the sockets."""
+        super().__exit__(kind, error, trace)
+        if self._command is not None:
+            self._command.close()
+
+    def _wait(self, connection: socket.socket) -> None:
+        end, asked = self.monotonic() + self.timeout, -1e9
+        described = False
+        while not described:
+            now = self.monotonic()
+            if now > end:
+                what = "does not answer" if self.info is None else "does not describe its bodies"
+                reason = f" ({self.reason})" if self.reason else ""
+                raise InputError(
+                    f"the NatNet server {self.server}:{self.port} {what} within {self.timeout:g} s; is Broadcast Frame"
+                    f" Data on in Motive?{reason}"
+                )
+            if now - asked > AGAIN:
+                asked = now
+                self._ask(connection)
+            if select.select([connection], [], [], 0.05)[0]:
+                described = self._answer(connection)
+
+    def _ask(self, connection: socket.socket) -> None:
+        try:
+            if self.info is None:
+                self._send(connection, packets.CONNECT, b"Ping\0")
+            else:
+                self._send(connection, packets.REQUEST, b"UpAxis\0")
+                self._send(connection, packets.REQUEST_DESCRIPTIONS, b"")
+        except OSError as error:
+            raise InputError(f"cannot reach the NatNet server {self.server}:{self.port}: {error}") from None
+
+    def _answer(self, connection: socket.socket) -> bool:
+        """Take an answer of the server and return whether its bodies are known."""
+        try:
+            data, _ = connection.recvfrom(65536)
+            kind = _kind(data)
+            if kind == packets.SERVER_INFO:
+                self.info = packets.read_server(data)
+                self._ask(connection)
+            elif kind == packets.DESCRIPTIONS:
+                self._describe(data)
+                return True
+            elif kind == packets.RESPONSE:
+                self._take_axis(data)
+        except BadDatagram as error:
+            self._refuse(str(error))
+            if self.info is None and "too old" in str(error):
+                raise InputError(f"the NatNet server {self.server}:{self.port}: {error}") from None
+        except OSError as error:
+            self._refuse(str(error))
+        return False
+
+    def _send(self, connection: socket.socket, kind: int, payload: bytes) -> None:
+        connection.sendto(struct.pack("<HH", kind, len(payload)) + payload, (self.server, self.port))
+
+    def keep_alive(self, connection: socket.socket) -> None:
+        """Tell a unicast server that this client is there."""
+        now = self.monotonic()
+        if now - self._sent > AGAIN:
+            self._sent = now
+            try:
+                self._send(self._command or connection, packets.KEEP_ALIVE, b"")
+            except OSError as error:
+                self._refuse(str(error))
+
+    def decode(self, data: bytes) -> Iterable[tuple[str, MotionSample]]:
+        """Return the bodies in a frame; descriptions and answers are taken too."""
+        kind = _kind(data)
+        if kind == packets.DESCRIPTIONS:
+            self._describe(data)
+        elif kind == packets.RESPONSE:
+            self._take_axis(data)
+        elif kind == packets.FRAME and self.info is not None:
+            return list(self._samples(packets.read_frame(data, self.info.version)))
+        return []
+
+    def _take_axis(self, data: bytes) -> None:
+        if len(data) == 8 and struct.unpack_from("<i", data, 4)[0] == 2:
+            self.axes = np.eye(3)
+
+    def _describe(self, data: bytes) -> None:
+        bodies, skeletons = packets.read_descriptions(data, self.info.version if self.info else (3, 0))
+        self._names = {one.number: one.name for one in bodies}
+        found = {}
+        for number, (name, bones) in skeletons.items():
+            skeleton = self._skeleton(name, bones)
+            offsets = np.array([bone.offset for bone in bones])
+            found[number] = (name, tuple(bone.number for bone in bones), skeleton, offsets)
+        self._skeletons = found
+
+    def _skeleton(self, name: str, bones: list[BoneDescription]) -> SourceSkeleton:
+        """Return a skeleton in the T-pose, in which Motive gives all bones no rotation."""
+        index = {bone.number: k for k, bone in enumerate(bones)}
+        parents = [index.get(bone.parent, -1) for bone in bones]
+        rest = np.zeros((len(bones), 3))
+        for k, (bone, parent) in enumerate(zip(bones, parents, strict=True)):
+            if parent >= k:
+                raise BadDatagram(f"the bones of {name!r} are not in the order of the hierarchy")
+            rest[k] = self.axes @ np.array(bone.offset) + (rest[parent] if parent >= 0 else 0.0)
+        names = tuple(bone.name.removeprefix(f"{name}_") for bone in bones)
+        if not len(rest):
+            raise BadDatagram(f"skeleton {name!r} has no bones")
+        rest -= [*rest[0, :2], rest[:, 2].min() - 0.02]
+        try:
+            return SourceSkeleton(tuple(_long_name(one) for one in names), tuple(parents), rest)
+        except InputError as error:
+            raise BadDatagram(f"{name!r}: {error}") from None
+
+    def _samples(self, frame: Frame) -> Iterable[tuple[str, MotionSample]]:
+        for body in frame.bodies:
+            if body.valid and body.number in self._names:
+                position, rotation = self._poses([body])
+                yield self._names[body.number], MotionSample(frame.number, frame.time, position, rotation)
+        for number, bones in frame.skeletons.items():
+            if number in self._skeletons:
+                yield self._skeleton_sample(number, bones, frame)
+
+    def _skeleton_sample(self, number: int, bones: list[Body], frame: Frame) -> tuple[str, MotionSample]:
+        name, numbers, skeleton, offsets = self._skeletons[number]
+        own = {bone.number & 0xFFFF: bone for bone in bones}
+        missing = [one for one in numbers if one not in own]
+        if missing:
+            raise BadDatagram(f"a frame lacks {len(missing)} bones of {name!r}")
+        ordered = [own[one] for one in numbers]
+        position, rotation = self._poses(ordered)
+        places = np.array([bone.position for bone in ordered])
+        if np.all(np.abs(places[1:] - offsets[1:]) < LOCAL_OFFSET):
+            for k, parent in enumerate(skeleton.parents):
+                if parent >= 0:
+                    position[k] = position[parent] + rotation[parent] @ position[k]
+                    rotation[k] = rotation[parent] @ rotation[k]
+        return name, MotionSample(frame.number, frame.time, position, rotation, skeleton)
+
+    def _poses(self, bodies: list[Body]) -> tuple[Floats, Floats]:
+        """Return positions [m] and rotation matrices with x forward, y left, z up."""
+        position = np.array([body.position for body in bodies])
+        quaternion = normalize(np.array([[body.rotation[3], *body.rotation[:3]] for body in bodies]))
+        if quaternion is None or not np.all(np.abs(position) <= FARTHEST):
+            raise BadDatagram("a frame has values that are not finite or out of range")
+        return position @ self.axes.T, self.axes @ to_matrices(quaternion) @ self.axes.T
+
+
+def _join(group: str, port: int, local: str) -> socket.socket:
+    """Return a socket that receives the datagrams of a multicast group."""
+    connection = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        connection.bind((group, port))
+        member = socket.inet_aton(group) + socket.inet_aton(local)
+        connection.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+    except OSError as error:
+        connection.close()
+        raise InputError(f"cannot receive from the multicast group {group}:{port}: {error.strerror or error}") from None
+    return connection
+
+
+def _kind(data: bytes) -> int:
+    if len(data) < 4:
+        raise BadDatagram(f"{len(data)} bytes are less than a header")
+    kind, size = struct.unpack_from("<HH", data)
+    if size != len(data) - 4:
+        raise BadDatagram(f"the payload has {len(data) - 4} bytes, the header says {size}")
+    return int(kind)
+
+
+def _long_name(name: str) -> str:
+    """Return the name of a bone with its side and part in full: Motive calls a left forearm LFArm."""
+    return {"LHand": "LeftHand", "RHand": "RightHand", "LFoot": "LeftFoot", "RFoot": "RightFoot"}.get(name, name)

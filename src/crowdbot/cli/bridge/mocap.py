@@ -1,0 +1,56 @@
+"""``crowdbot run TRIAL --mocap SOURCE=NAME``: motion capture that moves people and robots."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from crowdbot.cli.output import note
+
+if TYPE_CHECKING:
+    from crowdbot.bridges import MotionCapture
+    from crowdbot.trials import Trial
+
+__all__ = ["add_mocap", "open_captures", "print_captures"]
+
+
+def add_mocap(parser: argparse.ArgumentParser) -> None:
+    """Declare the option ``--mocap``."""
+    parser.add_argument(
+        "--mocap",
+        action="append",
+        default=[],
+        metavar="SOURCE=NAME",
+        help="motion capture that moves an avatar or mirrored robot: xsens:9763=guide, natnet:HOST#Cart=twin or"
+        " walk.bvh=guide@X,Y,HEADING; repeatable",
+    )
+
+
+def open_captures(trial: Trial, options: argparse.Namespace, stack: contextlib.ExitStack) -> list[MotionCapture]:
+    """Return the motion captures of the command line, open; live ones set the pace to real time.
+
+    Raises:
+        InputError: a source cannot be opened, a name is not in the trial, or the pace does not fit.
+    """
+    from crowdbot.core import InputError
+
+    if not options.mocap:
+        return []
+    from crowdbot.bridges import parse_captures
+
+    captures = parse_captures(options.mocap, trial)
+    if any(one.stream.live for one in captures):
+        if options.pace not in (None, 1.0):
+            raise InputError(f"--pace {options.pace:g} does not fit live motion capture, which needs real time")
+        if options.clock not in (None, "paced"):
+            raise InputError(f"--clock {options.clock} does not fit live motion capture, which needs real time")
+        options.pace = 1.0
+    return [stack.enter_context(one) for one in captures]
+
+
+def print_captures(captures: Sequence[MotionCapture]) -> None:
+    """Print what motion captures have received."""
+    for remark in (remark for one in captures for remark in one.remarks()):
+        note(f"motion capture {remark}")
