@@ -43,7 +43,8 @@ HISTORY = 1500
 """Instants of the live values that a new window gets."""
 AVATAR = "you"
 """Name of the person that the user moves."""
-WAIT = 30.0
+WAIT = 8.0
+"""Longest time [s] that closing waits for a run, which may be compiling and then ends by itself."""
 
 
 class SimulatorDesk(SteeringDesk):
