@@ -46,7 +46,7 @@ def serve(folder, desks=DESKS, **options):
         yield box["server"]
     finally:
         box["loop"].call_soon_threadsafe(box["stop"].set)
-        thread.join(20)
+        thread.join(60)
         assert not thread.is_alive()
 
 

@@ -59,7 +59,10 @@ export class Scene3D {
     }
     this._showLayers();
     this._resize();
-    if (moved) this._views.overview(description);
+    if (moved) {
+      this._views.overview(description);
+      if (this._views.name === "free" && description.robots.length) this._views.choose("beside", description, null);
+    }
   }
 
   /** Takes a frame of the channel "scene"; false if the description must be loaded again first. */

@@ -1,4 +1,4 @@
-// Views: the cameras of a scene: free, overview, follow, and from a robot.
+// Views: the cameras of a scene: free, overview, beside, follow, and from a robot.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
@@ -19,7 +19,7 @@ export class Views {
     this.controls.zoomToCursor = true;
     this.name = "free";
     this._target = null;
-    this._yaw = 0;
+    this._last = null;
     canvas.addEventListener("keydown", (event) => this._key(event));
   }
 
@@ -28,6 +28,7 @@ export class Views {
     return [
       { name: "free", title: "Free" },
       { name: "overview", title: "Overview" },
+      { name: "beside", title: "Beside" },
       { name: "follow", title: "Follow" },
       ...description.robots.map((one) => ({ name: `robot:${one.name}`, title: `From ${one.name}` })),
     ];
@@ -42,6 +43,7 @@ export class Views {
     this.camera.updateProjectionMatrix();
     if (name === "overview") this.overview(description, true);
     if (name === "follow") this._start = true;
+    this._last = null;
   }
 
   set target(target) {
@@ -97,6 +99,7 @@ export class Views {
   update(state) {
     if (!state.frame) return;
     if (this.name === "follow") this._follow(state);
+    else if (this.name === "beside") this._accompany(state);
     else if (this.name.startsWith("robot:")) this._ride(state);
     else this.controls.update();
   }
@@ -142,6 +145,19 @@ export class Views {
       this.camera.position.add(goal.clone().sub(this.controls.target));
     }
     this.controls.target.copy(goal);
+    this.controls.update();
+  }
+
+  /** Moves with the robot and keeps the direction and the distance of the view. */
+  _accompany(state) {
+    const target = this.followed(state);
+    if (target) {
+      const [x, y] = state.place(target.kind, target.id);
+      const way = new THREE.Vector3(x, y, 0).sub(this._last ?? new THREE.Vector3(this.controls.target.x, this.controls.target.y, 0));
+      this.controls.target.add(way);
+      this.camera.position.add(way);
+      this._last = new THREE.Vector3(x, y, 0);
+    }
     this.controls.update();
   }
 

@@ -22,14 +22,14 @@ from crowdbot.sensors import (
     put_state_rows,
     take_state_rows,
 )
-from crowdbot.trials import Mount, RobotSpec
-from crowdbot.world import MountPlacement, World, wheel_geometry, wheel_rotation
+from crowdbot.trials import Mount, RobotSpec, Trial
+from crowdbot.world import MountPlacement, PlanarWorld, World, wheel_geometry, wheel_rotation
 
 from .readings.old_people import arrival_of, known_people, people_then
 from .readings.reading_names import name_by_id, tracked_columns
 from .world_view import WorldView
 
-__all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "spatial"]
+__all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "needs_bodies", "spatial"]
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -308,6 +308,14 @@ class MountedSensor:
             self.seen[environments] = _fit(new, agents)
             if other.seen_ids is not None:
                 self.seen_ids[environments] = _fit(other.seen_ids, agents)
+
+
+def needs_bodies(trial: Trial) -> bool:
+    """Return whether a world needs bodies of people: in physics, or for sensors that see them."""
+    if trial.world == "physics":
+        return True
+    kind = trial.bodies or PlanarWorld.people_shape
+    return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
 
 
 def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:

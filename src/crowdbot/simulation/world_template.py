@@ -31,7 +31,7 @@ from crowdbot.trials import (
 )
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
-from .mounted_sensor import spatial
+from .mounted_sensor import needs_bodies
 from .robot_control import RobotControl
 from .world_builder import (
     avatars_of,
@@ -153,11 +153,7 @@ class WorldTemplate:
     @functools.cached_property
     def _embodied(self) -> bool:
         """Whether anything needs the bodies of people."""
-        trial = self.trial
-        if trial.world == "physics":
-            return True
-        kind = trial.bodies or PlanarWorld.people_shape
-        return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
+        return needs_bodies(self.trial)
 
     @functools.cached_property
     def _walls(self) -> Any:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from crowdbot.core import InputError
+from crowdbot.simulation.mounted_sensor import needs_bodies
 from crowdbot.trials import Trial, add_element, needs_trust, remove_element
 
 from .trial_order import TrialOrder
@@ -40,7 +42,13 @@ class AddElementOrder(TrialOrder):
         """Return the trial with the element."""
         trial: Trial = simulation.trial
         place = f"order add-element of trial {trial.name!r}"
-        return add_element(trial, self.xml, self.parent, place=place, trust=needs_trust(trial))
+        new = add_element(trial, self.xml, self.parent, place=place, trust=needs_trust(trial))
+        if needs_bodies(new) and not needs_bodies(trial):
+            raise InputError(
+                f"{place}: a sensor of the new element sees the bodies of people, and this run has none; run the trial"
+                ' with bodies="limbs" and a sensor, or give the element sensors that measure discs, such as lidar2d'
+            )
+        return new
 
 
 @dataclass(frozen=True, kw_only=True)
