@@ -197,7 +197,8 @@ def test_a_snapshot_of_a_changed_run_continues_alike(world: str) -> None:
 def test_a_robot_that_sees_bodies_is_refused_in_a_run_without_bodies():
     simulation = Simulation(corridor("planar"), 0)
     order = AddElementOrder(
-        xml='<robot name="second" type="turtlebot2" sensor-rates="nearest" x="-3" y="-1"><goal x="3" y="-1"/><navigator type="orca"/></robot>'
+        xml='<robot name="second" type="turtlebot2" sensor-rates="nearest" x="-3" y="-1"><goal x="3" y="-1"/>'
+        '<navigator type="orca"/></robot>'
     )
     with pytest.raises(
         InputError, match=r'sees the bodies of people, and this run has none; run the trial with bodies="l'
