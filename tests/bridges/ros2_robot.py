@@ -95,4 +95,5 @@ def main():
     other.try_shutdown()
 
 
-main()
+if __name__ == "__main__":
+    main()

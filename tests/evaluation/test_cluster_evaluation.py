@@ -11,6 +11,7 @@ from crowdbot.trials import load_trial
 
 FATAL = """
 import os, signal
+from pathlib import Path
 from dataclasses import dataclass
 from crowdbot.core import Twist
 from crowdbot.navigation import Navigator
@@ -27,6 +28,7 @@ class Fatal(Navigator):
 """
 PROGRAM = """
 import importlib, json, os
+from pathlib import Path
 from crowdbot.core import CrowdbotError, InputError, each
 from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.trials import load_trial

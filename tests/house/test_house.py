@@ -78,7 +78,7 @@ def test_no_test_lacks_an_assertion_is_skipped_or_reads_the_clock():
 def _asserts(function):
     return any(
         isinstance(n, ast.Assert)
-        or (isinstance(n, ast.Call) and re.search(r"raises|assert|check|warns", ast.unparse(n.func)))
+        or (isinstance(n, ast.Call) and re.search(r"raises|assert|check|warns|^expect\(", ast.unparse(n.func)))
         for n in ast.walk(function)
     )
 

@@ -45,7 +45,8 @@ class DeskCaller:
     def wait(self, before, seconds=180):
         end = time.monotonic() + seconds
         while len(self.events("ended")) == before:
-            assert time.monotonic() < end, self.session.events[-3:]
+            if time.monotonic() > end:
+                raise TimeoutError(str(self.session.events[-3:]))
             time.sleep(0.02)
         return self.events("ended")[-1]
 

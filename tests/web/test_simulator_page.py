@@ -22,7 +22,8 @@ def wait(page, expression, seconds=60.0):
     """Wait until a JavaScript expression is true; the page forbids functions made from text."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
-        assert time.monotonic() < end, f"{expression}: {page.evaluate(f'JSON.stringify({VIEW}.status)')[:500]}"
+        if time.monotonic() > end:
+            raise TimeoutError(f"{expression}: {page.evaluate(f'JSON.stringify({VIEW}.status)')[:500]}")
         page.wait_for_timeout(50)
 
 

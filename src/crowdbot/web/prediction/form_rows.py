@@ -53,9 +53,9 @@ def form_rows(cls: type) -> list[Row]:
     """Return the fields of a dataclass that are numbers, switches or choices, for a form of the page.
 
     >>> from crowdbot.models import ORCA
-    >>> row = form_rows(ORCA)[0]
-    >>> row["name"], row["unit"], row["kind"]
-    ('time_horizon', 's', 'number')
+    >>> row = {row["name"]: row for row in form_rows(ORCA)}["time_horizon"]
+    >>> row["unit"], row["kind"]
+    ('s', 'number')
     """
     table = {row.name: row for row in parameters(cls)}
     hints = typing.get_type_hints(cls)
