@@ -36,13 +36,13 @@ class DeskCaller:
     def events(self, name):
         return [data for event, data in list(self.session.events) if event == f"prediction.{name}"]
 
-    def run(self, seconds=180, **arguments):
+    def run(self, seconds=400, **arguments):
         """Run all predictors to the end."""
         before = len(self.events("ended"))
         self("run", **arguments)
         return self.wait(before, seconds)
 
-    def wait(self, before, seconds=180):
+    def wait(self, before, seconds=400):
         end = time.monotonic() + seconds
         while len(self.events("ended")) == before:
             if time.monotonic() > end:

@@ -27,7 +27,7 @@ class Windows:
         return next(data for name, data in reversed(self.events) if name == event)
 
 
-def wait_until(condition, seconds=100.0):
+def wait_until(condition, seconds=300.0):
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:

@@ -13,7 +13,7 @@ def results(page):
     page.get_by_label("Navigators").fill("straight, orca")
     page.get_by_label("Seeds").fill("0:2")
     page.get_by_role("button", name="Run", exact=True).click()
-    page.get_by_role("heading", name="first").wait_for(timeout=120_000)
+    page.get_by_role("heading", name="first").wait_for(timeout=300_000)
     return page
 
 

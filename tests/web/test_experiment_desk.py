@@ -25,12 +25,12 @@ def desk(tmp_path):
 
 
 def wait_for(desk, *phases):
-    for _ in range(1200):
+    for _ in range(6000):
         state = desk.greet()
         if not state["open"] or state["phase"] in phases:
             return state
         time.sleep(0.05)
-    raise AssertionError(f"{state['phase']} after a minute")
+    raise AssertionError(f"{state['phase']} after five minutes")
 
 
 def go_through(desk, until=("done",)):

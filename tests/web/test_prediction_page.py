@@ -11,7 +11,7 @@ from playwright.sync_api import expect
 from crowdbot.cli import main
 
 LONG = 180_000
-expect.set_options(timeout=60_000)
+expect.set_options(timeout=180_000)
 
 TAB = "#tab=prediction"
 

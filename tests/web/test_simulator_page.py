@@ -18,7 +18,7 @@ FIRST_RUN = 300_000
 """Longest time [ms] of a first run, which compiles kernels."""
 
 
-def wait(page, expression, seconds=60.0):
+def wait(page, expression, seconds=180.0):
     """Wait until a JavaScript expression is true; the page forbids functions made from text."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
