@@ -293,3 +293,14 @@ def test_the_server_stops_while_a_command_runs(tmp_path):
         assert any(one.name == "crowdbot-counter" for one in threading.enumerate())
     finally:
         GOES_ON.set()
+
+
+def test_a_port_in_use_is_told(tmp_path):
+    async def talk(server, client):
+        port = int(server.url.rsplit(":", 1)[1].strip("/"))
+        with pytest.raises(InputError, match=f"cannot listen on 127.0.0.1 port {port}: .*; give another --port"):
+            async with AppServer((), tmp_path, port=port).running():
+                pass
+        return port
+
+    assert serve(tmp_path, talk) > 0

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from aiohttp import WSCloseCode, web
 
-from crowdbot.core import CrowdbotError
+from crowdbot.core import CrowdbotError, InputError
 
 from .access import COOKIE, AccessPolicy
 from .app_session import AppSession
@@ -104,13 +104,19 @@ class AppServer:
         """Serve inside the block.
 
         Raises:
-            OSError: the port is in use.
+            InputError: the address is not one of this machine, or the port is in use.
         """
         runner = web.AppRunner(self.application(), access_log=None, shutdown_timeout=2.0)
         await runner.setup()
         try:
             site = web.TCPSite(runner, self.host, self.port, ssl_context=self.tls)
-            await site.start()
+            try:
+                await site.start()
+            except OSError as error:
+                place = f"{self.host} port {self.port}"
+                raise InputError(
+                    f"the app cannot listen on {place}: {error.strerror or error}; give another --port (0: a free one)"
+                ) from None
             host, port = runner.addresses[0][:2]
             shown = f"[{host}]" if ":" in host else host
             token = f"?token={self.access.token}" if self.access.needs_token else ""

@@ -57,7 +57,9 @@ class FoxgloveServer:
         if not 0 <= port <= 65535:
             raise InputError(f"port {port} must be from 0 to 65535")
         if not _is_loopback(host) and topics is None:
-            raise InputError(f"a server on {host} is open to everybody; give a list of allowed topics and services")
+            raise InputError(
+                f"a server on {host} is open to everybody; give a list of allowed topics and services, --bridge-topics"
+            )
         self.port, self.host = port, host
         self.topics = None if topics is None else tuple(topics)
         self.now = 0

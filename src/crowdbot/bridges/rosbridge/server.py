@@ -64,7 +64,8 @@ class RosbridgeServer:
             raise InputError(f"port {port} must be from 0 to 65535")
         if not _is_loopback(host) and not token and topics is None:
             raise InputError(
-                f"a server on {host} is open to everybody; give a token or a list of allowed topics and services"
+                f"a server on {host} is open to everybody; give a token (--bridge-token) or a list of allowed topics"
+                " and services (--bridge-topics)"
             )
         self.port, self.host, self.token = port, host, token
         self.topics = None if topics is None else tuple(topics)
