@@ -37,7 +37,9 @@ def plain(cells):
     )
 
 
-@pytest.mark.parametrize("kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
+)
 def test_a_killed_evaluation_ends_with_the_same_table(tmp_path, kills):
     words = ["evaluate", "circle-crossing", "--navigators", "straight, orca", "--set", "duration=3"]
     run_killed(tmp_path, [*words, "--seeds", "0:70", "--worst", "1"], kills, seed=kills)

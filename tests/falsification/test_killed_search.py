@@ -15,7 +15,9 @@ WORDS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
+)
 @pytest.mark.parametrize("search", ["cross-entropy", pytest.param("cma-es", marks=pytest.mark.sweep)])
 def test_a_killed_search_ends_with_the_same_table(tmp_path: Path, kills: int, search: str) -> None:
     runs = "200" if kills == FEW else "400"

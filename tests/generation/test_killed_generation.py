@@ -12,7 +12,9 @@ from killed_runs import FEW, MANY, run_killed
 WORDS = ["generate", "crossing-flows", "--set", "duration=2", "--sensors", "sick-tim571@10", "--shard-size", "1"]
 
 
-@pytest.mark.parametrize("kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
+)
 @pytest.mark.parametrize("kind", ["npz", pytest.param("mcap", marks=pytest.mark.sweep)])
 def test_a_killed_generation_ends_with_the_same_files(tmp_path: Path, kills: int, kind: str) -> None:
     seeds = "0:40" if kind == "npz" else "0:12"

@@ -17,7 +17,9 @@ WORDS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
+)
 def test_a_killed_training_ends_with_the_same_weights(tmp_path: Path, kills: int) -> None:
     run_killed(tmp_path, WORDS, kills, seed=kills, resume=(CHECKPOINT, "--resume"))
     whole, killed = (PolicyWeights.read(tmp_path / name / POLICY_FILE) for name in ("whole", "killed"))

@@ -29,7 +29,7 @@ def test_a_participant_answers_and_watches_while_the_operator_controls(experimen
     participant.get_by_role("button", name="Continue").click()
     participant.get_by_text("First one trial for practice").wait_for()
     participant.get_by_role("button", name="Continue").click()
-    participant.wait_for_function("() => crowdbot._views.get('experiments').tab.trial.frame !== null")
+    participant.wait_for_function("() => crowdbot._views.get('experiments').tab.trial.newest")
     participant.get_by_text("Now the robot meets a person").wait_for()
 
     operator.get_by_text("alone (trial):").wait_for()

@@ -12,6 +12,7 @@ from crowdbot.simulation import AddElementOrder, AddPersonOrder, Simulation
 from crowdbot.trials import load_trial, parse_trial
 from crowdbot.web import StateFrame
 from crowdbot.web.scene import LAYERS, scene_description, scene_frame, scene_resource
+from crowdbot.web.simulator.walking_bodies import WalkingBodies
 from crowdbot.world import simulated_body, worlds_of
 
 HALL = """
@@ -215,3 +216,11 @@ def test_meshes_are_those_of_the_asset(hall):
     assert len(robot["first"]) == len(scene_description(hall)["robots"][0]["links"])
     assert robot["faces"].max() == len(robot["vertices"]) - 1
     assert len(robot["color"]) == len(robot["faces"])
+
+
+def test_a_scene_without_people_has_a_frame():
+    simulation = Simulation(load_trial("empty-corridor"), 0)
+    bodies = WalkingBodies(simulation)
+    frame = StateFrame.decode(scene_frame(simulation, (), bodies.motion).encode())
+    assert frame.arrays["bones"].shape == (0, 112)
+    assert len(frame.arrays["bots"]) == 1

@@ -3,13 +3,13 @@ import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
 import { pageNodes } from "./page_nodes.mjs";
 import { makeQuestions } from "./questions.mjs";
-import { TrialCanvas } from "./trial_canvas.mjs";
+import { Picture } from "../simulator/picture.mjs";
 
 class ExperimentsTab {
   constructor(root, app) {
     Object.assign(this, { root, app, state: { open: false }, form: null });
     this.participant = app.address.get("role") === "participant";
-    this.trial = new TrialCanvas();
+    this.trial = new Picture(app, { select() {}, place() {} }, "experiments");
     this.screen = h("div", { class: "screen", "aria-live": "polite" });
     this.side = h("aside", { "aria-label": "Operator" });
     root.classList.add("experiments");
@@ -17,7 +17,7 @@ class ExperimentsTab {
     fill(root, this.screen, this.participant ? null : this.side);
     app.connection.on("experiments.state", (state) => this.update(state));
     app.connection.on("experiments.progress", (share) => this.progress(share));
-    app.connection.draw("trial", (frame) => this.trial.show(frame));
+    app.connection.draw("trial", (frame) => this.trial.take(frame));
   }
 
   async call(command, args = {}) {
@@ -80,8 +80,8 @@ class ExperimentsTab {
 
   showTrial() {
     this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress of the trial" });
-    fill(this.screen, h("h2", {}, "Watch the trial"), this.trial.element, this.bar);
-    this.trial.setStage(this.state.stage);
+    fill(this.screen, h("h2", {}, "Watch the trial"), h("div", { class: "trial" }, this.trial.element), this.bar);
+    this.trial.wake();
   }
 
   progress(share) {

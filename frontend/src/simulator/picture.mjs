@@ -12,9 +12,11 @@ export class Picture {
   /**
    * @param {object} app the page
    * @param {{select(hit), place(point)}} actions what clicks do: hit {kind, id} or null; place x, y [m] of the floor
+   * @param {string} desk the desk that sends the frames
    */
-  constructor(app, actions) {
+  constructor(app, actions, desk = "simulator") {
     this.app = app;
+    this.desk = desk;
     this.actions = actions;
     this.placing = false;
     this.frames = 0;
@@ -76,13 +78,13 @@ export class Picture {
     this.scene.dispose();
     this._make(view);
     this.app.remember({ view });
-    this.app.connection.call("simulator.show_frame").catch(() => {});
+    this.app.connection.call(`${this.desk}.show_frame`).catch(() => {});
   }
 
   _make(view) {
     this.canvas = h("canvas", { class: "stage", tabindex: "0", role: "img", "aria-label": "Picture of the simulation" });
     this.place.replaceChildren(this.canvas);
-    const resource = (path, query) => this.app.connection.address("simulator", path, query);
+    const resource = (path, query) => this.app.connection.address(this.desk, path, query);
     this.view = view === "2d" ? "2d" : "3d";
     try {
       this.scene = this.view === "2d" ? new Scene2D(this.canvas, resource) : new Scene3D(this.canvas, resource);
@@ -152,7 +154,7 @@ export class Picture {
 
   async _load() {
     try {
-      const description = await this.app.connection.call("simulator.description");
+      const description = await this.app.connection.call(`${this.desk}.description`);
       if (description.revision !== undefined) {
         await this.scene.load(description);
         this.actions.loaded?.(description);
@@ -162,6 +164,6 @@ export class Picture {
     } finally {
       this._loading = null;
     }
-    this.app.connection.call("simulator.show_frame").catch(() => {});
+    this.app.connection.call(`${this.desk}.show_frame`).catch(() => {});
   }
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from crowdbot.core import Clock
 from crowdbot.recording import open_run
-from crowdbot.simulation import Episode, EpisodeLog, SimulationRun, Sink
+from crowdbot.simulation import Episode, EpisodeLog, Simulation, SimulationRun, Sink
 from crowdbot.trials import Trial
 
 __all__ = ["Aborted", "BackgroundRun"]
@@ -54,6 +54,11 @@ class BackgroundRun:
         self._error: Exception | None = None
         self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in all Python versions
         threading.Thread(target=self._run, args=(trial, seed, out, clock, sinks), daemon=True).start()
+
+    @property
+    def simulation(self) -> Simulation | None:
+        """The simulation; None before it is built."""
+        return None if self._running is None else self._running.simulation
 
     def hold(self) -> None:
         """Pause the run."""

@@ -27,10 +27,10 @@ from crowdbot.experiments import (
     summary,
 )
 from crowdbot.web.command import command
-from crowdbot.web.desk import Desk, DeskWindows
+from crowdbot.web.desk import Desk, DeskWindows, Resource
 
 from .question_form import question_form
-from .trial_view import TrialView, stage_outline
+from .trial_view import TrialView
 
 __all__ = ["ExperimentDesk"]
 
@@ -49,7 +49,7 @@ class ExperimentDesk(Desk):
         self._runner: SessionRunner | None = None
         self._run: BackgroundRun | None = None
         self._rate = 1.0
-        self._stage: dict[str, Any] = {}
+        self._view: TrialView | None = None
         self._shown = ""
         self._lock = threading.RLock()
 
@@ -137,6 +137,23 @@ class ExperimentDesk(Desk):
             return self._tell()
 
     @command
+    def description(self) -> dict[str, Any]:
+        """Return what stands still in the trial that runs."""
+        return {} if self._view is None else self._view.description
+
+    @command
+    def show_frame(self) -> None:
+        """Show the next step of the trial in all windows."""
+        if self._view is not None:
+            self._view.refresh()
+
+    def resource(self, path: str, query: dict[str, str]) -> Resource:
+        """Return meshes of the trial that runs."""
+        if self._view is None:
+            raise KeyError(path)
+        return self._view.resource(path, query)
+
+    @command
     def answers(self) -> list[dict[str, Any]]:
         """Return the answers of all participants of the experiment, as ``crowdbot experiment summary`` has them."""
         with self._lock:
@@ -176,9 +193,9 @@ class ExperimentDesk(Desk):
 
     def _begin(self, runner: SessionRunner) -> None:
         trial, seed, folder = runner.begin()
-        self._stage, self._shown = stage_outline(trial), ""
+        self._shown, self._view = "", TrialView(self.session)
         clock = PacedClock(trial.step, rate=self._rate)
-        self._run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, [TrialView(self.session)])
+        self._run = self._view.run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, [self._view])
         threading.Thread(target=self._watch, args=(self._run, folder), daemon=True).start()
 
     def _watch(self, run: BackgroundRun, folder: Path) -> None:
@@ -225,7 +242,6 @@ class ExperimentDesk(Desk):
             "html": page.html if page else "",
             "questions": [question_form(one) for one in screen.questions] if screen else [],  # type: ignore[arg-type]
             "answers": dict(now.answers.get(now.index, {})),
-            "stage": self._stage if now.phase in ("running", "pause") else {},
             "outcomes": {str(index): one.outcome for index, one in now.results.items()},
             "rate": self._rate,
         }

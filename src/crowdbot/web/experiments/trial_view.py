@@ -1,42 +1,61 @@
-"""TrialView: the people and robots of a running trial for the screens of an experiment."""
+"""TrialView: the picture of a running trial for the screens of an experiment."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
+from crowdbot.experiments import BackgroundRun
 from crowdbot.simulation import StepRecord
-from crowdbot.trials import Trial
-from crowdbot.web.desk import DeskWindows
-from crowdbot.web.state_frame import StateFrame
+from crowdbot.web.desk import DeskWindows, Resource
+from crowdbot.web.scene import scene_resource
+from crowdbot.web.simulator import StageView
 
-__all__ = ["TrialView", "stage_outline"]
+__all__ = ["TrialView"]
 
 
 class TrialView:
-    """A sink of step records that shows the scene to the windows of a session.
+    """A sink of step records that shows the simulation to the windows of a session, on the channel ``trial``.
+
+    Frames and description are made in the thread of the run.
 
     Args:
         session: the windows.
+
+    Attributes:
+        run: the run that is shown; set after its start.
+        description: what stands still; empty before the first step.
     """
 
     def __init__(self, session: DeskWindows) -> None:
-        self._session = session
+        self._view = StageView(session, channel="trial")
+        self._always = True
+        self._shown: Any = None
+        self.run: BackgroundRun | None = None
+        self.description: dict[str, Any] = {}
 
     def take(self, frame: StepRecord) -> None:
         """Show a step."""
-        scene = frame.scene
-        rows = np.column_stack([scene.position[0], scene.heading[0], scene.radius[0]]).astype(np.float32)
-        robot = np.isin(frame.ids, frame.robot_ids)
-        here = scene.active[0]
-        arrays = {"people": rows[here & ~robot], "robots": rows[here & robot]}
-        self._session.show(StateFrame("trial", frame.nanoseconds * 1e-9, arrays))
+        simulation = self.run.simulation if self.run is not None else None
+        if simulation is None:
+            return
+        if simulation is not self._shown:
+            self._shown = simulation
+            self._view.open(simulation)
+        if not self.description or self._always:
+            self.description = self._view.description()
+        self._view.show(self._always)
+        self._always = False
 
+    def refresh(self) -> None:
+        """Show the next step and describe it anew, for a window that has just been opened."""
+        self._always = True
 
-def stage_outline(trial: Trial) -> dict[str, Any]:
-    """Return the walls and goals of a trial as JSON."""
-    return {
-        "rings": [np.round(ring, 3).tolist() for ring in trial.stage.rings],
-        "goals": [[robot.goal.x, robot.goal.y, robot.goal.tolerance] for robot in trial.robots],
-    }
+    def resource(self, path: str, query: dict[str, str]) -> Resource:
+        """Return meshes of bodies and robots.
+
+        Raises:
+            KeyError: there is no such file, or nothing is shown.
+        """
+        if self._shown is None:
+            raise KeyError(path)
+        return scene_resource(self._shown, path, query)

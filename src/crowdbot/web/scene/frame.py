@@ -71,13 +71,14 @@ def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: Pe
     rows = np.flatnonzero(active[motion.agents])
     agents = motion.agents[rows]
     posture = motion.posture()
+    bones = np.round(BONE_UNIT * quaternions(posture.rotation[rows]))
     arrays: Arrays = {
         "revision": np.array([scene_revision(simulation, motion)], dtype=np.uint32),
         "who": rows.astype(np.uint16),
         "ids": simulation.world.ids[0, agents].astype(np.int32),
         "place": _places(scene, agents),
         "pelvis": posture.position[rows, 0].astype(np.float32),
-        "bones": np.round(BONE_UNIT * quaternions(posture.rotation[rows])).astype(np.int16).reshape(len(rows), -1),
+        "bones": bones.astype(np.int16).reshape(len(rows), 4 * posture.rotation.shape[1]),
     }
     arrays |= _robots(simulation, scene) | _things(simulation)
     for layer in layers:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 from crowdbot.simulation import Simulation
@@ -28,10 +29,11 @@ class StageView:
     Args:
         session: the windows.
         layers: names of the layers that a window shows.
+        channel: channel of the frames.
     """
 
-    def __init__(self, session: DeskWindows, layers: frozenset[str] = frozenset()) -> None:
-        self.session, self.layers = session, layers
+    def __init__(self, session: DeskWindows, layers: frozenset[str] = frozenset(), channel: str = "scene") -> None:
+        self.session, self.layers, self.channel = session, layers, channel
         self._bodies: WalkingBodies | None = None
         self._simulation: Simulation | None = None
         self._shown = self._told = 0.0
@@ -65,7 +67,8 @@ class StageView:
         layers = [name for name in LAYERS if name in self.layers]
         begin = time.thread_time()
         self._bodies.follow(self._simulation)
-        self.session.show(scene_frame(self._simulation, layers, self._bodies.motion))
+        frame = scene_frame(self._simulation, layers, self._bodies.motion)
+        self.session.show(replace(frame, channel=self.channel))
         self._cost = time.thread_time() - begin
         return True
 
