@@ -6,6 +6,7 @@ from mesh_texts import BOX_DAE, BOX_MTL, BOX_OBJ, PAINT, PNG, box_glb
 
 from crowdbot.cli import main
 from crowdbot.world import Robot, read_urdf
+from crowdbot.world.rendering import gl_context
 from crowdbot.world.rendering.gl_context import close_gl_context, create_gl_context
 from crowdbot.world.urdf import mjcf
 
@@ -119,3 +120,24 @@ def test_colours_of_points_are_drawn(tmp_path):
     shape = read_urdf(tmp_path / "r.urdf").links["a"].visuals[0].shape
     assert len(np.unique(shape.colors, axis=0)) > 4
     assert mjcf(read_urdf(tmp_path / "r.urdf")).load().ngeom > 4
+
+
+class Context:
+    """An OpenGL context that is current in another thread."""
+
+    free_calls = 0
+
+    def make_current(self):
+        raise RuntimeError("EGL_BAD_ACCESS")
+
+    def free(self):
+        self.free_calls += 1
+
+
+def test_a_context_that_another_thread_uses_stays_until_the_end(monkeypatch):
+    context = Context()
+    monkeypatch.setattr(gl_context, "OPEN", [context])
+    monkeypatch.setattr(gl_context, "BUSY", [])
+    close_gl_context(context, context)
+    assert gl_context.OPEN == gl_context.BUSY == [context]
+    assert context.free_calls == 0

@@ -19,6 +19,8 @@ KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
 OPEN: list[Any] = []
 """Contexts in use."""
+BUSY: list[Any] = []
+"""Renderers whose context is current in another thread."""
 LONGEST = 60.0
 """Timeout of the test of a backend [s]."""
 
@@ -71,10 +73,17 @@ def create_gl_context(width: int, height: int) -> Any:
 
 
 def close_gl_context(context: Any, drawn_by: Any) -> None:
-    """Free a context and the renderer that uses it."""
+    """Free a context and the renderer that uses it.
+
+    A context that is current in another thread stays until the program ends: no other thread can free it.
+    """
     if context in OPEN:
+        try:
+            context.make_current()
+        except Exception:  # each backend raises its own errors
+            BUSY.append(drawn_by)
+            return
         OPEN.remove(context)
-        context.make_current()
         drawn_by.free()
         context.free()
 
