@@ -102,8 +102,8 @@ def _remove_stale(path: Path, lock: Path) -> None:
         return
     pid, _, host = text.strip().partition(" ")
     if not pid.isdigit():
-        if age < WRITING:
-            time.sleep(0.05)
+        if age < WRITING:  # its process is writing it, or was killed before; the attempts last longer than WRITING
+            time.sleep(0.3)
             return
     elif host != socket.gethostname():
         raise InputError(f"{path} is being written by process {pid} on {host}; if that run has ended, delete {lock}")
