@@ -202,6 +202,7 @@ def test_axe_finds_nothing_in_both_themes(page, tmp_path):
         page.get_by_role("button", name="Theme").click()
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # the cut connection, at its deletion
 def test_a_lost_server_is_said_and_the_page_connects_again(page, app):
     page.evaluate("window.crowdbot.connection._socket.close()")
     page.wait_for_selector(".connection.lost")

@@ -130,6 +130,7 @@ class AppServer:
             if closing:  # a desk that is still busy then ends with the program
                 await asyncio.wait(closing, timeout=CLOSING)
             self.sessions.clear()
+            await asyncio.sleep(0.2)  # connections that windows have cut are closed by the loop
 
     def application(self) -> web.Application:
         """Return the aiohttp application."""
