@@ -165,6 +165,7 @@ def test_a_file_is_uploaded_and_its_time_base_corrected(tab, tmp_path):
     page.get_by_role("dialog").get_by_label("Frames per second").fill("50")
     page.get_by_role("dialog").get_by_role("button", name="Load").click()
     expect(facts).to_contain_text("50 frames/s, a row every 10 frames = 0.2 s")
+    assert "25 frames/s" not in facts.inner_text()
 
 
 def test_a_file_is_dropped_on_the_tab(tab):
@@ -182,6 +183,7 @@ def test_a_file_is_dropped_on_the_tab(tab):
     expect(page.get_by_role("region", name="Recording")).to_contain_text("walk.txt")
     page.get_by_role("button", name="Open…").click()
     expect(page.get_by_role("dialog").get_by_role("button", name="walk.txt")).to_be_visible()
+    assert page.locator(".message.error").count() == 0
 
 
 def test_pictures_and_tables_are_saved(tab):
@@ -207,4 +209,6 @@ def test_a_second_window_sees_the_same_run(tab, app, browser):
     expect(other.locator(".metrics tbody tr")).to_have_count(1, timeout=LONG)
     expect(other.locator("canvas.scene")).to_have_attribute("data-frame", "3")
     expect(other.get_by_role("region", name="Log, one line a frame")).to_contain_text("constant-velocity")
+    table = ".metrics tbody"
+    assert other.locator(table).inner_text() == page.locator(table).inner_text()
     context.close()

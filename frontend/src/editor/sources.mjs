@@ -23,7 +23,7 @@ export async function openSources(model, app, opened) {
     h(
       "div",
       {},
-      h("ul", { class: "sources" }, button("Empty trial", null, {}), sources.files.map((name) => button(name, "file of this session", { file: name }))),
+      h("ul", { class: "sources" }, button("Empty trial", null, {}), sources.files.map((name) => button(name, "file in the folder of the app", { file: name }))),
       field("Trials (.xml), ROS maps (.yaml with its picture), areas (.wkt, .geojson)", chosen),
       floor(app, model, () => dialog.close()),
       sources.maps.length ? maps(sources.maps, model, () => dialog.close()) : null,

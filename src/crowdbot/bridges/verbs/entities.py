@@ -12,6 +12,8 @@ import numpy as np
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Simulation
 
+from .results import UnsupportedFeature
+
 __all__ = ["HUMAN", "ROBOT", "Entity", "entities", "entity_of", "filter_entities", "state_of_entity"]
 
 ROBOT, HUMAN = 2, 3
@@ -71,15 +73,15 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
     """Return the entities that match ``simulation_interfaces/EntityFilters``.
 
     Raises:
-        NotImplementedError: the filter has tags, or bounds that are no sphere.
+        UnsupportedFeature: the filter has tags, or bounds that are no sphere.
         InputError: the name filter or a value is not allowed.
     """
     tags, bounds = filters.get("tags") or {}, filters.get("bounds") or {}
     if tags.get("tags"):
-        raise NotImplementedError("entities have no tags")
+        raise UnsupportedFeature("entities have no tags")
     points = bounds.get("points") or []
     if points and (bounds.get("type") != SPHERE or len(points) != 2):
-        raise NotImplementedError("bounds must be a sphere: its centre, and its radius as x of the second point")
+        raise UnsupportedFeature("bounds must be a sphere: its centre, and its radius as x of the second point")
     found = entities(simulation)
     if filters.get("filter"):
         wanted = _compile(filters["filter"])

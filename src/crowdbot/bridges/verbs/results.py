@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["FAILED", "INCORRECT_STATE", "NOT_FOUND", "OK", "UNSUPPORTED", "result"]
+from crowdbot.core import InputError
+
+__all__ = ["FAILED", "INCORRECT_STATE", "NOT_FOUND", "OK", "UNSUPPORTED", "UnsupportedFeature", "result"]
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
+
+
+class UnsupportedFeature(InputError):
+    """A request uses an optional feature of the standard that this program does not have."""
 
 
 def result(code: int = OK, message: str = "", **fields: Any) -> dict[str, Any]:

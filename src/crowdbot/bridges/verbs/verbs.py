@@ -21,7 +21,7 @@ from crowdbot.simulation import (
 )
 
 from .entities import ROBOT, Entity, entity_of, filter_entities, state_of_entity
-from .results import FAILED, INCORRECT_STATE, NOT_FOUND, OK, UNSUPPORTED, result
+from .results import FAILED, INCORRECT_STATE, NOT_FOUND, OK, UNSUPPORTED, UnsupportedFeature, result
 from .spawning import SOURCE, spawn_order, spawnables
 from .worlds import available_worlds, current_world, load_world
 
@@ -46,7 +46,7 @@ def answer_call(call: ServiceCall, simulation: Simulation, control: RunControl, 
         response = verb(call.request if isinstance(call.request, Mapping) else {})
     except LookupError as error:
         response = result(NOT_FOUND, str(error.args[0]) if error.args else "not found")
-    except NotImplementedError as error:
+    except UnsupportedFeature as error:
         response = result(UNSUPPORTED, str(error))
     except (InputError, AttributeError, TypeError, ValueError, OverflowError) as error:  # a request of a wrong shape
         response = result(FAILED, str(error))

@@ -65,7 +65,7 @@ class ExperimentDesk(Desk):
         for file in self.session.workspace.files("*.xml"):
             with contextlib.suppress(CrowdbotError):
                 if is_experiment(self.session.workspace.readable(file)):
-                    rows.append({"name": file, "about": "file of this session"})
+                    rows.append({"name": file, "about": "file in the folder of the app"})
         return rows
 
     @command
