@@ -31,7 +31,7 @@ function licenses() {
     if (!file) throw new Error(`${name} has no licence file`);
     return `${name} ${version} (${license})\n\n${readFileSync(join(folder, file), "utf8").trim()}\n`;
   });
-  return `app.js and player.js contain these libraries.\n\n${texts.join("\n" + "-".repeat(80) + "\n\n")}`;
+  return `app.js, player.js and vr.js contain these libraries.\n\n${texts.join("\n" + "-".repeat(80) + "\n\n")}`;
 }
 
 const files = {
@@ -42,6 +42,9 @@ const files = {
   "player.js": await bundle("src/player/main.mjs"),
   "player.css": await bundle("src/styles/player.css"),
   "player.html": readFileSync(join(here, "src", "player.html"), "utf8"),
+  "vr.js": await bundle("src/vr/main.mjs"),
+  "vr.css": await bundle("src/styles/vr.css"),
+  "vr.html": readFileSync(join(here, "src", "vr.html"), "utf8"),
   "licenses.txt": licenses(),
 };
 

@@ -1,8 +1,9 @@
 """Fixtures for inputs that are not part of the repository, and what happens to a test when its input is missing.
 
-A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``. If an input is missing, the
-tests that need it are deselected, and one line at the end of the run gives their number, the reason and the remedy. If
-the variable ``CI`` is set (and ``ALONE`` is not), nothing is deselected: a missing input is a failure.
+A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``, ``ros1``, ``namespaces``. If
+an input is missing, the tests that need it are deselected, and one line at the end gives their number, the reason and
+the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give are a
+reason to leave tests out; every other missing input is a failure.
 
 Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
 """
@@ -12,6 +13,7 @@ from __future__ import annotations
 import functools
 import os
 import shutil
+import subprocess
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,6 +29,9 @@ settings.load_profile("hunt" if os.environ.get("HUNT") else "same")
 ROOT = Path(__file__).parents[1]
 SHARED = Path(os.environ.get("CROWDBOT_SHARED") or ROOT.parent / "shared")
 """Folder of the inputs that cannot ship: ``data/`` and ``urdf/``. tests/RECORDINGS.md lists its content."""
+collect_ignore = ["bridges/ros1_robot.py"]
+"""A program for the Python of the system, which has rospy. A conftest.py beside it would break ``make test``: pytest
+then collects two modules of the name ``conftest``."""
 WORKER_KEY = "deselected_by_input"
 
 
@@ -45,11 +50,13 @@ class Input:
         what: what the tests need, as the line at the end names it.
         remedy: how to get it.
         find: returns where it is, or None.
+        right: whether it is a right of the container, which nobody inside can install.
     """
 
     what: str
     remedy: str
     find: Callable[[], object | None]
+    right: bool = False
 
     def get(self) -> object:
         """Return where it is; the test fails where it is missing."""
@@ -75,6 +82,15 @@ def _drawing() -> str | None:
         return None
 
 
+@functools.cache
+def _namespaces() -> str | None:
+    """Return the command that begins a network of its own; only root may, and some containers forbid it."""
+    command = shutil.which("unshare")
+    if command is None or shutil.which("ip") is None:
+        return None
+    return command if subprocess.run([command, "--net", "true"], stderr=subprocess.DEVNULL).returncode == 0 else None
+
+
 COPY = "tests/RECORDINGS.md"
 PACKAGES = "tests/system-packages"
 INPUTS = {
@@ -82,6 +98,9 @@ INPUTS = {
     "urdf": Input("robot files that cannot ship", COPY, lambda: _folder("urdf")),
     "chromium": Input("Chromium", PACKAGES, lambda: shutil.which("chromium") or shutil.which("chromium-browser")),
     "drawing": Input("OpenGL without a screen", PACKAGES, _drawing),
+    "namespaces": Input("network namespaces", "unshare --net true", _namespaces, right=True),
+    "ros1": Input("ROS 1", PACKAGES, lambda: shutil.which("rosmaster") and shutil.which("rosbag")),
+    "roslaunch": Input("roslaunch of ROS 1", PACKAGES, lambda: shutil.which("roslaunch")),
 }
 
 
@@ -104,9 +123,27 @@ def chromium() -> str:
 
 
 @pytest.fixture(scope="session")
+def roslaunch() -> str:
+    """Command that reads and starts launch files of ROS 1."""
+    return INPUTS["roslaunch"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
 def drawing() -> str:
     """Name of the OpenGL backend that draws without a screen."""
     return INPUTS["drawing"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def namespaces() -> str:
+    """Command that begins a network of its own."""
+    return INPUTS["namespaces"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def ros1() -> str:
+    """Command of the master of ROS 1; its tools and rospy are there, too."""
+    return INPUTS["ros1"].get()  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="session")
@@ -118,9 +155,8 @@ def reference() -> Path:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Deselect the tests whose input is missing, and count them."""
-    if STRICT:
-        return
-    needed = {name for item in items for name in getattr(item, "fixturenames", ()) if name in INPUTS}
+    optional = {name for name, one in INPUTS.items() if one.right or not STRICT}
+    needed = {name for item in items for name in getattr(item, "fixturenames", ()) if name in optional}
     missing = [name for name in INPUTS if name in needed and INPUTS[name].find() is None]
     first = [next((name for name in missing if name in getattr(item, "fixturenames", ())), None) for item in items]
     gone = [item for item, name in zip(items, first, strict=True) if name]

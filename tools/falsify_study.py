@@ -2,10 +2,11 @@
 
     python tools/falsify_study.py --out build/falsify
 
-The trial of seed 0, 1, 2, ... has two people who cross the way of a robot that they do not see. The first three seeds
-with fewer than 3 failures in 1000 random runs are searched with 1000 runs. The first seed with more failures is the
-check: its probability by searches with 1000 runs and with a tenth of the plain runs, and by plain runs. Plain runs end
-after a given time; the same command continues them, as it continues an interrupted study.
+The trial of seed 0, 1, 2, ... has two people who cross the way of a robot that they do not see. The delay of its sensor
+varies; with ``--family ways`` the sensor is slow instead. The first three seeds with fewer than 3 failures in 1000
+random runs are searched with 1000 runs. Then each is searched with a tenth of the plain runs, which follow, the trial
+with the largest probability first, and by other searches. No plain runs begin after a given time. The same command
+continues an interrupted study.
 """
 
 from __future__ import annotations
@@ -15,43 +16,81 @@ import json
 import math
 import time
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from crowdbot.core import stream
 from crowdbot.falsification import (
-    FalsificationResult,
+    CrossEntropy,
     PlainSampling,
+    Sampling,
     SearchSpace,
+    Splitting,
     falsify,
     parse_factor,
-    parse_sampling,
 )
 from crowdbot.trials import parse_trial, trial_xml
 
-RADIUS, PEOPLE, NEAR = 4.0, 2, 0.5
-"""Radius of the circle [m], number of people, and least angle between them [rad]."""
-RARE, FIRST = 3, 1000
-"""A trial is taken if fewer than 3 of 1000 random runs fail."""
-STEP = 1024
-"""Plain runs between two looks at the clock."""
+PEOPLE, NEAR = 2, 0.5
+"""Number of people, and least angle between them [rad]."""
+RARE, RANDOM = 3, (64, 128, 256, 512, 1000)
+"""A trial is taken if fewer than 3 of 1000 random runs fail; the random runs end early if more do."""
+BATCH, STEP = 64, 3200
+"""Random runs that are drawn together, and plain runs between two looks at the clock."""
+CLEARANCE = "min-clearance>0"
+SEARCHES: tuple[tuple[str, str, Sampling], ...] = (
+    ("cross-entropy", "collision", CrossEntropy()),
+    ("cross-entropy, smallest clearance", CLEARANCE, CrossEntropy()),
+    ("splitting, smallest clearance", CLEARANCE, Splitting(replicates=4, particles=48)),
+)
+"""Searches with 1000 runs: title, failure, search."""
 
-TRIAL = """<trial name="ways-{seed}" duration="25" step="0.25">
-<crowd type="orca" neighbor-distance="10" time-horizon="5" time-horizon-walls="5"/>
-{agents}
-<robot x="0" y="-4" heading="1.5707963" radius="0.3" visible="false" control-period="0.25" holonomic="true">
-<goal x="0" y="4"/>
+ROBOT = """<robot x="0" y="-{radius:g}" heading="1.5707963" radius="0.3" visible="false" control-period="{period}"
+ holonomic="true">
+<goal x="0" y="{radius:g}"/>
 <drive type="omnidirectional" max-speed="1" max-acceleration="1000"/>
 <navigator type="orca" safety="0.15" neighbor-distance="10" time-horizon="5"/>
-<sensor type="ground-truth-people" name="people" rate="1"/>
-</robot>
-<recording period="0.25"/>
-</trial>"""
+{sensor}
+</robot>"""
 
 
-def make_space(seed: int) -> SearchSpace:
-    """Return the trial of a seed: people have random ways and speeds; starts and speeds vary in the search."""
-    rng = np.random.default_rng(seed)
+class Family(NamedTuple):
+    """Trials that differ by their seed.
+
+    Fields:
+        radius: radius of the circle [m].
+        duration, step, period: duration, time step, and control and recording period [s].
+        sensor: sensor and faults of the robot.
+        spread: standard deviation of the starts [m].
+        factors: what varies beside starts and speeds.
+    """
+
+    radius: float
+    duration: float
+    step: float
+    period: float
+    sensor: str
+    spread: float
+    factors: tuple[str, ...] = ()
+
+
+FAMILIES = {
+    "late": Family(
+        3.0, 12.0, 0.1, 0.2,
+        '<sensor type="ground-truth-people" name="people" rate="10" visible-only="false"/>'
+        '<fault type="late-sensor" delay="0.05"/>',
+        0.2, ("robot/fault/delay=normal(0.05, 0.05, 0, 0.6)",),
+    ),
+    "ways": Family(4.0, 25.0, 0.25, 0.25, '<sensor type="ground-truth-people" name="people" rate="1"/>', 0.3),
+}  # fmt: skip
+"""A late sensor, and one of 1 Hz."""
+
+
+def make_space(seed: int, name: str = "late") -> SearchSpace:
+    """Return the trial of a seed: people have random ways and speeds; starts, speeds and the delay vary."""
+    family = FAMILIES[name]
+    rng, radius = np.random.default_rng(seed), family.radius
     angles: list[float] = []
     while len(angles) < PEOPLE:
         angle = float(rng.uniform(0.0, 2.0 * math.pi))
@@ -59,66 +98,92 @@ def make_space(seed: int) -> SearchSpace:
             angles.append(angle)
     agents, factors = [], []
     for number, angle in enumerate(angles, 1):
-        x, y = RADIUS * math.cos(angle), RADIUS * math.sin(angle)
+        x, y = radius * math.cos(angle), radius * math.sin(angle)
         end = angle + math.pi + float(rng.uniform(-0.6, 0.6))
         speed = float(rng.uniform(0.7, 1.2))
-        goal = f"{RADIUS * math.cos(end):.2f},{RADIUS * math.sin(end):.2f}"
+        goal = f"{radius * math.cos(end):.2f},{radius * math.sin(end):.2f}"
         place = f'name="p{number}" x="{x:.2f}" y="{y:.2f}"'
         agents.append(f'<agent {place} goal="{goal}" speed="{speed:.2f}" radius="0.3"/>')
         factors += [
-            f"agent[p{number}]/x=normal({x:.2f}, 0.3)",
-            f"agent[p{number}]/y=normal({y:.2f}, 0.3)",
+            f"agent[p{number}]/x=normal({x:.2f}, {family.spread})",
+            f"agent[p{number}]/y=normal({y:.2f}, {family.spread})",
             f"agent[p{number}]/speed=normal({speed:.2f}, 0.1)",
         ]
-    text = TRIAL.format(seed=seed, agents="\n".join(agents))
-    return SearchSpace(parse_trial(text), tuple(map(parse_factor, factors)))
+    head = f'name="{name}-{seed}" duration="{family.duration:g}" step="{family.step}"'
+    crowd = '<crowd type="orca" neighbor-distance="10" time-horizon="5" time-horizon-walls="5"/>'
+    robot = ROBOT.format(radius=radius, period=family.period, sensor=family.sensor)
+    parts = [crowd, *agents, robot, f'<recording period="{family.period}"/>']
+    trial = parse_trial("\n".join([f"<trial {head}>", *parts, "</trial>"]))
+    return SearchSpace(trial, tuple(map(parse_factor, [*factors, *family.factors])))
 
 
 def main() -> None:
     """Run the study and print its table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--plain", type=int, default=4096, help="most plain runs of the check, a multiple of 1024")
-    parser.add_argument("--minutes", type=float, default=6.0, help="time after which no more plain runs begin [min]")
+    parser.add_argument("--family", choices=list(FAMILIES), default="late", help="trials")
+    parser.add_argument("--plain", type=int, default=100_000, help="plain runs of a trial")
+    parser.add_argument(
+        "--minutes", type=float, default=math.inf, help="time after which no more plain runs begin [min]"
+    )
     parser.add_argument("--out", type=Path, default=Path("build/falsify"), help="folder of partial results")
     parser.add_argument("--workers", type=int, default=1)
     options = parser.parse_args()
-    rare: list[int] = []
-    frequent: list[int] = []
-    seed = 0
-    while len(rare) < 3 or not frequent:
-        random = _run(options, seed, "plain", FIRST, "random")
-        (rare if random.failures < RARE else frequent).append(seed)
-        if random.failures < RARE and len(rare) <= 3:
-            _run(options, seed, "cross-entropy", FIRST, "cross-entropy")
-        seed += 1
-    for runs in (FIRST, options.plain // 10):
-        _run(options, frequent[0], "cross-entropy", runs, "check")
     begin = time.monotonic()
-    for runs in range(STEP, options.plain + 1, STEP):
-        _run(options, frequent[0], "plain", runs, "plain", "plain")
-        if time.monotonic() - begin > 60.0 * options.minutes:
-            break
+    found: dict[int, float] = {}
+    seed = 0
+    while len(found) < 3:
+        if _is_rare(options, seed):
+            found[seed] = _run(options, seed, *SEARCHES[0], 1000)["value"]
+        seed += 1
+    order = sorted(found, key=lambda one: -found[one])
+    for seed in order:
+        _run(options, seed, "check", "collision", CrossEntropy(), options.plain // 10)
+        runs = 0
+        while runs < options.plain and time.monotonic() - begin < 60.0 * options.minutes:
+            runs = min(runs + STEP, options.plain)
+            _run(options, seed, "plain", "collision", PlainSampling(batch=BATCH), runs, "plain")
+    for seed in order:
+        for search in SEARCHES[1:]:
+            _run(options, seed, *search, 1000)
+
+
+def _is_rare(options: argparse.Namespace, seed: int) -> bool:
+    """Return whether fewer than 3 of 1000 random runs of a trial fail."""
+    for runs in RANDOM:
+        if _run(options, seed, "random", "collision", PlainSampling(batch=BATCH), runs, "random")["failures"] >= RARE:
+            return False
+    return True
 
 
 def _run(
-    options: argparse.Namespace, seed: int, search: str, runs: int, name: str, place: str = ""
-) -> FalsificationResult:
-    """Run one search and write its values; the plain runs of the check have another seed than the random ones.
+    options: argparse.Namespace,
+    seed: int,
+    name: str,
+    failure: str,
+    sampling: Sampling,
+    runs: int,
+    place: str = "",
+) -> dict[str, Any]:
+    """Run one search, print its values and keep them; the plain runs have other seeds than the random ones.
 
     Searches that share a folder (``place``) and a name share the runs that they have in common.
     """
-    space = make_space(seed)
-    folder = options.out / f"ways-{seed}" / (place or f"{name}-{runs}")
+    space = make_space(seed, options.family)
+    folder = options.out / space.trial.name / (place or f"{name}-{runs}".replace(", ", "-").replace(" ", "-"))
+    file = folder / f"values-{runs}.json"
+    if file.is_file():
+        return dict(json.loads(file.read_text(encoding="utf-8")))
     own = int(stream(seed, name).integers(2**31))
-    sampling = PlainSampling() if search == "plain" else parse_sampling(search)
-    result = falsify(space, "collision", sampling, runs=runs, seed=own, folder=folder, workers=options.workers)
-    (folder.parent / "trial.xml").write_text(trial_xml(space.trial), encoding="utf-8")
+    result = falsify(space, failure, sampling, runs=runs, seed=own, folder=folder, keep=3, workers=options.workers)
     result.save(folder / "result.json")
-    line = {"trial": space.trial.name, "search": name, "runs": runs, "failures": result.failures}
-    line |= {"first": result.first_failure, "estimate": str(result.estimate), "clusters": len(result.clusters)}
-    line["same"] = [one.same for one in result.found].count(True) == len(result.found)
-    print(json.dumps(line), flush=True)
-    return result
+    (folder.parent / "trial.xml").write_text(trial_xml(space.trial), encoding="utf-8")
+    values = {"trial": space.trial.name, "search": name, "runs": runs, "failures": result.failures}
+    values |= {"first": result.first_failure, "estimate": str(result.estimate), "clusters": len(result.clusters)}
+    values |= {"value": result.estimate.value if result.estimate else 0.0}
+    values["same"] = [one.same for one in result.found].count(True) == len(result.found)
+    print(json.dumps(values), flush=True)
+    file.write_text(json.dumps(values), encoding="utf-8")
+    return values
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from crowdbot import navigation
 from crowdbot.benchmark import evaluate, measure
 from crowdbot.metrics import Score
 from crowdbot.recording import run
+from crowdbot.web import app_measurements
 
 FOLDS = {
     "eth": ("biwi_eth",),
@@ -303,7 +304,7 @@ def _searches(data: Path) -> None:
 
 
 def _speed(recording: Path) -> None:
-    rows = measure(recording=recording)
+    rows = measure(recording=recording, more=app_measurements())
     print(speed_text([(r.name, r.median, r.unit, r.against, r.ratio) for r in rows], rows[0].environment))
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from crowdbot.bridges import MODES, QUALITIES, SERVICES, RobotInterface
+from crowdbot.bridges import MODES, PLAIN_SERVICES, QUALITIES, SERVICES, TRANSPORTS, RobotInterface
 from crowdbot.trials import Trial, parse_trial
 
 TRIAL = """<trial name="robot-interface" duration="0.4">
@@ -49,6 +49,14 @@ The services are those of [simulation_interfaces](https://github.com/ros-simulat
 entity is a robot by its name, or a person as `person_ID`. What is added or moved is there after the next step. A reset,
 and another world, begin another episode (`episode-2.mcap`). A reset of scope 4 removes only what was added.
 """
+PLAIN = """
+The bridges `ros1` and `ros2` have services of `std_srvs`, too, for systems without `simulation_interfaces`:
+"""
+TRANSPORT = """
+## Transports
+
+What `--bridge` takes; several are possible at the same time.
+"""
 QUALITY = """
 ## Quality of service
 
@@ -87,6 +95,10 @@ def page() -> str:
         for one in follows.inputs
     )
     services = ((f"`/crowdbot/{name}`", f"`{one.kind}`", one.about) for name, one in SERVICES.items())
+    plain = ((f"`{name}`", f"`std_srvs/{one.kind}`", one.about) for name, one in PLAIN_SERVICES.items())
+    transports = (
+        (f"`{address}`", about) for address, _, about in (line.partition(", ") for _, line in TRANSPORTS.values())
+    )
     qualities = (
         (one.name, "reliable" if one.reliable else "best effort", "transient local" if one.latched else "volatile",
          str(one.depth))
@@ -96,6 +108,8 @@ def page() -> str:
         HEAD + "\n" + table(("topic", "type", "frame", "rate", "QoS", "content"), outputs)
         + INPUTS + "\n" + table(("topic", "type", "QoS", "content"), inputs)
         + SERVICE_TEXT + "\n" + table(("service", "type", "effect"), services)
+        + PLAIN + "\n" + table(("service", "type", "effect"), plain)
+        + TRANSPORT + "\n" + table(("bridge", "what"), transports)
         + QUALITY + "\n" + table(("class", "reliability", "durability", "depth"), qualities)
         + CLOCKS + "\n" + table(("`--clock`", "meaning"), ((f"`{name}`", about) for name, about in MODES.items()))
     )  # fmt: skip

@@ -18,6 +18,13 @@ CELL, HALF = 0.1, 30
 STEPS = [(dx, dy, math.hypot(dx, dy)) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy]
 
 
+def in_robot_frame(pose, point):
+    """Return a point x, y of the map [m] in the frame of a robot with a pose x, y [m], heading [rad]."""
+    dx, dy = point[0] - pose[0], point[1] - pose[1]
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    return cos * dx + sin * dy, cos * dy - sin * dx
+
+
 @dataclass
 class LocalPlanner:
     """Plans in the frame of the robot: x forward, y left.

@@ -2,7 +2,9 @@
 import { editor } from "./editor/tab.mjs";
 import { evaluation } from "./evaluation/tab.mjs";
 import { experiments } from "./experiments/tab.mjs";
+import { jobs } from "./jobs/tab.mjs";
 import { prediction } from "./prediction/tab.mjs";
+import { vr } from "./vr/tab.mjs";
 import { simulator } from "./simulator/tab.mjs";
 
-export const tabs = [simulator, prediction, editor, evaluation, experiments];
+export const tabs = [simulator, prediction, editor, evaluation, experiments, jobs, vr];

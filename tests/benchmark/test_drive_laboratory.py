@@ -23,6 +23,7 @@ from crowdbot.benchmark import (
     trace_planar,
     write_drives_page,
 )
+from crowdbot.benchmark.drives.trace_store import TraceStore, drive_runs
 from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
@@ -151,7 +152,7 @@ def test_figures_beyond_the_bars_are_named_for_other_makers(tmp_path):
     ("words", "says"),
     [
         (["bench", "drives", "environments"], "is measured alone"),
-        (["bench", "--robot", "qolo"], "--robot, --makers and --page belong to crowdbot bench drives"),
+        (["bench", "--robot", "qolo"], "--robot, --makers, --page and --keep belong to crowdbot bench drives"),
         (["bench", "drives", "--quick", "--robot", "qolo", "--makers", "no.urdf"], "there is no URDF file no.urdf"),
         (["bench", "drives", "--robot", "turtlebot9"], "there is no robot 'turtlebot9'"),
     ],
@@ -169,3 +170,25 @@ def test_a_step_must_divide_a_sample():
         with pytest.raises(InputError, match=r"0.02 s must be a whole number of steps"):
             trace_physics(robot, [Twist()], step)
     assert isinstance(trace_planar(robot, [Twist()], 0.02), DriveTrace)
+
+
+def test_a_measurement_continues_from_its_files(tmp_path):
+    """Motions that are kept are not measured again; those of other commands are, and broken files."""
+    robot = Robot.load("differential")
+    chosen, calls = manoeuvres(robot, quick=True)[:1], []
+
+    def measure(*asked):
+        calls.append(asked[2])
+        return drive_runs(*asked)
+
+    store = TraceStore(tmp_path)
+    first = store.runs(robot, 0.02, chosen, measure)
+    again = store.runs(robot, 0.02, chosen, measure)
+    assert len(calls) == 1
+    assert all(np.array_equal(a, b) for a, b in zip(first[0][1], again[0][1], strict=True))
+    store.runs(robot, 0.02, manoeuvres(robot, quick=True)[2:3], measure)
+    assert len(calls) == 2
+    for file in tmp_path.iterdir():
+        file.write_bytes(file.read_bytes()[:100])
+    store.runs(robot, 0.02, chosen, measure)
+    assert len(calls) == 3

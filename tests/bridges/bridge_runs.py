@@ -5,6 +5,19 @@ import threading
 
 from crowdbot.bridges import BridgeClock, BridgeRun
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
+from crowdbot.trials import parse_trial
+
+
+def endless_trial(seconds):
+    """Return a trial in which nothing ends the run before its time: a robot on an empty floor, its goal far away."""
+    text = f"""<trial name="endless" duration="{seconds}">
+  <crowd type="orca"/>
+  <robot name="robot" x="0" y="0">
+    <drive type="differential-drive" max-speed="1.0"/><goal x="2000" y="0"/><navigator type="external"/>
+    <sensor name="scan" type="lidar2d" rays="360" rate="10"/>
+  </robot>
+</trial>"""
+    return parse_trial(text, place="endless")
 
 
 class MemoryTransport:

@@ -1,8 +1,9 @@
 """A robot program for ROS 2 in a process of its own: it answers each tick of /clock with a command and counts.
 
-    python ros2_robot.py DOMAIN SECONDS
+    python ros2_robot.py DOMAIN SECONDS [LAST]
 
-It prints one line of JSON: what it has received. It uses rclpy only.
+It ends after some seconds, or when the clock has come to LAST [s]; DDS tells the end of a participant late. It prints
+one line of JSON: what it has received. It uses rclpy only.
 """
 
 import json
@@ -27,11 +28,11 @@ def main():
     node = rclpy.create_node("robot_program", parameter_overrides=[Parameter("use_sim_time", value=True)])
     seen = {"scans": 0, "beams": 0, "odometry": 0, "ticks": [], "sent": 0, "map": 0, "urdf": 0, "frame": "", "x": 0.0}
     seen |= {"late": [], "ready": False}
-    plain = node.create_publisher(Twist, "/robot/cmd_vel", 1)
+    plain = node.create_publisher(Twist, "/robot/cmd_vel", 10)
     other = rclpy.Context()
     rclpy.init(domain_id=domain, context=other)
     second = rclpy.create_node("robot_program_stamped", context=other)  # a topic has one type in a participant
-    stamped = second.create_publisher(TwistStamped, "/robot/cmd_vel", 1)
+    stamped = second.create_publisher(TwistStamped, "/robot/cmd_vel", 10)
 
     def drive(nanoseconds):
         tick = nanoseconds // STEP
@@ -83,9 +84,11 @@ def main():
     time.sleep(0.5)
     seen["ready"] = True
     drive(seen["ticks"][-1] if seen["ticks"] else 0)
-    end = time.monotonic() + seconds
+    end, last = time.monotonic() + seconds, 1e9 * float(sys.argv[3]) if len(sys.argv) > 3 else float("inf")
     while time.monotonic() < end and not (seen["ticks"] and node.count_publishers("/clock") == 0):
         rclpy.spin_once(node, timeout_sec=0.05)
+        if seen["ticks"] and seen["ticks"][-1] >= last:
+            end = min(end, time.monotonic() + 1.0)  # other topics of the last instant
     seen["late"] = sorted(seen["late"])
     print(json.dumps(seen))
     node.destroy_subscription(clock)

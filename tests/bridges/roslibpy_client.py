@@ -56,23 +56,12 @@ def control(ros, number):
     return counts
 
 
-def clock(ros, number):
-    """Send the time in odd portions."""
-    topic = roslibpy.Topic(ros, "/clock", "rosgraph_msgs/Clock")
-    topic.advertise()
-    for k in range(number):
-        now = 37_000_000 * k
-        topic.publish(roslibpy.Message({"clock": {"sec": now // 10**9, "nanosec": now % 10**9}}))
-    ros.get_time()
-    return {"sent": number}
-
-
 def main():
     port, job = int(sys.argv[1]), sys.argv[2]
     number = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     ros = roslibpy.Ros("127.0.0.1", port)
     ros.run(timeout=30)
-    found = look(ros) if job == "look" else {"control": control, "clock": clock}[job](ros, number)
+    found = look(ros) if job == "look" else control(ros, number)
     print(json.dumps(found), flush=True)
     ros.close()
     ros.terminate()

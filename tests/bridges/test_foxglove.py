@@ -11,7 +11,7 @@ import time
 from importlib.resources import files
 
 import pytest
-from bridge_runs import Running
+from bridge_runs import Running, endless_trial
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -26,6 +26,7 @@ from crowdbot.trials import load_trial
 
 TRIAL = load_trial("frontal", duration=2.0)
 SHORT = load_trial("frontal", duration=1.0)
+LONG = load_trial("frontal", **{"duration": 86400.0, "end/goal": "false", "end/collision": "false"})
 
 
 class Client:
@@ -34,9 +35,9 @@ class Client:
     def __init__(self, ws):
         self.ws, self.channels, self.services, self.info = ws, {}, {}, None
         self.messages, self.times, self.statuses, self.responses, self.states = [], [], [], {}, []
-        self._topics = {}
+        self._topics, self.played = {}, []
 
-    def read(self, reached, seconds=20.0):
+    def read(self, reached, seconds=60.0):
         """Take what arrives until something is reached."""
         end = time.monotonic() + seconds
         while not reached():
@@ -75,6 +76,7 @@ class Client:
             self.responses[call] = data[13 + size :]
         elif data[0] == 5:
             self.states.append(data[1])
+            self.played.append(struct.unpack_from("<QfB", data, 2))
 
     def subscribe(self, *topics):
         numbers = {len(self._topics) + k + 1: topic for k, topic in enumerate(topics)}
@@ -104,8 +106,8 @@ class Client:
             return found
         return interface_store().deserialize_cdr(found, service["response"]["schemaName"])
 
-    def playback(self, command):
-        self.ws.send(struct.pack("<BBfBQI", 3, command, 1.0, 0, 0, 2) + b"r1")
+    def playback(self, command, speed=1.0, seek=None):
+        self.ws.send(struct.pack("<BBfBQI", 3, command, speed, seek is not None, seek or 0, 2) + b"r1")
 
 
 @contextlib.contextmanager
@@ -190,6 +192,42 @@ def test_a_client_pauses_and_plays():
         assert running.run.control.may_step
 
 
+def test_a_client_sets_the_speed_and_goes_to_a_time():
+    server = FoxgloveServer(port=0)
+    with Running(endless_trial(600.0), [server], rate=0.1) as running, joined(server) as client:
+        client.read(lambda: len(client.times) > 1)
+        client.playback(0, speed=20.0)
+        client.read(lambda: client.played and client.times[-1] > 10**9)
+        assert client.played[0][1:] == (20.0, 0)
+        client.playback(0, speed=0.01)
+        client.read(lambda: running.run.pace.rate == pytest.approx(0.01))
+        later = server.now + 2 * 10**9
+        client.playback(0, speed=0.01, seek=later)  # it hurries
+        client.read(lambda: client.times[-1] >= later)
+        assert client.played[-1][::2] == (later, 1)
+        client.playback(1, speed=0.01, seek=later + 10**9)  # while it pauses: steps
+        client.read(lambda: client.times[-1] == later + 10**9)
+        client.playback(1, speed=0.01, seek=5 * 10**8)
+        client.playback(1, speed=200.0)
+        client.read(lambda: len(client.statuses) >= 2)
+        assert (
+            f"a live run cannot go back from {later / 1e9 + 1:g} s to 0.5 s; it can begin again, at 0 s"
+            in client.statuses[0]
+        )
+        assert "the speed 200 must be from 0.001 to 100 times real time" in client.statuses[1]
+        assert client.played[-1][2] == 0
+        client.playback(1, speed=0.01, seek=0)
+        client.read(lambda: client.times[-1] == 0)
+
+
+def test_a_run_that_follows_another_clock_has_no_speed():
+    server = FoxgloveServer(port=0)
+    with Running(SHORT, [server], "step"), joined(server) as client:
+        client.playback(1, speed=2.0)
+        client.read(lambda: client.statuses)
+        assert "the speed cannot be set: the time of this run is that of another clock" in client.statuses[0]
+
+
 def test_wrong_messages_are_told_and_the_run_goes_on():
     server = FoxgloveServer(port=0)
     with Running(SHORT, [server], "step"), joined(server) as client:
@@ -216,7 +254,7 @@ def test_hostile_frames_leave_the_server_working(capfd):
         struct.pack("<BIII", 2, 1, 1, 4) + b"json{}",
         struct.pack("<BBfBQI", 3, 1, 1.0, 0, 0, 2) + b"r1",
     ]
-    with Running(SHORT, [server], "step") as running:
+    with Running(LONG, [server], "step") as running:  # a frame that means "play" does not end the run
         frames = 0
         while frames < 3000:
             with contextlib.suppress(ConnectionClosed), joined(server) as client:

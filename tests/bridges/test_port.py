@@ -255,3 +255,32 @@ def test_a_bad_clock_is_refused(values, message):
 def test_the_trial_of_the_episode_has_the_external_robot(trial, tmp_path):
     done = run_bridge(trial, [], 0, tmp_path, BridgeClock("free"))
     assert 'type="external"' in read_episode(done.path).xml
+
+
+class LateProgram(MemoryTransport):
+    """A program whose first answers are lost, and which answers what is sent again."""
+
+    def publish(self, messages):
+        super().publish(messages)
+        for one in (one for one in messages if one.topic == "/tf"):
+            if sum(one.nanoseconds == other.nanoseconds for other in self.sent if other.topic == "/tf") > 1 or (
+                one.nanoseconds not in (0, 100_000_000)
+            ):
+                turn = 0.3 if one.nanoseconds % 150_000_000 else -0.3
+                self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "memory")
+
+
+def test_an_instant_whose_commands_are_lost_is_sent_again_and_the_result_is_the_same():
+    trial, late = load_trial("frontal", duration=0.5), LateProgram()
+    with Running(trial, [late], "commands") as running:
+        done = running.end()
+    times = [one.nanoseconds for one in late.sent if one.topic == "/tf"]
+    assert [times.count(k) for k in range(0, 300_000_000, 50_000_000)] == [2, 1, 2, 1, 1, 1]
+
+    class Prompt(LateProgram):
+        def publish(self, messages):
+            for one in (one for one in messages if one.topic == "/tf"):
+                turn = 0.3 if one.nanoseconds % 150_000_000 else -0.3
+                self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "memory")
+
+    assert run_bridge(trial, [Prompt()], 0, None, BridgeClock("free")).digest == done.digest

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import subprocess
 import sys
 import time
+import types
 from pathlib import Path
 
 import pytest
+import rclpy.node
 from bridge_runs import MemoryTransport, Running
+from geometry_msgs.msg import TransformStamped
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
+from rosbags.interfaces import Nodetype
 
-from crowdbot.bridges import BridgeClock, open_transport, run_bridge
+from crowdbot.bridges import SERVICES, BridgeClock, interface_store, open_transport, run_bridge
 from crowdbot.bridges.ros2 import Ros2Node
+from crowdbot.bridges.ros2.values import fill_message, message_fields
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
@@ -29,14 +37,14 @@ def local(monkeypatch, tmp_path):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
 
 
-def robot(domain, seconds=60.0):
-    """Start the robot program."""
-    words = [sys.executable, str(HERE / "ros2_robot.py"), str(domain), str(seconds)]
+def robot(domain, seconds=60.0, program="ros2_robot.py"):
+    """Start the robot program, or another one."""
+    words = [sys.executable, str(HERE / program), str(domain), str(seconds)]
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ})
 
 
-def ended(process):
-    out, errors = process.communicate(timeout=120)
+def ended(process, seconds=120):
+    out, errors = process.communicate(timeout=seconds)
     assert process.returncode == 0, errors
     return json.loads(out.splitlines()[-1])
 
@@ -94,6 +102,130 @@ def test_a_robot_program_drives_in_real_time_and_the_robot_stops_when_it_is_kill
     speed = abs(episode.velocity[:, episode.robots[0]]).max(axis=-1)
     assert speed[episode.times > last + 2.0].max() < 1e-6
     assert speed.max() > 0.3
+
+
+def test_another_program_calls_the_services(tmp_path):
+    domain = free_domain(3)
+    node = Ros2Node(domain)
+    with Running(load_trial("frontal", duration=300.0), [node], out=tmp_path) as running:
+        answers = ended(robot(domain, program="ros2_services.py"))
+        assert running.run.control.may_step
+    refused = [False, "the simulation must be paused"]
+    assert answers == [refused, "done", [True, ""], [True, ""], "done", "done"]
+    assert (tmp_path / "episode-2.mcap").exists()  # after the reset
+    assert node.missing_services == tuple(f"simulation_interfaces/srv/{one.kind}" for one in SERVICES.values())
+
+
+def ros_class(kind):
+    """Return a class as rosidl makes it, from the definition of a type."""
+    parts = interface_store().fielddefs[kind][1]
+    types = {name: ros_type(node) for name, node in parts if name != "structure_needs_at_least_one_member"}
+
+    class Message:
+        def __init__(self):
+            for name, text in types.items():
+                setattr(self, name, empty(text))
+
+        def get_fields_and_field_types(self):
+            return types
+
+    Message.__name__ = kind.rpartition("/")[2]
+    return Message
+
+
+def empty(text):
+    if "sequence" in text:
+        return []
+    package, sign, name = text.partition("/")
+    return vars(sys.modules[f"{package}.msg"])[name]() if sign else {"string": "", "double": 0.0}.get(text, 0)
+
+
+def ros_type(node):
+    kind, detail = node
+    if kind == Nodetype.NAME:
+        return detail.replace("/msg/", "/")
+    if kind == Nodetype.BASE:
+        return {"float64": "double", "bool": "boolean"}.get(detail[0], detail[0])
+    return f"sequence<{ros_type(detail[0])}>"
+
+
+def test_requests_and_responses_of_simulation_interfaces_fit_their_types(monkeypatch):
+    """rosidl makes such classes where a user's ROS has the package."""
+    package = types.ModuleType("simulation_interfaces.msg")
+    monkeypatch.setitem(sys.modules, "simulation_interfaces", types.ModuleType("simulation_interfaces"))
+    monkeypatch.setitem(sys.modules, "simulation_interfaces.msg", package)
+    for name in ("std_msgs", "geometry_msgs"):
+        importlib.import_module(f"{name}.msg")
+    kinds = [one for one in interface_store().fielddefs if one.startswith("simulation_interfaces/")]
+    for kind in kinds:
+        setattr(package, kind.rpartition("/")[2], ros_class(kind))
+    driver = MemoryTransport([])
+    with Running(load_trial("frontal", duration=1.0), [driver], "step"):
+        for name, service in SERVICES.items():
+            request = getattr(package, f"{service.kind}_Request")()
+            response = fill_message(
+                getattr(package, f"{service.kind}_Response")(), driver.call(name, message_fields(request))
+            )
+            assert response.__dict__.keys() >= response.get_fields_and_field_types().keys()
+            if hasattr(response, "result"):
+                assert 0 < response.result.result < 256, name
+    states = fill_message(package.GetEntitiesStates_Response(), {"states": [{"pose": {"position": {"x": 2}}}]})
+    assert states.states[0].pose.position.x == 2.0
+    assert message_fields(states)["states"][0]["pose"]["position"]["x"] == 2.0
+
+
+class KeptPublisher:
+    """Takes the place of a publisher of rclpy for a type whose library is not there."""
+
+    def __init__(self, kind, topic, profile):
+        self.kind, self.topic, self.profile, self.sent = kind, topic, profile, []
+
+    def publish(self, data):
+        self.sent.append(data)
+
+    def get_subscription_count(self):
+        return 1
+
+
+def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch):
+    """The wheels have no ``tf2_msgs``; a user's ROS has. Its class is made from the definition, as rosidl does it."""
+    kind, kept = "tf2_msgs/msg/TFMessage", {}
+    package = types.ModuleType("tf2_msgs.msg")
+    package.TFMessage = ros_class(kind)
+    monkeypatch.setitem(sys.modules, "tf2_msgs", types.ModuleType("tf2_msgs"))
+    monkeypatch.setitem(sys.modules, "tf2_msgs.msg", package)
+    create = rclpy.node.Node.create_publisher
+
+    def create_publisher(self, message, topic, profile, **options):
+        if message is not package.TFMessage:
+            return create(self, message, topic, profile, **options)
+        kept[topic] = KeptPublisher(message, topic, profile)
+        return kept[topic]
+
+    monkeypatch.setattr(rclpy.node.Node, "create_publisher", create_publisher)
+    node = Ros2Node(free_domain(5))
+    with Running(load_trial("frontal", duration=1.0), [node], "free") as running:
+        running.end(60.0)
+    assert kind not in node.missing
+    assert set(kept) == {"/tf", "/tf_static"}
+    assert kept["/tf"].profile.reliability == ReliabilityPolicy.RELIABLE
+    assert kept["/tf"].profile.depth == 100
+    assert kept["/tf_static"].profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    assert len(kept["/tf"].sent) >= 20
+    seen = {topic: read_transforms(one.sent[-1], package.TFMessage()) for topic, one in kept.items()}
+    assert {("map", "robot/odom"), ("robot/odom", "robot/base_link")} <= seen["/tf"]
+    assert ("robot/base_link", "robot/scan") in seen["/tf_static"]
+
+
+def read_transforms(data, message):
+    """Return parents and children of the transforms in CDR; each is read by the real library of its type."""
+    types_of = message.get_fields_and_field_types()
+    assert types_of == {"transforms": "sequence<geometry_msgs/TransformStamped>"}
+    store, kind = interface_store(), "geometry_msgs/msg/TransformStamped"
+    found = store.deserialize_cdr(data, "tf2_msgs/msg/TFMessage").transforms
+    rows = [deserialize_message(bytes(store.serialize_cdr(one, kind)), TransformStamped) for one in found]
+    assert all(one.header.stamp.sec <= 1 for one in rows)
+    return {(one.header.frame_id, one.child_frame_id) for one in rows}
 
 
 def test_addresses_and_domains():

@@ -192,3 +192,19 @@ def test_wrong_input_is_one_sentence(capsys, tmp_path, monkeypatch, small, words
     assert sentence[0].startswith("crowdbot: ")
     assert all(word in sentence[0] for word in said), sentence[0]
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_parameters_of_the_predictor(capsys, small):
+    words = ["--data", small, "--by", "gaussian-noise", "--levels", "0.05", "--draws", "1", "--observe", "4"]
+    words += ["--predict", "6", "--predictor", "simulated", "--model", "social-force"]
+    rows = [
+        _json(capsys, *words, *more)["degradations"]["gaussian-noise"]["rows"][0]
+        for more in ([], ["--set-predictor", "relaxation_time=0.9"], ["--set-predictor", "relaxation_time=0.5"])
+    ]
+    assert rows[1]["predictor"] != rows[0]["predictor"]
+    assert rows[1]["score"]["ade"] != rows[0]["score"]["ade"]
+    assert rows[2]["score"]["ade"] == rows[0]["score"]["ade"]  # the default of the model
+    assert main(["degrade", *words, "--set-predictor", "relax=1"]) == 2
+    assert "relax" in capsys.readouterr().err
+    assert main(["degrade", "--data", small, "--by", "late-start", "--set-predictor", "a=1", "--write", "x.csv"]) == 2
+    assert "omit --predictor, --set-predictor and --out" in capsys.readouterr().err

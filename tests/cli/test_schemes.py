@@ -60,6 +60,9 @@ def test_schemes_and_baselines_in_one_run(capsys, street, tmp_path):
     assert json.loads((tmp_path / "scores.json").read_text()) == found
     for name in ("errors.png", "frames.png", "frame-12.gif"):
         assert (tmp_path / name).stat().st_size > 5000
+    film = ["--data", street, "--predict", "3", "--animate", "12", "--animate-format", "mp4"]
+    assert main(["predict", *film, "--out", str(tmp_path / "film")]) == 0
+    assert (tmp_path / "film" / "frame-12.mp4").read_bytes()[4:8] == b"ftyp"
 
 
 def test_every_frame_is_a_line_and_the_table_comes_last(capsys, street):

@@ -13,11 +13,12 @@ from scipy import stats
 from crowdbot.core import InputError
 from crowdbot.evaluation import (
     bootstrap_interval,
-    correct_p_values,
     paired_comparison,
+    parse_requirement,
     parse_statistic,
     wilson_interval,
 )
+from crowdbot.metrics import correct_p_values
 
 
 @given(successes=st.integers(0, 200), more=st.integers(0, 200), level=st.sampled_from([0.8, 0.9, 0.95, 0.99]))
@@ -48,6 +49,21 @@ def test_the_bootstrap_leaves_out_what_is_not_finite_and_repeats() -> None:
     assert found == bootstrap_interval(np.array([1.0, 2.0, 4.0, 3.0]))
     assert math.isnan(bootstrap_interval(np.array([math.nan])).value)
     assert bootstrap_interval(np.full(9, 3.0))[:3] == (3.0, 3.0, 3.0)
+
+
+def test_an_infinite_severity_counts_and_an_infinite_time_to_collision_does_not() -> None:
+    values = np.array([0.0] * 97 + [0.5, 0.7, math.inf])
+    assert parse_statistic("max-severity").estimate(values)[::2] == (math.inf, math.inf)
+    assert parse_statistic("max:impact-severity-skull").estimate(values).value == math.inf
+    assert parse_statistic("cvar95:severity-upper-bound").estimate(values).value == math.inf
+    tail = parse_statistic("p98:max-severity").estimate(values)
+    assert (tail.value, tail.high, tail.runs) == (0.7, math.inf, 100)
+    assert parse_statistic("median:max-severity").estimate(values)[:3] == (0.0, 0.0, 0.0)
+    assert parse_statistic("min-ttc").estimate(np.array([1.0, 2.0, math.inf]))[::3] == (1.5, 2)
+    assert not parse_requirement("max-severity<1").judge(values).holds
+    assert not parse_requirement("p98:max-severity<1@95%").judge(values).holds
+    assert parse_requirement("p90:max-severity<1").judge(values).holds
+    assert parse_statistic("max-severity").estimate(np.full(3, math.inf)).value == math.inf
 
 
 def test_binary_pairs_are_compared_by_the_exact_test_of_mcnemar() -> None:

@@ -7,6 +7,7 @@ import json
 import math
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -24,7 +25,9 @@ from crowdbot.evaluation import (
     parse_requirement,
     parse_seeds,
     parse_statistic,
+    result_schema,
 )
+from crowdbot.evaluation.pareto import pareto_svg
 from crowdbot.simulation import simulate
 from crowdbot.trials import Trial, load_trial
 
@@ -259,6 +262,40 @@ def test_the_pareto_front_is_what_nobody_beats() -> None:
     for k, one in enumerate(points):
         beaten = any(all(a <= b for a, b in zip(p, one, strict=True)) and p != one for p in points)
         assert (k in front) is not beaten
+
+
+def test_the_picture_shows_severity_and_who_is_not_beaten(result: EvaluationResult) -> None:
+    straight, orca = result.cells
+    soft = _with_severities(straight, 0.0, 0.5)
+    hard = _with_severities(orca, 0.0, math.inf)
+    picture = pareto_svg([soft, hard])
+    assert "success rate; mean severity: green 0, red 0.25 and more" in picture
+    assert picture.count('stroke="#111"') == 1
+    assert "success rate; collision rate: green 0<" in pareto_svg([soft, _with_severities(orca, math.nan, math.nan)])
+
+
+def _with_severities(cell: CellResult, *severities: float) -> CellResult:
+    """Return a cell with successful runs of these severities."""
+    metrics = {"success": 1.0, "collision": 0.0, "time_to_goal": 9.0}
+    rows = [RunRow(k, "success", metrics=metrics | {"max_severity": one}) for k, one in enumerate(severities)]
+    return dataclasses.replace(cell, runs=tuple(rows))
+
+
+def test_each_row_has_its_margin(trial: Trial) -> None:
+    plan = EvaluationPlan([trial], parse_methods("straight, orca safety=0.2, mpc margin=0.1"), seeds=[0])
+    assert [cell.protocol["margin"] for cell in plan.cells] == [None, 0.2, 0.1]
+
+
+def test_a_result_keeps_its_schema(result: EvaluationResult, tmp_path: Path) -> None:
+    invalid = dataclasses.replace(result.cells[0], runs=(RunRow(3, "invalid", message="no room"),), factors={"a": "1"})
+    jsonschema.Draft202012Validator.check_schema(result_schema())
+    checker = jsonschema.Draft202012Validator(result_schema())
+    for found in (result, dataclasses.replace(result, cells=(invalid,))):
+        found.save(tmp_path / "r.json")
+        content = json.loads((tmp_path / "r.json").read_text())
+        assert [error.message for error in checker.iter_errors(content)] == []
+    content["cells"][0]["runs"][0]["metrics"] = {"success": 1.0}
+    assert not checker.is_valid(content)
 
 
 def test_values_of_rows_are_json(result: EvaluationResult, tmp_path: Path) -> None:

@@ -255,7 +255,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_session_leaves_its_folders(whole: Path) -> None:
     assert sorted(str(path.relative_to(whole)) for path in whole.rglob("*")) == [
-        "001-x", "001-x/answers.jsonl", "001-x/episode.mcap", "002-y", "002-y/answers.jsonl", "002-y/episode.mcap",
+        "001-x", "001-x/answers.jsonl", "001-x/clock.csv", "001-x/episode.mcap",
+        "002-y", "002-y/answers.jsonl", "002-y/clock.csv", "002-y/episode.mcap",
         "answers.jsonl", "experiment.xml", "session.jsonl",
     ]  # fmt: skip
     assert parse_experiment((whole / "experiment.xml").read_text()) == EXPERIMENT

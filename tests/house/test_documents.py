@@ -73,7 +73,7 @@ def test_a_walk_names_what_exists_and_enters_a_room_once(walk):
 
 
 def test_the_floors_are_those_of_the_linter():
-    (floors,) = [block for block in _blocks(ROOT / "CONTRIBUTING.md", "") if "14  cli" in block]
+    (floors,) = [block for block in _blocks(ROOT / "CONTRIBUTING.md", "") if "cli   " in block and "core" in block]
     listed = [" | ".join(re.findall(r"\w+", line[4:41].strip())) for line in floors.splitlines()]
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert listed == project["tool"]["importlinter"]["contracts"][0]["layers"]

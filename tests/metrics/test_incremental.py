@@ -1,6 +1,7 @@
 """Incremental navigation metrics against whole-array formulas, and metrics of runs against their recorded logs."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -251,3 +252,24 @@ def test_bad_logs_are_refused(change, message):
     log = AgentLog(times, place, 0 * place, np.zeros((3, 2)), np.full((3, 2), 0.3), active)
     with pytest.raises(InputError, match=message):
         NavigationMetrics(0, 0.3, (0.0, 0.0), 0.2).update_log(log, np.zeros(3, dtype=bool))
+
+
+def test_a_long_run_with_many_people_takes_little_memory():
+    people, records = 200, 3000
+    rng = np.random.default_rng(0)
+    place, heading, radius = rng.uniform(-50.0, 50.0, (people, 2)), np.zeros(people), np.full(people, 0.25)
+    place[0] = -60.0, -60.0  # nobody is near the robot
+    metrics = NavigationMetrics(0, 0.3, (1e3, 0.0), tolerance=0.2)
+
+    def update(begin, end):
+        for k in range(begin, end):
+            here = place + 1e-3 * k  # a new array for each record, as in a run
+            metrics.update(AgentStates(0.1 * k, np.arange(people), here, np.ones((people, 2)), heading, radius))
+
+    update(0, 50)
+    tracemalloc.start()
+    update(50, records)
+    grown = tracemalloc.get_traced_memory()[0] / (records - 50)
+    tracemalloc.stop()
+    assert grown < 130.0, f"{grown:.0f} bytes per record"
+    assert metrics.result()["duration"] == pytest.approx(0.1 * (records - 1))

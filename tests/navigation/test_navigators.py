@@ -12,7 +12,15 @@ from crowdbot.core import InputError, Twist, Walls, builtin_classes, from_attrib
 from crowdbot.navigation import Action, DriveLimits, Navigator, Observation, ORCANavigator, Straight, VisiblePeople
 
 BUILTIN = builtin_classes(navigation, navigation.Navigator)
-OTHERS = (navigation.ExternalNavigator, navigation.ProcessNavigator, navigation.ScanMapNavigator)
+OTHERS = (
+    navigation.ExternalNavigator,
+    navigation.FollowerNavigator,
+    navigation.ProcessNavigator,
+    navigation.Ros2Navigator,
+    navigation.RosbridgeNavigator,
+    navigation.ScanMapNavigator,
+    navigation.SinusoidNavigator,
+)
 """Navigators that do not decide here, or have a memory; they have tests of their own."""
 NAVIGATORS = {name: kind for name, kind in BUILTIN.items() if kind not in OTHERS}
 LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
@@ -28,7 +36,7 @@ def meeting(people=(), **changes):
 
 def test_the_room_shows_its_contracts():
     names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "rds", "social-force", "straight"}
-    names |= {"policy", "process", "scan-map", "time-elastic-band"}
+    names |= {"follower", "policy", "process", "ros2", "rosbridge", "scan-map", "sinusoid", "time-elastic-band"}
     assert set(BUILTIN) == names
     assert all(hasattr(navigation, name) for name in navigation.__all__)
 

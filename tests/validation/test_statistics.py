@@ -18,7 +18,8 @@ from crowdbot.validation.bottleneck import steady_flow
 from crowdbot.validation.contact_table import compare_contacts, write_contact_page
 from crowdbot.validation.contacts import CONTACT_TRIALS, measure_contacts
 from crowdbot.validation.crowd_motion import simulate_periodic
-from crowdbot.validation.scenario import STEP, CrowdTracks, corridor_walls, substeps
+from crowdbot.validation.layouts import corridor_walls
+from crowdbot.validation.scenario import STEP, CrowdTracks, substeps
 from crowdbot.validation.section import section_of, section_values
 from crowdbot.validation.statistics import find_steady_window, summarize_starts, text_of
 
@@ -126,7 +127,7 @@ def test_the_table_resumes_and_says_why(tmp_path):
     text = write_contact_page(
         rows, tmp_path / "contacts.md", "crowdbot validate", {"blind": "it sees nobody"}
     ).read_text()
-    assert "| orca | 30.1 | 0.0, 0 % | ✓ |" in text
+    assert "| orca | 2 | 30.1 | 0.0, 0 % | ✓ |" in text
     assert "* **blind**: it sees nobody." in text
     assert "* **orca**" not in text
 

@@ -17,6 +17,7 @@ from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
 from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
 from crowdbot.validation.crowd_motion import deepest_overlap, simulate_periodic
 from crowdbot.validation.lanes import LANES, NARROW
+from crowdbot.validation.layouts import corridor_walls, inside_solids
 from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
 from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
@@ -24,9 +25,7 @@ from crowdbot.validation.scenario import (
     RADIUS,
     STEP,
     CrowdTracks,
-    corridor_walls,
     gate,
-    inside_solids,
     opening,
     share,
     starts,

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import os
 import shutil
 import subprocess
 import threading
@@ -28,13 +29,13 @@ def browser():
 
 
 @contextlib.contextmanager
-def serve(folder, desks=DESKS, **options):
+def serve(folder, desks=DESKS, kind=AppServer, **options):
     """Run the app in a thread and give its server."""
     ready, box = threading.Event(), {}
 
     async def main():
         box["loop"], box["stop"] = asyncio.get_running_loop(), asyncio.Event()
-        async with AppServer(desks, folder, port=0, **options).running() as server:
+        async with kind(desks, folder, port=0, **options).running() as server:
             box["server"] = server
             ready.set()
             await box["stop"].wait()
@@ -42,11 +43,17 @@ def serve(folder, desks=DESKS, **options):
     thread = threading.Thread(target=asyncio.run, args=(main(),))
     thread.start()
     assert ready.wait(20)
+
+    def stop():
+        if thread.is_alive():
+            box["loop"].call_soon_threadsafe(box["stop"].set)
+        thread.join(60)
+
+    box["server"].stop = stop
     try:
         yield box["server"]
     finally:
-        box["loop"].call_soon_threadsafe(box["stop"].set)
-        thread.join(60)
+        stop()
         assert not thread.is_alive()
 
 
@@ -71,7 +78,7 @@ def page(request, browser, app):
     """
     context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     page = context.new_page()
-    page.set_default_timeout(180_000)  # kernels may be compiled
+    page.set_default_timeout(int(os.environ.get("PAGE_TIMEOUT", "180000")))  # kernels may be compiled
     faults = []
     page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
     page.on("pageerror", lambda one: faults.append(str(one)))

@@ -3,7 +3,7 @@
 import json
 import time
 
-from crowdbot.web import Workspace, call_command
+from crowdbot.web import JobBoard, SessionLimits, Workspace, call_command
 from crowdbot.web.prediction import PredictionDesk
 
 
@@ -14,6 +14,7 @@ class LonelySession:
 
     def __init__(self, folder):
         self.workspace, self.events = Workspace(folder), []
+        self.jobs = JobBoard(self.workspace, SessionLimits(), self.tell)
 
     def tell(self, event, data):
         self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))

@@ -15,13 +15,16 @@ class Windows:
 
     def __init__(self, folder):
         self.workspace = Workspace(folder)
-        self.events, self.frames = [], []
+        self.events, self.frames, self.is_open = [], [], True
 
     def tell(self, event, data):
         self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
 
     def show(self, frame):
         self.frames = [*self.frames[-50:], frame]
+
+    def is_ready(self):
+        return self.is_open
 
     def latest(self, event):
         return next(data for name, data in reversed(self.events) if name == event)

@@ -12,7 +12,17 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError
-from crowdbot.web import CREDIT, AccessPolicy, AppServer, Desk, Resource, StateFrame, command
+from crowdbot.web import (
+    CREDIT,
+    AccessPolicy,
+    AppServer,
+    Desk,
+    Resource,
+    SessionLimits,
+    StateFrame,
+    Workspace,
+    command,
+)
 
 HANGS, GOES_ON = threading.Event(), threading.Event()
 
@@ -252,15 +262,13 @@ def test_uploads_are_kept_by_their_last_name(tmp_path):
     assert (tmp_path / "files" / "tracks.csv").read_bytes() == b"id,x"
 
 
-def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path, monkeypatch):
-    from crowdbot.web import app_server
-
+def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path):
     async def talk(server, client):
         async with client.post(
             server.url + "api/main/upload?name=large.csv", data=io.BytesIO(bytes(5 << 20))
         ) as answer:
             first = answer.status
-        monkeypatch.setattr(app_server, "UPLOAD", 1 << 20)
+        server.limits = SessionLimits(upload=1e6)
         async with client.post(server.url + "api/main/upload?name=huge.csv", data=io.BytesIO(bytes(2 << 20))) as answer:
             return first, answer.status
 
@@ -304,3 +312,12 @@ def test_a_port_in_use_is_told(tmp_path):
         return port
 
     assert serve(tmp_path, talk) > 0
+
+
+def test_only_trials_are_listed_as_trials(tmp_path):
+    space = Workspace(tmp_path)
+    texts = {"own.xml": "<!-- mine --><trial name='a'/>", "questions.xml": "<experiment/>", "broken.xml": "<tri"}
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    assert space.trials() == ["broken.xml", "own.xml"]
+    assert space.files("*.xml") == ["broken.xml", "own.xml", "questions.xml"]

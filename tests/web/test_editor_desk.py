@@ -181,3 +181,15 @@ def test_other_pictures_are_refused(desk, session, data, size, sentence):
     (session.workspace.folder / "plan.png").write_bytes(data)
     with pytest.raises(InputError, match=sentence):
         desk.floor("plan.png", size)
+
+
+def test_a_server_that_is_started_again_has_the_text(tmp_path):
+    loop = asyncio.new_event_loop()
+    for text in ("<trial", '<trial name="mine" duration="9" seed="1">\n  <stage/>\n</trial>\n'):
+        first = AppSession("main", Workspace(tmp_path), (EditorDesk,), loop)
+        first.desk("editor").write(text, first.desk("editor").greet()["revision"])
+        second = AppSession("main", Workspace(tmp_path), (EditorDesk,), loop)
+        assert second.desk("editor").greet()["text"] == text
+    (tmp_path / ".crowdbot-drafts" / "editor.json").write_text("[")
+    assert "new-trial" in AppSession("main", Workspace(tmp_path), (EditorDesk,), loop).desk("editor").greet()["text"]
+    loop.close()

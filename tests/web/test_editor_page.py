@@ -155,3 +155,94 @@ def test_axe_finds_nothing(editor, axe, theme):
     page.evaluate("crowdbot.connection.call('editor.start', {trial: 'crossing-flows'})")
     wait_for_text(page, "crossing-flows")
     assert axe(page) == []
+
+
+def canvas_place(page, x, y):
+    """Pixels of the page at a place of the trial [m]."""
+    return page.evaluate(
+        """([x, y]) => {
+          const view = crowdbot.tab('editor').tab.view;
+          const bounds = view.canvas.getBoundingClientRect();
+          const [px, py] = view.pixel([x, y]);
+          return [px + bounds.left, py + bounds.top];
+        }""",
+        [x, y],
+    )
+
+
+def test_a_way_is_drawn_for_people_and_changed_with_the_mouse(editor):
+    page = editor
+    draw(page, "People", (0.1, 0.4), (0.2, 0.6), (0.8, 0.4), (0.9, 0.6))
+    wait_for_text(page, "<spawner")
+    draw(page, "Way", (0.3, 0.2), (0.6, 0.2), (0.6, 0.8))
+    page.keyboard.press("Enter")
+    wait_for_text(page, 'journey="way1"')
+    page.get_by_text("No errors").wait_for()
+    trial = parse_trial(text_of(page))
+    assert (len(trial.journeys[0].stops), trial.spawners[0].journey, trial.spawners[0].goal) == (3, "way1", ())
+
+    page.keyboard.press("Escape")
+    (x1, y1), (x2, y2) = [(one.x, one.y) for one in trial.journeys[0].stops[:2]]
+    page.mouse.dblclick(*canvas_place(page, (x1 + x2) / 2, (y1 + y2) / 2))
+    page.wait_for_function("() => document.querySelector('.editor textarea').value.split('<point').length === 5")
+    page.get_by_role("button", name="Undo").click()  # back to three stops
+    page.wait_for_function("() => document.querySelector('.editor textarea').value.split('<point').length === 4")
+
+    before = text_of(page)
+    page.mouse.move(*canvas_place(page, x1, y1))
+    page.mouse.down()
+    page.mouse.move(*canvas_place(page, x1, y1 - 1.0), steps=4)
+    page.mouse.up()
+    page.wait_for_function("before => document.querySelector('.editor textarea').value !== before", arg=before)
+    moved = parse_trial(text_of(page)).journeys[0].stops
+    assert moved[0].y == pytest.approx(y1 - 1.0, abs=0.11)
+    assert [(one.x, one.y) for one in moved[1:]] == [(one.x, one.y) for one in trial.journeys[0].stops[1:]]
+
+    page.get_by_role("option", name="spawner").click()
+    page.locator(".inspector").get_by_label("journey").select_option("")
+    page.get_by_role("option", name="journey way1").click()
+    page.keyboard.press("Delete")
+    page.wait_for_function("() => !document.querySelector('.editor textarea').value.includes('journey')")
+
+
+def test_single_people_are_gathered_with_a_rectangle(editor):
+    page = editor
+    draw(page, "People", (0.3, 0.4), (0.5, 0.6), (0.8, 0.4), (0.9, 0.6))
+    wait_for_text(page, "<spawner")
+    page.get_by_role("button", name="Make single people").click()
+    wait_for_text(page, "<agent")
+    page.keyboard.press("Escape")
+    box = page.locator(".editor canvas").bounding_box()
+    corners = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in ((0.25, 0.3), (0.6, 0.7))]
+    page.keyboard.down("Shift")
+    page.mouse.move(*corners[0])
+    page.mouse.down()
+    page.mouse.move(*corners[1], steps=4)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    page.get_by_role("button", name="Make a spawner").click()
+    wait_for_text(page, "<spawner")
+    trial = parse_trial(text_of(page))
+    assert (trial.spawners[0].count, trial.agents) == (5, ())
+
+
+def test_the_scale_of_a_floor_plan_is_set_with_two_points(editor, app, tmp_path):
+    from PIL import Image, ImageDraw
+
+    plan = Image.new("L", (560, 280), 255)
+    ImageDraw.Draw(plan).rectangle((10, 10, 549, 269), outline=0, width=6)
+    plan.save(tmp_path / "plan.png")
+    page = editor
+    page.get_by_role("button", name="Open").click()
+    page.get_by_label("Picture (.png, .jpg)").set_input_files(tmp_path / "plan.png")
+    canvas = page.get_by_role("img", name="Floor plan")
+    canvas.wait_for()
+    box = canvas.bounding_box()
+    for x in (0.1, 0.6):
+        page.mouse.click(box["x"] + x * box["width"], box["y"] + 100)
+    page.get_by_label("Distance between the two points [m]").fill("14")
+    page.get_by_text("The picture is 28.0 m x 14.0 m.").wait_for()
+    page.get_by_role("button", name="Use as stage").click()
+    wait_for_text(page, 'map="plan.yaml"')
+    page.wait_for_function("() => crowdbot.tab('editor').tab.model.state.rings.length > 0")
+    assert (app.folder / "plan.yaml").read_text().splitlines()[1].startswith("resolution: 0.05")

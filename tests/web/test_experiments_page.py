@@ -10,6 +10,7 @@ def experiments(page):
     """The experiments tab of an empty start."""
     page.get_by_role("tab", name="Experiments").click()
     page.get_by_role("heading", name="Start a session").wait_for()
+    page.get_by_role("combobox", name="Experiment").select_option("robot-speed")
     return page
 
 

@@ -122,6 +122,13 @@ def test_degraded_input_gives_the_numbers_of_crowdbot_degrade(desk, capsys):
     space = {"found": []}
     exec(compile(text, "copied.py", "exec"), space)
     assert [one.ade for one in space["found"]] == [degraded]
+    desk("remove", key=desk.predictor("constant-velocity")["key"])
+    desk("add", settings={"predictor": "simulated", "model": "social-force", "values": {"relaxation_time": 0.7}})
+    desk.run(seed=1)
+    line = desk("command_line", degraded=True)
+    assert "--set-predictor relaxation_time=0.7" in line
+    (found,) = command_json(capsys, line)["degradations"]["gaussian-noise"]["rows"]
+    assert found["score"]["ade"] == desk.desk.greet()["predictors"][0]["results"]["degraded"]["score"]["ade"]
     desk("degrade", name="", values={})
     assert list(desk.desk.greet()["predictors"][0]["results"]) == ["clean"]
 
@@ -241,6 +248,8 @@ def test_results_can_be_saved_as_tables(desk):
     assert (len(people), people.ade.mean()) == (score["persons"], pytest.approx(score["ade"]))
     gif = desk.desk.resource("animation.gif", {"index": "2"})
     assert (gif.kind, gif.data[:6]) == ("image/gif", b"GIF89a")
+    film = desk.desk.resource("animation.mp4", {"index": "2"})
+    assert (film.kind, film.data[4:8], film.name[-4:]) == ("video/mp4", b"ftyp", ".mp4")
 
 
 def test_hostile_files_and_names_are_refused(desk, tmp_path):
@@ -344,3 +353,66 @@ def test_numbers_that_are_not_finite_reach_the_page_as_gaps(desk):
     desk.run()
     assert desk("series", variable="cost")["rows"][0]["values"] == [None] * 5
     assert math.isfinite(desk("results")["horizon"]["rows"][0]["values"][0])
+
+
+def test_a_server_that_is_started_again_has_the_recording_and_the_predictors(desk):
+    desk("example", name="bottleneck")
+    desk("add", settings={"predictor": "constant-velocity"})
+    desk("add", settings={"predictor": "simulated", "model": "social-force", "cost": "progressive", "budget": 20})
+    again = DeskCaller(desk.folder)
+    assert again.desk.greet()["stored"]
+    assert again.desk.greet()["recording"] is None
+    again("restore")
+    before, after = desk.desk.greet(), again.desk.greet()
+    assert after["recording"]["path"] == before["recording"]["path"]
+    assert [one["name"] for one in after["predictors"]] == [one["name"] for one in before["predictors"]]
+    assert not after["stored"]
+
+
+def test_a_server_that_is_started_again_has_the_results(desk):
+    desk("example", name="bottleneck")
+    desk("add", settings={"predictor": "constant-velocity", "samples": 1})
+    desk("add", settings=ORCA | {"budget": 4})
+    desk("degrade", name="late-start", values={"rows": 2})
+    desk.run(seed=3)
+    asked = ("log", "results", "variables")
+    before = {name: desk(name) for name in asked}
+    key = desk.desk.greet()["predictors"][1]["key"]
+    who = int(desk.desk.board.member(key).results["clean"].forecast(2)[0][0])
+    person, series = desk("person", index=2, id=who), desk("series", variable="ade")
+    frame = desk.desk.resource("window", {"index": "2", "input": "degraded"}).data
+    again = DeskCaller(desk.folder)
+    again("restore")
+    assert {name: again(name) for name in asked} == before
+    assert (again("person", index=2, id=who), again("series", variable="ade")) == (person, series)
+    assert again.desk.resource("window", {"index": "2", "input": "degraded"}).data == frame
+    facts = [one.desk.greet() for one in (desk, again)]
+    assert facts[0]["predictors"] == facts[1]["predictors"]
+    assert facts[1]["predictors"][0]["results"]["degraded"]["score"]["ade"] > 0.0
+    assert facts[0]["recording"] == facts[1]["recording"]
+    assert again("command_line") == desk("command_line")
+
+
+def test_results_that_do_not_fit_or_are_damaged_are_left_out(desk):
+    desk("example", name="bottleneck")
+    desk("add", settings={"predictor": "constant-velocity"})
+    desk.run()
+    draft = desk.folder / ".crowdbot-drafts" / "prediction.json"
+    known = json.loads(draft.read_text())
+    draft.write_text(json.dumps({**known, "options": {**known["options"], "every": 2}}))
+    other = DeskCaller(desk.folder)
+    other("restore")
+    assert other.desk.greet()["recording"]["windows"] < known_windows(desk)
+    assert other.predictor("constant")["results"] == {}
+    draft.write_text(json.dumps(known))
+    file = draft.with_name("prediction-results.npz")
+    whole = file.read_bytes()
+    for damaged in (b"", whole[: len(whole) // 2], bytes(200)):
+        file.write_bytes(damaged)
+        other = DeskCaller(desk.folder)
+        other("restore")
+        assert other.predictor("constant")["results"] == {}
+
+
+def known_windows(desk):
+    return desk.desk.greet()["recording"]["windows"]

@@ -20,7 +20,7 @@ TAB = "#tab=prediction"
 def tab(page):
     """The prediction tab of an empty session."""
     page.get_by_role("tab", name="Prediction").click()
-    expect(page.get_by_role("region", name="Recording")).to_contain_text("none is open")
+    expect(page.get_by_role("region", name="Recording")).to_contain_text("No recording is open")
     return page
 
 

@@ -11,8 +11,9 @@ from crowdbot.humans import shapes
 from crowdbot.simulation import AddElementOrder, AddPersonOrder, Simulation
 from crowdbot.trials import load_trial, parse_trial
 from crowdbot.web import StateFrame
-from crowdbot.web.scene import LAYERS, scene_description, scene_frame, scene_resource
-from crowdbot.web.simulator.walking_bodies import WalkingBodies
+from crowdbot.web.scene import LAYERS, WalkingBodies, scene_description, scene_frame, scene_resource
+from crowdbot.web.scene.bone_packing import pack_bones
+from crowdbot.web.scene.quaternions import quaternions
 from crowdbot.world import simulated_body, worlds_of
 
 HALL = """
@@ -85,6 +86,21 @@ def test_bones_decode_to_the_posture(hall):
         step = np.einsum("nij,nj->ni", turn[:, parent], head[:, k] - head[:, parent])
         place[:, k] = frame.arrays["pelvis"] if parent < 0 else place[:, parent] + step
     assert np.abs(place - posture.position[rows]).max() < 1e-3
+
+
+def test_packed_bones_are_those_of_the_table_of_quaternions():
+    rng = np.random.default_rng(2)
+    every = rng.normal(size=(40, 28, 4))
+    every[0, :4] = np.eye(4)  # each branch at its exact edge
+    every[1, :6] = [[1, 1, 0, 0], [1, 0, 1, 0], [0, 1, 1, 0], [0, 0, 1, 1], [1, 1, 1, 1], [0, 1, 0, -1]]
+    turn, rows = rotations(every), np.array([39, 0, 1, 7])
+    found = pack_bones(turn, rows)
+    expected = 32767.0 * quaternions(turn[rows]).reshape(4, 112)
+    assert found.dtype == np.int16
+    assert np.abs(rotations(found.reshape(4, 28, 4) / 32767.0) - turn[rows]).max() < 1e-4
+    clear = np.ones((4, 28), dtype=bool)
+    clear[1:3] = False  # where two parts are equally large, either may be the positive one
+    assert np.abs(found - expected).reshape(4, 28, 4)[clear].max() <= 0.5 + 1e-6
 
 
 def test_links_of_robots_have_the_poses_of_the_simulation(hall):
@@ -224,3 +240,21 @@ def test_a_scene_without_people_has_a_frame():
     frame = StateFrame.decode(scene_frame(simulation, (), bodies.motion).encode())
     assert frame.arrays["bones"].shape == (0, 112)
     assert len(frame.arrays["bots"]) == 1
+
+
+def test_bodies_beside_a_simulation_walk_as_its_own():
+    own = run(load_trial("circle-crossing"), 0)
+    beside = Simulation(load_trial("circle-crossing"), 0)
+    beside.begin()
+    bodies = WalkingBodies(beside)
+    bodies.motion.people, bodies.motion.gait = own_bodies(own).people, own_bodies(own).gait
+    bodies.motion.state = own_bodies(own).state
+    for _ in range(12):
+        own.advance()
+        beside.advance()
+        bodies.follow(beside)
+    assert np.array_equal(sent(own).arrays["bones"], scene_frame(beside, (), bodies.motion).arrays["bones"])
+
+
+def own_bodies(simulation):
+    return worlds_of(simulation.world)[0].people

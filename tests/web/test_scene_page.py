@@ -1,5 +1,6 @@
 """The picture of a scene in a real browser: numbers of the drawn frame, picking, cameras, layers, player."""
 
+import math
 import re
 import threading
 from importlib import resources
@@ -11,7 +12,7 @@ from crowdbot.recording import read_episode, record
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
 from crowdbot.web import Desk, Resource, command
-from crowdbot.web.scene import scene_description, scene_frame, scene_resource
+from crowdbot.web.scene import episode_events, scene_description, scene_frame, scene_resource
 
 PAGE = b"""<!doctype html><html lang="en"><title>scene</title><link rel="icon" href="data:,">
 <style>body { margin: 0 } canvas { display: block; width: 100vw; height: 100vh }</style>
@@ -96,9 +97,9 @@ def test_a_scene_is_drawn(window, flat):
     names = [one["name"] for one in window.evaluate("scene.layers()")]
     assert {"people", "robots", "walls", "zones", "scans", "forces"} <= set(names)
     assert window.evaluate("scene.wanted()") == ["scans"]
-    beside = [] if flat else ["beside"]
+    beside, eyes = ([], []) if flat else (["beside"], ["eyes"])
     cameras = [one["name"] for one in window.evaluate("scene.cameras()")]
-    assert cameras == ["free", "overview", *beside, "follow", "robot:robot"]
+    assert cameras == ["free", "overview", *beside, "follow", *eyes, "robot:robot"]
 
 
 @pytest.mark.parametrize("flat", [False, True])
@@ -140,6 +141,42 @@ def test_layers_and_cameras_change_the_picture(window):
         window.evaluate("scene.setLayer('smell', true)")
 
 
+def test_the_first_person_looks_around_and_is_not_seen(window):
+    before = window.evaluate(DRAW, {"flat": False, "theme": "light"})
+    window.evaluate("scene.setCamera('eyes', { kind: 'person', id: 0 })")
+    info = window.evaluate(DRAW, {"flat": False, "theme": "light"})
+    place = window.evaluate("Array.from(scene.state.place('person', 0))")
+    height = window.evaluate("scene.state.height('person', 0)")
+    assert info["eye"] == pytest.approx([*place[:2], 0.93 * height], abs=1e-4)
+    assert sum(before["levels"]) == sum(info["levels"]) + 1
+    ahead = "(({ camera }) => camera.getWorldDirection(camera.up.clone()).toArray())(scene._views)"
+    straight = window.evaluate(ahead)
+    assert math.atan2(straight[1], straight[0]) == pytest.approx(place[2], abs=1e-3)
+    window.locator("canvas").focus()
+    window.keyboard.press("Shift+ArrowLeft")
+    window.evaluate("scene.render()")
+    turned = window.evaluate(ahead)
+    assert math.remainder(math.atan2(turned[1], turned[0]) - place[2] - 0.12, math.tau) == pytest.approx(0, abs=1e-3)
+    window.mouse.move(200, 150)
+    window.mouse.down()
+    window.mouse.move(200, 110)
+    window.mouse.up()
+    window.evaluate("scene.render()")
+    assert window.evaluate(ahead)[2] > turned[2] + 0.15
+
+
+@pytest.mark.parametrize("layer", ["paths", "density", "ttc"])
+@pytest.mark.parametrize("flat", [False, True])
+def test_layers_of_the_crowd_are_drawn(window, layer, flat):
+    before = window.evaluate(DRAW, {"flat": flat, "theme": "light"})
+    window.evaluate(f"scene.setLayer('{layer}', true)")
+    taken = window.evaluate(DRAW, {"flat": flat, "theme": "light"})
+    assert taken["taken"]
+    assert window.evaluate(f"Object.keys(scene.state.frame.arrays).includes('{layer}')")
+    if not flat and layer == "density":
+        assert taken["triangles"] >= before["triangles"] + 2
+
+
 def test_a_frame_of_another_description_is_not_drawn(window):
     window.evaluate(DRAW, {"flat": False, "theme": "light"})
     window.evaluate("scene.state.description.revision += 1")
@@ -147,7 +184,7 @@ def test_a_frame_of_another_description_is_not_drawn(window):
 
 
 def test_the_player_plays_an_episode_without_a_server(browser, tmp_path, capsys):
-    summary = record(load_trial("frontal", duration=2.0), out=tmp_path)
+    summary = record(load_trial("frontal", duration=2.0, **{"robot/drive/max-speed": 0.03}), out=tmp_path)
     page_file = tmp_path / "player.html"
     assert main(["export", str(summary.path), "--to", str(page_file)]) == 0
     assert re.search(r"player\.html: 21 frames, 2 s, \d\.\d MB", capsys.readouterr().out)
@@ -168,6 +205,11 @@ def test_the_player_plays_an_episode_without_a_server(browser, tmp_path, capsys)
     page.wait_for_function("() => Math.abs(crowdbotPlayer.player.time - 1) < 1e-9")
     page.get_by_role("button", name="Play", exact=True).click()
     page.wait_for_function("() => crowdbotPlayer.player.time > 1.2")
+    page.evaluate("crowdbotPlayer.player.play(false)")
+    events = episode_events(recorded)
+    assert [one.kind for one in events] == ["stall"]  # the robot is slower than 0.05 m/s
+    page.get_by_label("Event", exact=True).select_option(str(events[0].time).removesuffix(".0"))
+    page.wait_for_function(f"() => Math.abs(crowdbotPlayer.player.time - {events[0].time}) < 1e-9")
     page.get_by_role("button", name="From above").click()
     page.wait_for_function("() => crowdbotPlayer.player.flat && crowdbotPlayer.player.scene.info().frames > 0")
     assert page.get_by_role("status").text_content() == "1 person, 1 robot"

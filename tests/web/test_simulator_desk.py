@@ -206,6 +206,22 @@ def test_a_pause_is_not_made_up_for():
         loop.do(lambda: None)
 
 
+def test_a_window_that_is_busy_costs_nothing_and_sees_the_end_of_a_pause(tmp_path):
+    with simulator(tmp_path) as desk:
+        opened(desk)
+        desk._player.do(lambda: None)  # the first frame has been sent
+        desk.session.is_open = False  # it has not yet drawn what was sent
+        desk.session.frames.clear()
+        desk.play()
+        wait_until(lambda: desk._status()["time"] > 0.3)
+        assert desk.session.frames == []
+        desk.pause()
+        wait_until(lambda: desk.session.frames)
+        desk._player.do(lambda: None)
+        assert desk.session.frames[-1].time == desk._status()["time"]
+        assert len(desk.session.frames) == 1
+
+
 def test_open_names_a_file_or_a_builtin_trial(tmp_path):
     (tmp_path / "one.xml").write_text("<trial/>")
     desks, readable = opened_first(DESKS, str(tmp_path / "one.xml"))

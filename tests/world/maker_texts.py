@@ -331,6 +331,43 @@ def swerve():
                  control(*names, interface="position"))  # fmt: skip
 
 
+def tracked():
+    """A crawler: four axles on each side, all wheels are meshes, the first axle is nearer to the second."""
+    rows = ""
+    for k, x in enumerate((0.3, 0.1, -0.1, -0.3)):
+        for s, y in (("left", 0.2), ("right", -0.2)):
+            shape = "<mesh filename='package://courier/meshes/wheel.stl' scale='0.001 0.001 0.001'/>"
+            rows += wheel(f"track_{s}_{k}", "hull", f"{x} {y} 0", 0.06, shape=shape, mass=0.4)
+    return robot("crawler", link("hull", 18.0, box(0.7, 0.3, 0.1), "0.03 0 0.05"), rows)
+
+
+def sprung():
+    """Driven wheels on sprung slides, four castors at the corners of a heavy box, as robots in warehouses."""
+    slide = "<limit lower='-0.02' upper='0.02' effort='400' velocity='1'/><dynamics damping='200'/>"
+    rows = ""
+    for s, y in (("left", 0.25), ("right", -0.25)):
+        rows += link(f"{s}_arm", 0.5, box(0.1, 0.04, 0.04), "0 0 0.1")
+        rows += joint(f"{s}_spring", "prismatic", "base_link", f"{s}_arm", f"0 {0.9 * y} 0", more=slide)
+        rows += wheel(f"{s}_wheel", f"{s}_arm", f"0 {0.1 * y} 0", 0.08, mass=2.0)
+    for k, (x, y) in enumerate(((0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2))):
+        rows += link(f"caster_{k}", 0.3, "<sphere radius='0.03'/>")
+        rows += joint(f"caster_{k}_joint", "fixed", "base_link", f"caster_{k}", f"{x} {y} -0.05")
+    return robot("carrier", link("base_link", 60.0, box(0.8, 0.5, 0.2), "0 0 0.1"), rows)
+
+
+def rear_steering():
+    """A forklift that steers and drives at its rear."""
+    return robot(
+        "truck", link("base_link", 90.0, box(1.2, 0.6, 0.3), "-0.5 0 0.25"),
+        link("pivot", 1.0, box(0.05, 0.05, 0.05), "0 0 0.15"),
+        joint("pivot_joint", "revolute", "base_link", "pivot", "-1.0 0 0",
+              more="<limit lower='-1.3' upper='1.3' effort='200' velocity='2'/>"),
+        wheel("drive", "pivot", "0 0 0", 0.1, mass=3.0),
+        wheel("fork_l", "base_link", "0 0.3 0", 0.1), wheel("fork_r", "base_link", "0 -0.3 0", 0.1),
+        control("pivot_joint", interface="position"),
+    )  # fmt: skip
+
+
 def write_stl(path, radius=60.0, length=30.0, sides=24):
     """Write a disc along z in millimetres as binary STL."""
     ring = [(radius * math.cos(a), radius * math.sin(a)) for a in np.linspace(0, 2 * math.pi, sides, endpoint=False)]
@@ -363,6 +400,9 @@ MAKERS = {
     "sdf_diff": (sdf_diff, "differential", 14.3),
     "manipulator": (manipulator, "differential", 53.6),
     "swerve": (swerve, "omnidirectional", 44.0),
+    "tracked": (tracked, "skid-steer", 21.2),
+    "sprung": (sprung, "differential", 66.2),
+    "rear_steering": (rear_steering, "tricycle", 95.0),
 }
 """Text, kind of base and mass [kg] of each robot."""
 

@@ -173,6 +173,26 @@ def test_a_tricycle_turns_on_the_spot_only_with_a_wheel_across(turn):
     assert TricycleDrive(max_steering=math.pi / 2).turning_radius == 0.0
 
 
+@pytest.mark.parametrize("turn", [1.0, -1.0])
+def test_a_tricycle_stays_in_its_place_until_its_wheel_is_across(turn):
+    drive, pose, twist = TricycleDrive(max_steering=math.pi / 2), ORIGIN, STILL
+    for _ in range(60):
+        pose, twist = drive.step(pose, twist, Twist(0.0, turn), 0.05)
+        assert abs(twist.forward[0]) < 1e-12
+    assert twist.turn[0] == pytest.approx(turn)
+    assert np.abs(pose.position).max() < 1e-12
+
+
+@few
+@given(st.floats(-1.0, 1.0), st.floats(-2.0, 2.0), st.floats(-1.1, 1.1))
+def test_a_tricycle_that_steers_moves_ahead_no_faster_than_asked(forward, turn, steering):
+    drive, pose = TricycleDrive(max_acceleration=9.0), ORIGIN
+    twist = SteeredTwists(*(np.zeros(1) for _ in range(3)), np.array([steering]))
+    for _ in range(60):
+        pose, twist = drive.step(pose, twist, Twist(forward, turn), 0.05)
+        assert abs(twist.forward[0]) <= abs(forward) + 1e-9
+
+
 def test_a_tricycle_keeps_its_forward_speed_in_a_curve_that_is_too_tight():
     drive = TricycleDrive(max_steering=0.5)
     _, twist = driven(drive, Twist(0.3, 5.0), 0.05, 100)

@@ -6,13 +6,17 @@ from pathlib import Path
 
 import pytest
 from maker_texts import MAKERS, write_maker
+from physics_worlds import alone
 
 from crowdbot.benchmark.drives import measure_drives
 from crowdbot.benchmark.drives.maker_robots import maker_robot
+from crowdbot.core import Element, Twist
 from crowdbot.world import import_robot
+from crowdbot.world.urdf import mjcf
 
 DRIVEN = ("classic_diff", "mecanum", "kiwi3", "kiwi4", "ackermann", "quadruped", "balancing", "conditional_xacro",
-          "sdf_diff", "swerve", "sphere_wheels", "swivel_castors")  # fmt: skip
+          "sdf_diff", "swerve", "sphere_wheels", "swivel_castors", "german_skid", "six_wheels", "mesh_wheels",
+          "manipulator", "tricycle", "tracked", "sprung", "rear_steering")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MAKERS)
@@ -29,6 +33,8 @@ def test_a_robot_of_a_maker_drives_as_asked(tmp_path: Path, name: str) -> None:
     assert grid.overshoot <= 0.05
     assert grid.steady_error <= 0.05
     assert grid.path_error <= 0.05
+    assert grid.acceleration <= 1.1
+    assert grid.turn_acceleration <= 1.1
     assert not grid.fallen
 
 
@@ -54,6 +60,60 @@ def test_both_front_wheels_of_a_car_steer(tmp_path: Path) -> None:
 def test_a_wheel_that_steers_without_a_limit_turns_across(tmp_path: Path) -> None:
     with maker_robot(write_maker(tmp_path, "tricycle")) as (robot, _):
         assert robot.drive.turning_radius == 0.0
+
+
+def test_wheels_without_motors_hold_a_base_that_steers(tmp_path: Path) -> None:
+    """Soft tyres of a free axle would creep sideways, and reactions to the steering turned the base."""
+    with maker_robot(write_maker(tmp_path, "rear_steering")) as (robot, _):
+        held = {wheel.joint: (wheel.driven, wheel.steering) for wheel in robot.wheels}
+        assert held["fork_l_joint"] == held["fork_r_joint"] == (False, "")
+        world = alone(robot, dt=0.02, physics_dt=0.01)
+        turns = []
+        for _ in range(20):
+            world.step({0: Twist(0.0, robot.drive.max_turn_rate)})
+            turns.append(abs(float(world.twists[0].turn[0])))
+        angle, rate = world.robot_body(0).joints()["pivot_joint"]
+    assert (angle, rate) == (pytest.approx(-0.4, abs=0.005), pytest.approx(-1.0, rel=0.01))
+    assert max(turns) < 0.001
+
+
+def test_a_mesh_around_an_axle_rolls_as_an_ellipsoid(tmp_path: Path) -> None:
+    with maker_robot(write_maker(tmp_path, "mesh_wheels")) as (robot, _):
+        radii = {wheel.joint: wheel.radius for wheel in robot.wheels}
+        geoms = _colliders(mjcf(robot.model, wheels=radii).root, "left_link")
+        assert [one.attributes["type"] for one in geoms] == ["ellipsoid"]
+        assert [float(value) for value in geoms[0].attributes["size"].split()] == pytest.approx([0.06, 0.06, 0.015])
+        assert {one.attributes["type"] for one in _colliders(mjcf(robot.model).root, "left_link")} == {"mesh"}
+
+
+def _colliders(root: Element, link: str) -> list[Element]:
+    found, waiting = [], [root]
+    while waiting:
+        element = waiting.pop()
+        waiting += element.children
+        if element.tag == "geom" and element.attributes["name"].startswith(f"{link}/0"):
+            found.append(element)
+    return found
+
+
+def test_springs_of_wheels_are_fixed_and_told(tmp_path: Path) -> None:
+    made = import_robot(write_maker(tmp_path, "sprung"), "r")
+    rows = {guess.what: guess.value for guess in made.guesses}
+    assert rows["joint left_spring"] == rows["joint right_spring"] == "fixed"
+    assert "motor of left_spring" not in rows
+
+
+def test_the_inner_wheel_of_a_car_keeps_its_joint_limit(tmp_path: Path) -> None:
+    """The plugin allows 0.5 rad in the middle, for which the inner wheel would need 0.63 of its 0.6 rad."""
+    with maker_robot(write_maker(tmp_path, "ackermann")) as (robot, _):
+        angles = robot.steering(robot.drive.motion(robot.drive.max_steering))
+    assert 0.55 < max(angles.values()) <= 0.6
+
+
+def test_six_wheels_have_three_axles(tmp_path: Path) -> None:
+    with maker_robot(write_maker(tmp_path, "six_wheels")) as (robot, _):
+        assert robot.drive.axles == 3
+        assert robot.drive.slip_factor == pytest.approx(1.74, abs=0.01)
 
 
 def test_a_ball_joint_is_fixed_and_told(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 // Inspector: the form of the chosen element, made from the table of trial files.
 import { fill, h } from "../ui/dom.mjs";
+import { followChanges } from "./journeys.mjs";
 
 const number = (text) => (text === "" ? undefined : text);
 
@@ -66,13 +67,17 @@ export class Inspector {
     const change = (text) => this.set(path, row.name, text === undefined || text === "" ? null : text);
     const label = `${row.label}${row.unit ? ` [${row.unit}]` : ""}${row.required ? " *" : ""}`;
     let control;
-    if (row.kind === "choice" || row.kind === "switch") {
+    const ways = row.name === "journey" ? this.model.state.tree.children.filter((one) => one.tag === "journey").map((one) => one.attributes.name) : null;
+    if (ways) {
+      const choices = ["", ...new Set([...ways, ...(value ? [value] : [])])];
+      control = h("select", { name: row.name, onchange: () => this.follow(path, control.value) }, choices.map((one) => h("option", { value: one, selected: one === (value ?? "") }, one || "none: to the goal")));
+    } else if (row.kind === "choice" || row.kind === "switch") {
       const choices = row.kind === "switch" ? ["true", "false"] : row.choices;
       const initial = value ?? "";
       control = h(
         "select",
         { name: row.name, onchange: () => change(control.value) },
-        ["", ...choices].map((one) => h("option", { value: one, selected: one === initial }, one || `default (${row.value})`)),
+        ["", ...choices].map((one) => h("option", { value: one, selected: one === initial }, one || (row.value === null ? "not given" : `default (${row.value})`))),
       );
     } else {
       const numeric = row.kind === "number" || row.kind === "whole";
@@ -90,6 +95,12 @@ export class Inspector {
 
   field(label, note, control) {
     return h("label", { class: "field", title: note ?? "" }, h("span", {}, label), control);
+  }
+
+  /** Lets people follow a way instead of walking to a goal, or ends that. */
+  follow(path, name) {
+    if (!name) return this.set(path, "journey", null);
+    return this.model.edit("change", { changes: followChanges(this.model, [path], name) });
   }
 
   set(path, name, value) {

@@ -1,6 +1,7 @@
 // Dialogs of the editor: open a built-in trial or a file, bring a map or a file in, save.
 import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { field, h } from "../ui/dom.mjs";
+import { makeFloorScale } from "./floor_scale.mjs";
 
 /** Shows what a trial may start from. */
 export async function openSources(model, app, opened) {
@@ -43,11 +44,10 @@ async function useMap(name, model) {
 }
 
 function floor(app, model, close) {
-  const size = h("input", { type: "number", min: "0.001", max: "10", step: "0.001", value: "0.05" });
-  const picture = h("input", { type: "file", accept: ".png,.jpg,.jpeg" });
+  const scale = makeFloorScale();
   const use = async () => {
-    const [name] = await upload(picture.files, app);
-    const map = name && (await model.call("floor", { picture: name, resolution: Number(size.value) }));
+    const [name] = await upload(scale.picture.files, app);
+    const map = name && (await model.call("floor", { picture: name, resolution: Number(scale.size.value) }));
     if (!map) return;
     close();
     await useMap(map, model);
@@ -56,8 +56,7 @@ function floor(app, model, close) {
     "fieldset",
     {},
     h("legend", {}, "Stage from a picture of a floor plan: dark pixels are walls"),
-    field("Picture (.png, .jpg)", picture),
-    field("Size of a pixel [m]", size),
+    scale.element,
     h("button", { type: "button", onclick: use }, "Use as stage"),
   );
 }

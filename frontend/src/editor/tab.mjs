@@ -29,7 +29,7 @@ class EditorTab {
     this.summary = h("p", { class: "note", "aria-live": "polite" });
     this.view = new EditorView(canvas, this.model, (text) => (this.words.textContent = text));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerup", () => this.tellTool());
+    canvas.addEventListener("pointerup", () => this.view.tool && this.tellTool());
     const panes = { outline: h("div", { class: "outline" }), inspector: h("div", { class: "inspector" }), xml: h("div", { class: "xml" }) };
     this.outline = new Outline(panes.outline, this.model);
     this.inspector = new Inspector(panes.inspector, this.model);
@@ -93,7 +93,8 @@ class EditorTab {
   }
 
   tellTool() {
-    if (this.view.tool) this.words.textContent = help(this.view.tool, this.view.points.length);
+    if (!this.view.tool) this.words.textContent = "";
+    else this.words.textContent = help(this.view.tool, this.view.points.length);
   }
 
   addKeys() {
@@ -123,6 +124,8 @@ class EditorTab {
   }
 
   updateChosen() {
+    const [path] = this.model.chosen;
+    this.app.remember({ element: path?.length ? path.join(".") : null });
     this.outline.update();
     this.inspector.update();
     this.view.draw();
@@ -162,11 +165,20 @@ class EditorTab {
     ]);
   }
 
+  /** Chooses the element that the address names. */
+  chooseLinked() {
+    const text = this.app.address.get("element") ?? "";
+    const path = text.split(".").map(Number);
+    if (/^\d+(\.\d+)*$/.test(text) && !this.model.chosen.length && this.model.node(path)) this.model.choose([path]);
+  }
+
   async greet(state) {
     if (!this.model.table) this.model.table = await this.model.call("table");
     this.model.state = null; // a server that was started anew counts from 0
-    if ("revision" in state) this.model.take(state);
-    else say("the editor has no state", "error");
+    if ("revision" in state) {
+      this.model.take(state);
+      this.chooseLinked();
+    } else say("the editor has no state", "error");
   }
 }
 

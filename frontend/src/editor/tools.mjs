@@ -1,4 +1,5 @@
 // Tools: what can be drawn, and the XML of what was drawn.
+import { followChanges, wayXml } from "./journeys.mjs";
 import { formatPoints, plain } from "./shapes.mjs";
 
 const xy = ([x, y]) => `x="${plain(x)}" y="${plain(y)}"`;
@@ -25,6 +26,7 @@ export const TOOLS = [
   { name: "spawner", title: "People", key: "p", mode: "two-areas", xml: (p) => `<spawner count="5" zone="${formatPoints(p[0])}" goal="${formatPoints(p[1])}"/>` },
   { name: "source", title: "Source", key: "s", mode: "two-areas", xml: (p) => `<source rate="0.5" zone="${formatPoints(p[0])}" goal="${formatPoints(p[1])}"/>` },
   { name: "agent", title: "Person", key: "a", mode: "arrow", xml: ([a, b]) => `<agent ${xy(a)} goal="${formatPoints([b])}"/>` },
+  { name: "way", title: "Way", key: "j", mode: "line", least: 1, way: true, xml: wayXml },
   {
     name: "robot",
     title: "Robot",
@@ -63,6 +65,7 @@ export const clicks = (tool) => ({ line: Infinity, area: 2, "two-areas": 4, poin
 
 /** What a tool shows while it is used. */
 export function help(tool, count) {
+  if (tool.way) return count ? "Click the next stop, or press Enter" : "Click the first stop; chosen people will follow the way";
   if (tool.mode === "line") return count < 2 ? "Click the corners of the line" : "Click more corners, or press Enter";
   if (tool.mode === "point") return "Click the place";
   if (tool.mode === "arrow") return count ? "Click where it goes or looks" : "Click the place";
@@ -84,5 +87,15 @@ export async function finish(tool, points, model) {
     const path = [Math.max(stage, 0)];
     return model.edit("change", { changes: [{ path, name: tool.attribute[1], value: formatPoints(area) }] });
   }
+  if (tool.way) return addWay(tool.xml(points, model.state.tree), model);
   return model.insert(tool.into === "stage" ? [stage] : [], tool.xml(areas, model.state.tree));
+}
+
+/** Adds a way and lets the people that were chosen follow it. */
+async function addWay(xml, model) {
+  const people = model.chosen;
+  await model.insert([], xml);
+  const [path] = model.chosen;
+  const changes = followChanges(model, people, model.node(path)?.attributes.name);
+  if (changes.length) await model.edit("change", { changes });
 }

@@ -1,4 +1,5 @@
 // EditorView: the trial from above on a canvas: pan, zoom, grid, snapping, drawing, dragging.
+import { drawWays, legDistance, moveWay, nearestLeg, waysOf } from "./journeys.mjs";
 import { areaChanges, cornerChanges, extent, moveChanges, plain, shapesOf } from "./shapes.mjs";
 import { same } from "./model.mjs";
 import { clicks, finish, rectangle } from "./tools.mjs";
@@ -27,19 +28,22 @@ export class EditorView {
     this.scale = 30;
     this.origin = [0, 0];
     this.shapes = [];
+    this.ways = [];
     this.fitted = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.release(event));
-    canvas.addEventListener("dblclick", () => this.end());
+    canvas.addEventListener("dblclick", (event) => (this.tool ? this.end() : this.addStop(this.place(event))));
     canvas.addEventListener("wheel", (event) => this.zoom(event), { passive: false });
     document.addEventListener("theme", () => this.draw());
   }
 
   /** Takes the shapes of the present trial. */
   update() {
-    this.shapes = this.model.state.tree ? shapesOf(this.model.state.tree) : this.shapes;
+    const { tree } = this.model.state;
+    this.shapes = tree ? shapesOf(tree) : this.shapes;
+    this.ways = tree ? waysOf(tree) : this.ways;
     if (!this.fitted && this.canvas.clientWidth) this.fit();
     this.draw();
   }
@@ -50,6 +54,7 @@ export class EditorView {
     this.scale = Math.min(w / (right - left), h / (high - low), 200);
     this.origin = [w / 2 - ((left + right) / 2) * this.scale, h / 2 + ((low + high) / 2) * this.scale];
     this.fitted = true;
+    this.moved = false;
     this.draw();
   }
 
@@ -57,7 +62,7 @@ export class EditorView {
     const ratio = window.devicePixelRatio || 1;
     this.canvas.width = Math.round(this.canvas.clientWidth * ratio);
     this.canvas.height = Math.round(this.canvas.clientHeight * ratio);
-    if (this.model.state && !this.fitted) this.fit();
+    if (this.model.state && (!this.fitted || !this.moved)) this.fit();
     else this.draw();
   }
 
@@ -97,6 +102,8 @@ export class EditorView {
     } else if (this.tool) {
       this.points.push(this.snapped(at));
       if (this.points.length >= clicks(this.tool)) this.end();
+    } else if (event.shiftKey && !this.grab(at)) {
+      this.drag = { kind: "band", from: at, at };
     } else {
       this.drag = this.grab(at) ?? { kind: "pan", from: [event.clientX, event.clientY], origin: this.origin };
       if (this.drag.shape) {
@@ -118,13 +125,33 @@ export class EditorView {
     for (const shape of [...this.shapes].reverse()) {
       if (this.touches(shape, at, near)) return { kind: "move", shape, from: at, at };
     }
+    for (const { path, stops } of this.ways) {
+      const hit = stops.some(([, place], i) => i && legDistance(at, stops[i - 1][1], place) < near);
+      if (hit) return { kind: "move", shape: { path, points: [] }, from: at, at };
+    }
     return null;
+  }
+
+  /** Puts a stop into the leg of a way at a place. */
+  async addStop(at) {
+    const leg = nearestLeg(this.ways, at, this.scale);
+    if (!leg) return;
+    const [x, y] = this.snapped(at);
+    await this.model.edit("insert", { path: leg.path, xml: `<point x="${plain(x)}" y="${plain(y)}"/>`, position: leg.position });
+    this.model.choose([[...leg.path, leg.position]]);
+  }
+
+  /** Chooses the single elements inside a rectangle. */
+  chooseInside([ax, ay], [bx, by]) {
+    const within = ([x, y]) => (x - ax) * (x - bx) <= 0 && (y - ay) * (y - by) <= 0;
+    const found = this.shapes.filter((shape) => shape.centre && shape.path.length === 1 && within(shape.centre));
+    this.model.choose(found.map((shape) => shape.path));
   }
 
   touches(shape, [x, y], near) {
     if (shape.radius) return Math.hypot(shape.centre[0] - x, shape.centre[1] - y) < Math.max(shape.radius, near);
     const ends = shape.closed ? [...shape.points, shape.points[0]] : shape.points;
-    for (let i = 1; i < ends.length; i++) if (distance([x, y], ends[i - 1], ends[i]) < near) return true;
+    for (let i = 1; i < ends.length; i++) if (legDistance([x, y], ends[i - 1], ends[i]) < near) return true;
     if (ends.length === 1) return Math.hypot(ends[0][0] - x, ends[0][1] - y) < near;
     return shape.closed && shape.style !== "ground" && inside([x, y], shape.points);
   }
@@ -139,6 +166,7 @@ export class EditorView {
     this.pointer = this.snapped(at, this.drag?.shape?.path);
     if (this.drag?.kind === "pan") {
       const [x, y] = this.drag.from;
+      this.moved = true;
       this.origin = [this.drag.origin[0] + event.clientX - x, this.drag.origin[1] + event.clientY - y];
     } else if (this.drag) this.drag.at = this.drag.kind === "corner" ? this.pointer : at;
     this.tell(this.words());
@@ -153,6 +181,7 @@ export class EditorView {
       const area = this.tool.mode.includes("area") && this.points.length % 2;
       return area ? `${plain(Math.abs(dx))} m x ${plain(Math.abs(dy))} m` : `${plain(Math.hypot(dx, dy))} m`;
     }
+    if (this.drag?.kind === "band") return "Choose the people and robots in this rectangle";
     if (this.drag?.shape) return `moved by ${this.offset().map(plain).join(", ")} m`;
     return `x ${plain(this.pointer[0])} m, y ${plain(this.pointer[1])} m`;
   }
@@ -165,6 +194,7 @@ export class EditorView {
   async release() {
     const drag = this.drag;
     this.drag = null;
+    if (drag?.kind === "band") this.chooseInside(drag.from, drag.at);
     if (!drag?.shape) return;
     this.drag = drag;
     const [dx, dy] = this.offset();
@@ -179,6 +209,7 @@ export class EditorView {
     if (kind === "corner") return cornerChanges(node, shape.path, shape.attribute, index, at);
     const others = this.model.chosen.length > 1 && this.isChosen(shape);
     if (others) return this.model.chosen.flatMap((path) => moveChanges(this.model.node(path), path, dx, dy));
+    if (node.tag === "journey") return moveWay(node, shape.path, dx, dy);
     if (shape.attribute) return areaChanges(node, shape.path, shape.attribute, dx, dy);
     return moveChanges(node, shape.path, dx, dy);
   }
@@ -188,7 +219,7 @@ export class EditorView {
     const { tool, points } = this;
     if (!tool) return;
     const kept = points.filter((one, i) => i === 0 || Math.hypot(one[0] - points[i - 1][0], one[1] - points[i - 1][1]) > 1e-9);
-    const enough = tool.mode === "line" ? kept.length >= 2 : points.length >= clicks(tool);
+    const enough = tool.mode === "line" ? kept.length >= (tool.least ?? 2) : points.length >= clicks(tool);
     if (!enough) return;
     this.points = [];
     await finish(tool, tool.mode === "line" ? kept : points, this.model);
@@ -205,6 +236,7 @@ export class EditorView {
     const before = this.pixel(at);
     this.scale = Math.min(400, Math.max(1, this.scale * Math.exp(-event.deltaY / 600)));
     const after = this.pixel(at);
+    this.moved = true;
     this.origin = [this.origin[0] + before[0] - after[0], this.origin[1] + before[1] - after[1]];
     this.draw();
   }
@@ -219,8 +251,22 @@ export class EditorView {
     this.drawGrid(context);
     for (const ring of this.model.state?.rings ?? []) this.line(context, ring, true, STYLES.solid);
     for (const shape of this.shapes) this.drawShape(context, shape);
+    drawWays(context, this.ways, { pixel: (one) => this.pixel(one), colour: this.colour, chosen: this.model.chosen });
     this.drawPeople(context);
     this.drawPoints(context);
+    if (!this.shapes.length && !this.points.length) this.drawHint(context);
+    if (this.drag?.kind === "band") this.line(context, rectangle(this.drag.from, this.drag.at), true, { stroke: "--focus", dash: [4, 3] });
+  }
+
+  /** Tells a new user how to begin. */
+  drawHint(context) {
+    context.font = "15px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.fillStyle = this.colour("--faint");
+    const lines = ["Choose a tool above and click into the plan,", "or press Open to start with a built-in trial."];
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    lines.forEach((text, k) => context.fillText(text, width / 2, height / 2 + 22 * (k - 0.5)));
+    context.textAlign = "start";
   }
 
   drawGrid(context) {
@@ -315,12 +361,6 @@ export class EditorView {
     }
     for (let i = 0; i < all.length; i += 2) if (all[i + 1]) this.line(context, rectangle(all[i], all[i + 1]), true, style);
   }
-}
-
-function distance([x, y], [ax, ay], [bx, by]) {
-  const [dx, dy] = [bx - ax, by - ay];
-  const t = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
-  return Math.hypot(x - ax - t * dx, y - ay - t * dy);
 }
 
 function inside([x, y], points) {

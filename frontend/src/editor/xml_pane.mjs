@@ -5,7 +5,7 @@ const PAUSE = 400;
 
 export class XmlPane {
   constructor(root, model) {
-    Object.assign(this, { model, timer: 0 });
+    Object.assign(this, { model, timer: 0, base: "", offline: false });
     this.numbers = h("pre", { class: "numbers", "aria-hidden": "true" });
     this.area = h("textarea", { spellcheck: "false", "aria-label": "XML of the trial", wrap: "off", oninput: () => this.wait() });
     this.area.addEventListener("scroll", () => (this.numbers.scrollTop = this.area.scrollTop));
@@ -15,6 +15,7 @@ export class XmlPane {
 
   /** Shows the text of the server unless the user is typing. */
   update() {
+    if (this.offline) return this.resume();
     if (this.timer) return;
     if (this.area.value !== this.model.state.text) {
       const at = this.area.selectionStart;
@@ -22,6 +23,14 @@ export class XmlPane {
       this.area.setSelectionRange(at, at);
     }
     this.count();
+  }
+
+  /** After the server was away: sends what was typed meanwhile, or asks if the trial has changed. */
+  resume() {
+    this.offline = false;
+    if (this.model.state.text === this.base) return void this.send();
+    this.timer = 0;
+    this.model.emit("conflict");
   }
 
   count() {
@@ -40,6 +49,7 @@ export class XmlPane {
   }
 
   wait() {
+    if (!this.timer) this.base = this.model.state.text;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.send(), PAUSE);
     this.count();
@@ -48,8 +58,10 @@ export class XmlPane {
   async send() {
     if (!this.timer) return;
     clearTimeout(this.timer);
+    if (!this.model.connection.open) return void (this.offline = true);
     const text = this.area.value;
     const done = await this.model.edit("write", { text });
+    if (!done && !this.model.connection.open) return void (this.offline = true);
     if (this.area.value !== text) return;
     this.timer = 0;
     if (!done) {

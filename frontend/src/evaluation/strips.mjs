@@ -29,10 +29,21 @@ export function makeStrips(cells, index, title, watch) {
     picture.append(s("line", { x1: LEFT, x2: WIDTH - 20, y1: y, y2: y, class: "axis" }));
     for (const run of cell.runs) if (run.values[index] !== null) picture.append(mark(cell, run, x(run.values[index]), y, watch));
   });
-  for (const value of [low, (low + high) / 2, high]) {
-    picture.append(s("text", { x: x(value), y: height - 8, "text-anchor": "middle" }, value.toPrecision(3)));
+  for (const value of niceTicks(low, high)) {
+    picture.append(s("line", { x1: x(value), x2: x(value), y1: 4, y2: height - 24, class: "tick" }));
+    picture.append(s("text", { x: x(value), y: height - 8, "text-anchor": "middle" }, String(value)));
   }
   return picture;
+}
+
+/** Round numbers between two bounds, about five. */
+function niceTicks(low, high) {
+  const raw = (high - low) / 4;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * ([1, 2, 5, 10].find((one) => one * power >= raw) ?? 10);
+  const first = Math.ceil(low / step);
+  const count = Math.floor(high / step) - first + 1;
+  return Array.from({ length: Math.max(0, count) }, (_, i) => Number(((first + i) * step).toPrecision(6)));
 }
 
 function mark(cell, run, x, y, watch) {

@@ -9,11 +9,17 @@ class EvaluationTab {
   constructor(root, app) {
     Object.assign(this, { app, table: null, chosen: null, onlyFailures: true, statistic: 3 });
     this.side = h("aside", { "aria-label": "Evaluations" });
-    this.main = h("div", { class: "results" }, h("p", { class: "note" }, "Run an evaluation, or choose one of the list."));
+    this.main = h("div", { class: "results" }, h(
+      "div",
+      { class: "first-steps" },
+      h("h2", {}, "How well does a navigator do among people?"),
+      h("p", {}, "Each navigator drives the robot of the chosen trials, with every seed. The table compares success, time, clearance and comfort, with intervals; a click on a run opens it in the simulator, at the failure."),
+      h("p", {}, "Choose trials and navigators on the left and press Run."),
+    ));
     root.classList.add("evaluation");
     fill(root, this.side, this.main);
     app.connection.on("evaluation.state", (state) => this.update(state));
-    app.connection.on("evaluation.progress", (share) => this.progress(share));
+    app.connection.on("jobs.progress", (job) => job.kind === "evaluate" && job.title === this.state?.running && this.progress(job.share));
     this.form();
   }
 
@@ -43,10 +49,11 @@ class EvaluationTab {
       h(
         "form",
         { onsubmit: start },
-        field("Trials", this.trials),
+        field("Trials (several with Ctrl or Shift)", this.trials),
         field("Navigators", this.navigators),
         this.known,
         field("Seeds", this.seeds),
+        h("p", { class: "note" }, "0:20 are the 20 seeds from 0 to 19."),
         h("label", { class: "option" }, this.safety, "Each also with a safety layer"),
         field("Name", this.label),
         h("div", { class: "row" }, this.runButton, this.cancel),
@@ -64,7 +71,10 @@ class EvaluationTab {
     if (!sources) return;
     const chosen = new Set([...this.trials.selectedOptions].map((one) => one.value));
     const names = [...sources.files, ...sources.trials.map((one) => one.name)];
+    const shown = this.app.address.get("evaluation");
+    if (!this.table && shown && state.evaluations.some((one) => one.name === shown && one.done)) await this.open(shown, true);
     fill(this.trials, names.map((one) => h("option", { selected: chosen.size ? chosen.has(one) : one === "frontal" }, one)));
+    this.trials.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
     this.known.textContent = `With parameters, such as "orca safety=0.2". Built-in: ${sources.navigators.join(", ")}`;
   }
 
@@ -94,12 +104,15 @@ class EvaluationTab {
     this.bar.value = share;
   }
 
-  async open(name) {
+  /** Shows an evaluation; `linked`: with the row that the address names. */
+  async open(name, linked = false) {
     const table = await this.call("table", { name });
     if (!table) return;
     this.table = table;
-    this.chosen = null;
+    const row = Number.parseInt(linked ? this.app.address.get("row") : "", 10);
+    this.chosen = table.cells[row] ? row : null;
     this.statistic = this.mostKnown();
+    this.app.remember({ evaluation: name, row: this.chosen });
     this.show();
   }
 
@@ -140,14 +153,16 @@ class EvaluationTab {
         "tr",
         { "aria-selected": String(cell.number === this.chosen) },
         [cell.trial, cell.navigator, cell.robot, cell.visible ? "yes" : "no", cell.senses.join(", ") || "true people"].map((one) => h("td", {}, one)),
-        cell.estimates.map((one) => h("td", { class: "number" }, one)),
+        cell.estimates.map((one) => h("td", { class: "number" }, estimate(one))),
         h("td", {}, h("button", { type: "button", onclick: () => this.choose(cell.number) }, `${cell.runs.length} runs`)),
       );
-    return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table" }, h("table", {}, h("thead", {}, h("tr", {}, head.map((one) => h("th", { scope: "col" }, one)))), h("tbody", {}, cells.map(row))));
+    const numeric = (i) => (i >= 5 && i < 5 + statistics.length ? "number" : null);
+    return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table" }, h("table", {}, h("thead", {}, h("tr", {}, head.map((one, i) => h("th", { scope: "col", class: numeric(i) }, one)))), h("tbody", {}, cells.map(row))));
   }
 
   choose(number) {
     this.chosen = number;
+    this.app.remember({ row: number });
     this.show();
   }
 
@@ -183,6 +198,12 @@ class EvaluationTab {
     this.app.select("simulator");
     document.dispatchEvent(new CustomEvent("open-trial", { detail: found }));
   }
+}
+
+/** An estimate with its interval below. */
+function estimate(text) {
+  const [value, ...interval] = text.split(" ");
+  return interval.length ? [value, h("small", {}, interval.join(" "))] : [text];
 }
 
 export const evaluation = {

@@ -44,7 +44,10 @@ class ExperimentsTab {
     if (this.participant) return fill(this.screen, h("h2", {}, "The experiment has not started yet."));
     const sources = await this.call("sources");
     if (!sources) return;
-    const choice = h("select", {}, sources.map((one) => h("option", { value: one.name }, `${one.name}: ${one.about}`)));
+    const about = h("p", { class: "about" });
+    const explain = () => (about.textContent = sources.find((one) => one.name === choice.value)?.about ?? "");
+    const choice = h("select", { onchange: () => explain() }, sources.map((one) => h("option", { value: one.name }, one.name)));
+    explain();
     const number = h("input", { type: "number", min: 1, value: 1 });
     const rate = h("input", { type: "number", min: 0.1, max: 100, step: "any", value: 1 });
     const resume = h("input", { type: "checkbox" });
@@ -54,6 +57,7 @@ class ExperimentsTab {
       this.screen,
       h("h2", {}, "Start a session"),
       field("Experiment", choice),
+      about,
       field("Participant", number),
       field("Speed of the trials (1: real time)", rate),
       h("label", { class: "option" }, resume, "Continue an interrupted session"),

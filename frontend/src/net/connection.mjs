@@ -4,9 +4,13 @@ import { decodeFrame } from "./state_frame.mjs";
 const RETRY = [250, 500, 1000, 2000];
 
 export class Connection extends EventTarget {
-  /** @param {string} session name of the session */
-  constructor(session) {
+  /**
+   * @param {string} session name of the session
+   * @param {string} socket name of the socket of the server
+   */
+  constructor(session, socket = "socket") {
     super();
+    this._name = socket;
     this.session = session;
     this.open = false;
     this._calls = new Map();
@@ -45,7 +49,7 @@ export class Connection extends EventTarget {
   }
 
   _connect() {
-    const url = new URL(`api/${this.session}/socket`, location.href);
+    const url = new URL(`api/${this.session}/${this._name}`, location.href);
     url.protocol = url.protocol.replace("http", "ws");
     const socket = new WebSocket(url);
     socket.binaryType = "arraybuffer";

@@ -1,11 +1,18 @@
 // Player: plays the frames of an episode in a page of its own.
 import { fill, h } from "../ui/dom.mjs";
-import { blendFrames } from "../scene/blend.mjs";
+import { BlendBuffer, blendFrames } from "../scene/blend.mjs";
 import { Scene2D } from "../scene2d/scene2d.mjs";
 import { Scene3D } from "../scene3d/scene3d.mjs";
+import { ImageFigures } from "../scene/image_figures.mjs";
 import { readJson } from "./pack.mjs";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+/** Age of an image [s], or of two intervals if these are longer, after which it is not shown any more. */
+const OLD = 1;
+/** Largest number of events in the list. */
+const EVENTS = 300;
+/** Time [s] before an event to which the keys J and K jump. */
+const AHEAD = 0.5;
 
 export class Player {
   constructor(root, { files, frames }) {
@@ -18,6 +25,10 @@ export class Player {
     this.playing = false;
     this.speed = 1;
     this._urls = new Map();
+    this._blend = new BlendBuffer();
+    this._chosen = new Set();
+    this._drawn = new Map();
+    this.images = new ImageFigures((name) => this._chooseImage(name, false));
     this._theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
     document.documentElement.dataset.theme = this._theme;
     this._layout();
@@ -45,7 +56,7 @@ export class Player {
     const from = this.frames[at];
     const to = this.frames[Math.min(at + 1, this.frames.length - 1)];
     const share = to === from ? 0 : (this.time - from.time) / (to.time - from.time);
-    const frame = blendFrames(from, to, share);
+    const frame = blendFrames(from, to, share, this._blend);
     if (this._revision !== frame.arrays.revision[0]) {
       this._revision = frame.arrays.revision[0];
       await this.scene.load(readJson(this.files.get(`description/${this._revision}.json`)));
@@ -53,6 +64,7 @@ export class Player {
     this.scene.apply(frame);
     this.scene.render();
     this._tell();
+    await this._drawImages();
   }
 
   play(on = !this.playing) {
@@ -105,19 +117,32 @@ export class Player {
     this._cameras = h("select", { "aria-label": "Camera", onchange: () => this._look() });
     this._flatButton = button("From above", () => this.show(!this.flat), { "aria-pressed": "false" });
     this._layers = h("div", { class: "player-layers" });
+    const events = this.index.events ?? [];
+    this._events = h(
+      "select", { "aria-label": "Event", hidden: !events.length, onchange: () => this._events.value && this.seek(Number(this._events.value)) },
+      h("option", { value: "" }, `${events.length} ${events.length === 1 ? "event" : "events"}`),
+      events.slice(0, EVENTS).map(({ time, kind, about }) => h("option", { value: time }, `${time.toFixed(1)} s: ${kind}, ${about}`)),
+    );
     this._summary = h("p", { class: "player-summary", role: "status", "aria-live": "polite" });
     fill(
       this.root,
       h("header", {}, h("h1", {}, this.index.name), h("span", { class: "player-about" }, this.index.about),
         h("details", {}, h("summary", {}, "Layers"), this._layers), this._cameras, this._flatButton,
         button("Theme", () => this._turnTheme())),
-      h("main", {}, this._stage),
-      h("footer", {}, this._playButton, this._scrubber, this._clock, this._speeds, this._summary),
+      h("main", {}, this._stage, this.images.element),
+      h("footer", {}, this._playButton, this._scrubber, this._clock, this._speeds, this._events, this._summary),
     );
     document.addEventListener("keydown", (event) => this._key(event));
     new ResizeObserver(() => this.scene && this.scene.render()).observe(this._stage);
     this._stage.addEventListener("pointermove", (event) => event.buttons && !this.playing && this.scene.render());
     this._stage.addEventListener("wheel", () => !this.playing && requestAnimationFrame(() => this.scene.render()));
+  }
+
+  /** Goes to the event before or after, half a second before it happens. */
+  _jump(way) {
+    const times = (this.index.events ?? []).map(({ time }) => Math.max(this.frames[0].time, time - AHEAD));
+    const next = way > 0 ? times.find((time) => time > this.time + 0.01) : times.findLast((time) => time < this.time - 0.01);
+    if (next !== undefined) this.seek(next);
   }
 
   _choices() {
@@ -127,6 +152,29 @@ export class Player {
     fill(this._layers, own.map(({ name, title, visible }) => {
       const box = h("input", { type: "checkbox", checked: visible, onchange: () => this._switch(name, box.checked) });
       return h("label", {}, box, ` ${title}`);
+    }), (this.index.images ?? []).map(({ image: { name, title } }) => {
+      const box = h("input", { type: "checkbox", name, checked: this._chosen.has(name), onchange: () => this._chooseImage(name, box.checked) });
+      return h("label", {}, box, ` ${title}`);
+    }));
+  }
+
+  _chooseImage(name, on) {
+    this._chosen[on ? "add" : "delete"](name);
+    for (const box of this._layers.querySelectorAll("input")) if (box.name === name) box.checked = on;
+    this.images.show(this.index.images.map((one) => one.image).filter((one) => this._chosen.has(one.name)));
+    this._drawn.delete(name);
+    return this._drawImages();
+  }
+
+  /** Draws the newest recorded image of each camera that is chosen, if it is another one than before. */
+  async _drawImages() {
+    await Promise.all((this.index.images ?? []).map(async ({ image, type, times }, number) => {
+      const figure = this.images.figure(image.name);
+      const at = times.findLastIndex((time) => time <= this.time + 1e-9);
+      const old = Math.max(OLD, 2 / image.rate);
+      if (!figure || at < 0 || this.time - times[at] > old || this._drawn.get(image.name) === at) return;
+      this._drawn.set(image.name, at);
+      await figure.draw(this.files.get(`image/${number}/${at}`), type, times[at]);
     }));
   }
 
@@ -172,6 +220,8 @@ export class Player {
       ArrowLeft: () => this.seek(this.time - 1),
       Home: () => this.seek(this.frames[0].time),
       End: () => this.seek(this.end),
+      j: () => this._jump(-1),
+      k: () => this._jump(1),
     }[event.key];
     if (!action) return;
     event.preventDefault();

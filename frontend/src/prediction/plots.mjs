@@ -54,7 +54,7 @@ export function makePlots(store) {
         const { name, dash } = styleOf(row.slot, row.input);
         return { label: row.label + (row.input === "degraded" ? " (degraded)" : ""), unit, colour: name, dash };
       });
-      one.plot = makePlot(one.box, { title, x, series, points, legend: false, height: 150 });
+      one.plot = makePlot(one.box, { title, x, series, points, legend: false, height: 150, log: one.variable === "time" });
     }
     one.plot.set([xs, ...rows.map((row) => row.values)]);
   }

@@ -59,7 +59,8 @@ export function openSimDialog(store) {
 }
 
 /** A baseline or a learned predictor, its parameters, and the number of futures. */
-export function openBaseDialog(store) {
+export async function openBaseDialog(store) {
+  const trained = (await store.call("weights")) ?? [];
   const { predictors } = store.tables;
   const groups = [
     ["Baselines", predictors.filter((one) => !one.learned)],
@@ -78,15 +79,17 @@ export function openBaseDialog(store) {
     const row = find(predictors, select.value);
     const samples = { name: "samples", label: "Futures per person", kind: "whole", value: 20, low: 1, high: 100, note: "drawn as a fan of paths, or as a density" };
     fill(about, row.about);
-    form = makeForm([...(row.samples ? [samples] : []), ...row.parameters]);
+    const own = trained.map((one) => [one, one.split("/").at(-2)]);
+    const weights = { name: "weights", label: "Weights", kind: "choice", value: "", choices: [["", "those that ship"], ...own], note: "Jobs, Train a predictor makes more" };
+    form = makeForm([...(row.weights ? [weights] : []), ...(row.samples ? [samples] : []), ...row.parameters]);
     fill(place, form.element);
   }
 
   select.addEventListener("change", update);
   update();
   const add = async () => {
-    const { samples = 1, ...values } = form.values();
-    const settings = { predictor: select.value, samples: samples ?? 1, values };
+    const { samples = 1, weights = "", ...values } = form.values();
+    const settings = { predictor: select.value, samples: samples ?? 1, values, weights };
     return (await store.call("add", { settings })) !== undefined;
   };
   openDialog("Add base predictor", [h("label", { class: "field" }, h("span", {}, "Predictor"), select), about, place], [["Cancel", () => true], ["OK", add]]);

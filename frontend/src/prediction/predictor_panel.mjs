@@ -1,5 +1,6 @@
 // The list of predictors with their colours and dashes, and the input they get.
 import { openDialog } from "../ui/dialog.mjs";
+import { copyText } from "../ui/copy.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { openBaseDialog, openDegradeDialog, openSimDialog } from "./predictor_dialogs.mjs";
 import { styleOf } from "./style.mjs";
@@ -56,7 +57,7 @@ function row(store, one, notes) {
     {},
     shown,
     sample(one.slot),
-    h("span", { class: "name", title: one.name }, one.label, notes.get(one.key)),
+    h("span", { class: "name", title: [one.name, ...words].join("\n") }, one.label, notes.get(one.key)),
     one.calibrated && h("button", { type: "button", "aria-label": `Fit… of ${one.label}`, onclick: () => openParameters(store, one.key) }, "Fit…"),
     h("button", { type: "button", "aria-label": `Remove ${one.label}`, onclick: () => store.call("remove", { key: one.key }) }, "×"),
   );
@@ -109,18 +110,4 @@ function fitTable(fit) {
   const rows = fit.parameters.map((one) => h("tr", {}, h("td", {}, one.name), number(one.median), number(one.sd), h("td", {}, one.unit)));
   const words = `${fit.scheme}: mean cost ${fit.cost.toFixed(4)} m, ${fit.given_cost.toFixed(4)} m before; ${fit.persons} persons in ${fit.windows} windows, ${fit.evaluations} evaluations, ${fit.seconds.toFixed(1)} s`;
   return h("table", { class: "fit" }, h("caption", {}, words), h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows));
-}
-
-/** Shows text in a dialog and copies it. */
-export async function copyText(text, title = "Copy") {
-  const area = h("textarea", { readonly: true, rows: Math.min(16, text.split("\n").length + 2), cols: 78, "aria-label": "Text" });
-  area.value = text;
-  let note = "copied to the clipboard";
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    note = "copy the text with Ctrl+C";
-  }
-  openDialog(title, [area, h("p", { class: "hint" }, note)]);
-  area.select();
 }

@@ -4,7 +4,7 @@ import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 
 export function makeRecordingPanel(store, root) {
-  const facts = h("div", {}, h("p", {}, "none is open"));
+  const facts = h("div", {}, h("p", {}, "No recording is open."));
   const correct = h("button", { type: "button", onclick: () => openOptions(store), disabled: true }, "Time base, units…");
   const ground = h("button", { type: "button", onclick: () => openBackground(store), disabled: true }, "Background…");
   const element = h(
@@ -18,7 +18,7 @@ export function makeRecordingPanel(store, root) {
   store.on("board", () => {
     const { recording } = store;
     correct.disabled = ground.disabled = !recording;
-    fill(facts, recording ? h("dl", { class: "facts" }, factRows(recording)) : h("p", {}, "none is open"));
+    fill(facts, recording ? h("dl", { class: "facts" }, factRows(recording)) : h("p", {}, "No recording is open."));
   });
   listenForDrops(store, root);
   return element;
@@ -31,16 +31,18 @@ function factRows(one) {
     ["Format", `${one.format} (${one.about})`],
     ["Time base", `${round(one.fps)} frames/s, a row every ${one.frame_step === 1 ? "frame" : `${one.frame_step} frames`} = ${round(one.dt)} s`],
     ["Units", `${one.units}, mean speed ${round(s.mean_speed)} ${one.units}/s, largest ${round(s.max_speed)}`],
-    ["Content", `${s.tracks} tracks, ${s.rows} rows, ${round(s.seconds)} s, ${one.robots} robots, ${one.walls.length} walls`],
+    ["Content", `${s.tracks} tracks, ${s.rows} rows, ${round(s.seconds)} s, ${counted(one.robots, "robot")}, ${counted(one.walls.length, "wall")}`],
     ["Windows", `${one.windows} of ${one.observe} observed and ${one.predict} predicted rows, protocol ${one.protocol}`],
   ];
   if (one.note) rows.push(["Note", one.note]);
   return rows.flatMap(([name, text]) => [h("dt", {}, name), h("dd", {}, text)]);
 }
 
+const counted = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
 const round = (number) => (number === null ? "unknown" : Number(number.toPrecision(4)));
 
-async function openRecording(store) {
+/** Asks for a recording: an example, a file of this computer or of the session. */
+export async function openRecording(store) {
   const found = await store.call("files");
   if (!found) return;
   const input = h("input", { type: "file", "aria-label": "File of this computer" });

@@ -12,7 +12,7 @@ export function makeRunPanel(store) {
     { name: "live", label: "Each fit starts from the frame before (live)", kind: "switch", value: false },
   ]);
   const follow = h("input", { type: "checkbox", checked: true });
-  const run = h("button", { type: "button", class: "main", onclick: () => start() }, "Run");
+  const run = h("button", { type: "button", class: "main", disabled: true, onclick: () => start() }, "Run");
   const cancel = h("button", { type: "button", disabled: true, onclick: () => store.call("cancel") }, "Cancel");
   const bar = h("progress", { max: 1, value: 0, "aria-label": "Progress of the run" });
   const status = h("span", { role: "status", class: "hint" }, "");
@@ -41,7 +41,12 @@ export function makeRunPanel(store) {
     log.scrollTop = log.scrollHeight;
   }
 
-  store.on("board", () => update(store.board.run));
+  const missing = h("p", { class: "hint" });
+  store.on("board", () => {
+    update(store.board.run);
+    missing.hidden = Boolean(store.recording && store.board.predictors.length);
+    missing.textContent = store.recording ? "Add a predictor to run it." : "Open a recording and add a predictor to run it.";
+  });
   store.on("log", (found) => {
     texts = [];
     named = "";
@@ -68,6 +73,7 @@ export function makeRunPanel(store) {
     h("h2", {}, "Run"),
     form.element,
     h("div", { class: "buttons" }, run, cancel, h("label", {}, follow, "show the newest frame")),
+    missing,
     bar,
     status,
     log,

@@ -127,7 +127,7 @@ export class PredictionScene {
     const robots = frame.people.filter((one) => one.robot).length;
     const words =
       `Frame ${recording.frames[frame.index]}, ${frame.time.toFixed(2)} s: ${frame.people.length - robots} people, ` +
-      `${robots} robots, ${scored} scored, ${frame.forecasts.length} predictors`;
+      `${robots} ${robots === 1 ? "robot" : "robots"}, ${scored} scored, ${frame.forecasts.length} ${frame.forecasts.length === 1 ? "predictor" : "predictors"}`;
     this.canvas.setAttribute("aria-label", `Scene. ${words}`);
     clearTimeout(this._later);
     this._later = setTimeout(() => fill(this.summary, words), 400);

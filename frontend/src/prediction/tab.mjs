@@ -9,6 +9,7 @@ import { PredictionScene } from "./scene.mjs";
 import { Store } from "./store.mjs";
 import { makeToolbar } from "./toolbar.mjs";
 import { Transport } from "./transport.mjs";
+import { makeWelcome } from "./welcome.mjs";
 
 export const prediction = {
   name: "prediction",
@@ -17,6 +18,7 @@ export const prediction = {
     const store = new Store(app);
     const scene = new PredictionScene(store);
     const transport = new Transport(store);
+    scene.element.append(makeWelcome(store));
     root.classList.add("prediction");
     root.append(
       h("div", { class: "side" }, makeRecordingPanel(store, root), makePredictorPanel(store), makeRunPanel(store)),
@@ -37,7 +39,7 @@ export const prediction = {
 
 async function greet(store, state) {
   store.tables ??= await store.call("tables");
-  store.take(state);
+  store.take(state.stored ? ((await store.call("restore")) ?? state) : state);
   const log = await store.call("log");
   if (log) store.emit("log", log);
 }

@@ -1,7 +1,7 @@
 // What is drawn, and what leaves the tab: pictures, tables, command line, Python.
+import { copyText } from "../ui/copy.mjs";
 import { h } from "../ui/dom.mjs";
 import { say } from "../ui/dialog.mjs";
-import { copyText } from "./predictor_panel.mjs";
 
 const LAYERS = [
   ["observed", "Observed"],
@@ -47,6 +47,7 @@ function actions(store, scene) {
     ["python", "Copy as Python", () => copyCommand(store, "python")],
     ["png", "Scene as PNG", async () => save(await scene.png(), `${name()}.png`)],
     ["svg", "Scene as SVG", () => save(new Blob([scene.svg()], { type: "image/svg+xml" }), `${name()}.svg`)],
+    ["mp4", "This frame as video (MP4)", () => fetchFile(store, "animation.mp4", { index: store.index })],
     ["gif", "This frame as animation (GIF)", () => fetchFile(store, "animation.gif", { index: store.index })],
     ["frames.csv", "Results by frame as CSV", () => fetchFile(store, "frames.csv")],
     ["people.csv", "Results by person as CSV", () => fetchFile(store, "people.csv")],

@@ -1,10 +1,11 @@
 // People, robots and overlays of a scene seen from above.
+import { drawCollisions, drawDensity, drawPaths } from "./crowd_layers.mjs";
 import { trace } from "./plan.mjs";
 
 const FORCE = 0.004;
 
 /** Shoulders and head in the colours of clothes and hair, on the disc of the person; a line is the velocity. */
-export function drawPeople(context, state, look, pixel, mark, numbers) {
+export function drawPeople(context, state, look, pixel, mark) {
   const { who, ids, place } = state.frame.arrays;
   const { people, regions } = state.description;
   const [top, hair] = [regions.indexOf("top"), regions.indexOf("hair")];
@@ -37,13 +38,11 @@ export function drawPeople(context, state, look, pixel, mark, numbers) {
     context.fill();
     context.restore();
     line(context, x, y, x + 0.6 * vx, y + 0.6 * vy, look.ink, 1.5 * pixel);
-    if (rider) continue;
-    if (mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
-    if (numbers) write(context, String(ids[i]), x, y + radius + 4 * pixel, look.ink, pixel);
+    if (!rider && mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
   }
 }
 
-/** Footprint with an arrow ahead, and the name. */
+/** Footprint with an arrow ahead. */
 export function drawRobots(context, state, look, pixel, mark) {
   const { bots, botplace } = state.frame.arrays;
   bots.forEach((row, k) => {
@@ -64,13 +63,29 @@ export function drawRobots(context, state, look, pixel, mark) {
     context.fillStyle = look.floor;
     context.fill();
     context.restore();
-    write(context, robot.name, x, y + robot.radius + 6 * pixel, look.ink, pixel);
     if (mark?.kind === "robot" && mark.id === robot.id) ring(context, x, y, robot.radius + 0.14, look.mark, 3 * pixel);
   });
 }
 
+/** Names of robots, and numbers of people if they are asked for, over everything else. */
+export function drawNames(context, state, look, pixel, robots, numbers) {
+  const { who, ids, place, bots, botplace } = state.frame.arrays;
+  const { people, robots: known } = state.description;
+  for (let i = 0; numbers && i < state.people; i++) {
+    if (people.rider[who[i]]) continue;
+    write(context, String(ids[i]), place[5 * i], place[5 * i + 1] + people.radius[who[i]] + 4 * pixel, look, pixel);
+  }
+  for (let k = 0; robots && k < bots.length; k++) {
+    const { name, radius } = known[bots[k]];
+    write(context, name, botplace[5 * k], botplace[5 * k + 1] + radius + 6 * pixel, look, pixel);
+  }
+}
+
 /** Overlays by name of the layer; those under people are drawn first. */
 export const OVERLAYS = [
+  { name: "density", under: true, draw: drawDensity },
+  { name: "paths", under: true, draw: drawPaths },
+  { name: "ttc", under: true, draw: drawCollisions },
   { name: "ranges", under: true, draw: drawCones },
   { name: "goals", under: true, draw: drawGoals },
   { name: "scans", under: false, draw: (...all) => drawScans("scan", 3, ...all) },
@@ -142,14 +157,19 @@ function ring(context, x, y, radius, color, width) {
   context.stroke();
 }
 
-function write(context, text, x, y, color, pixel) {
+/** Writes a text with a rim in the colour of the floor, so that it is read over people and laser returns. */
+function write(context, text, x, y, look, pixel) {
   context.save();
   const { a, b, e, f, c, d } = context.getTransform();
   const scale = Math.hypot(a, b) * pixel;
   context.setTransform(scale, 0, 0, scale, a * x + c * y + e, b * x + d * y + f);
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "center";
-  context.fillStyle = color;
+  context.strokeStyle = look.floor;
+  context.lineWidth = 3;
+  context.lineJoin = "round";
+  context.strokeText(text, 0, 0);
+  context.fillStyle = look.ink;
   context.fillText(text, 0, 0);
   context.restore();
 }

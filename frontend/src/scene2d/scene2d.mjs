@@ -3,7 +3,7 @@ import { decodeFrame } from "../net/state_frame.mjs";
 import { LOOKS, OWN_LAYERS } from "../scene/look.mjs";
 import { SceneState } from "../scene/scene_state.mjs";
 import { drawGrid, drawStage, drawZones } from "./plan.mjs";
-import { drawPeople, drawRobots, OVERLAYS } from "./figures.mjs";
+import { drawNames, drawPeople, drawRobots, OVERLAYS } from "./figures.mjs";
 import { View2D } from "./view2d.mjs";
 
 const ZOOM = 70;
@@ -171,8 +171,9 @@ export class Scene2D {
     const { _context: context, _look: look, state } = this;
     for (const { name, under, draw } of OVERLAYS) if (under && shown(name)) draw(context, state, look, pixel);
     if (shown("robots")) drawRobots(context, state, look, pixel, this._mark);
-    if (shown("people")) drawPeople(context, state, look, pixel, this._mark, shown("ids"));
+    if (shown("people")) drawPeople(context, state, look, pixel, this._mark);
     for (const { name, under, draw } of OVERLAYS) if (!under && shown(name)) draw(context, state, look, pixel);
+    drawNames(context, state, look, pixel, shown("robots"), shown("people") && shown("ids"));
   }
 
   /** Moves the view with the person or robot that it follows. */

@@ -1,12 +1,13 @@
 // Overlays: laser returns, cones of sonar and infrared sensors, contact forces and goals.
 import * as THREE from "three";
+import { densityImage, eachCollision, eachPathPiece, TIMES } from "../scene/field.mjs";
 
 const FORCE = 0.004;
 const SIDES = 14;
 
 /** Overlays by name of the layer: each {object, update(state, look)}. */
 export function overlays() {
-  return { scans: scans("scan", 5), clouds: scans("cloud", 2.5), ranges: ranges(), forces: forces(), goals: goals() };
+  return { scans: scans("scan", 5), clouds: scans("cloud", 2.5), ranges: ranges(), forces: forces(), goals: goals(), paths: paths(), density: density(), ttc: collisions() };
 }
 
 function lines(width = 1) {
@@ -139,6 +140,73 @@ function goals() {
       object.material.color.set(look.goal);
       object.material.opacity = 0.5;
       fill(object.geometry, points, points.length);
+    },
+  };
+}
+
+function paths() {
+  const object = lines();
+  return {
+    object,
+    update(state, look) {
+      const points = [];
+      eachPathPiece(state.frame, (x0, y0, x1, y1) => points.push(x0, y0, 0.035, x1, y1, 0.035));
+      object.material.color.set(look.path);
+      object.material.opacity = 0.75;
+      fill(object.geometry, points, points.length);
+    },
+  };
+}
+
+/** Bands on the floor, because lines of more than a pixel do not exist in WebGL. */
+function collisions() {
+  const object = new THREE.Group();
+  const bands = TIMES.map(({ color }) => {
+    const material = new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.9, depthWrite: false, side: THREE.DoubleSide });
+    const mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
+    mesh.frustumCulled = false;
+    object.add(mesh);
+    return mesh;
+  });
+  return {
+    object,
+    update(state) {
+      const points = TIMES.map(() => []);
+      eachCollision(state.frame, (at, x0, y0, x1, y1) => {
+        const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+        const half = 0.011 * TIMES[at].width;
+        const [nx, ny] = [(-half * (y1 - y0)) / length, (half * (x1 - x0)) / length];
+        const corner = (x, y) => [x, y, 0.04];
+        const [a, b, c, d] = [corner(x0 + nx, y0 + ny), corner(x0 - nx, y0 - ny), corner(x1 - nx, y1 - ny), corner(x1 + nx, y1 + ny)];
+        points[at].push(...a, ...b, ...c, ...a, ...c, ...d);
+      });
+      bands.forEach((mesh, at) => fill(mesh.geometry, points[at], points[at].length));
+    },
+  };
+}
+
+function density() {
+  const material = new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false });
+  const object = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), material);
+  return {
+    object,
+    update(state) {
+      const image = densityImage(state.frame);
+      object.scale.setScalar(image ? 1 : 0);
+      if (!image) return;
+      const { width, height, data, x, y, cell } = image;
+      const known = material.map?.image;
+      if (known?.width !== width || known?.height !== height) {
+        material.map?.dispose();
+        material.map = new THREE.DataTexture(new Uint8Array(data.length), width, height, THREE.RGBAFormat);
+        material.map.colorSpace = THREE.SRGBColorSpace;
+        material.map.magFilter = THREE.LinearFilter;
+        material.needsUpdate = true;
+      }
+      material.map.image.data.set(data);
+      material.map.needsUpdate = true;
+      object.position.set(x + 0.5 * width * cell, y + 0.5 * height * cell, 0.02);
+      object.scale.set(width * cell, height * cell, 1);
     },
   };
 }

@@ -7,6 +7,7 @@ import { Crowd, LEVELS } from "./crowd.mjs";
 import { overlays } from "./overlays.mjs";
 import { Robots } from "./robots.mjs";
 import { Stage } from "./stage.mjs";
+import { readTextures } from "./textures.mjs";
 import { Views } from "./views.mjs";
 
 const SUN = new THREE.Vector3(-0.42, -0.55, 1);
@@ -30,7 +31,7 @@ export class Scene3D {
     this._views = new Views(canvas);
     this._layers = new Map(OWN_LAYERS.map((one) => [one.name, { ...one }]));
     this._marked = new Map();
-    this._frames = 0;
+    this._frames = this._applied = this._work = 0;
     this._theme = "light";
     this._build();
     this.setTheme(this._theme);
@@ -42,7 +43,8 @@ export class Scene3D {
     this._bodies = bodies;
     const meshes = new Map();
     const robots = description.robots.map(async (one) => {
-      meshes.set(one.key, await this._fetch(one.mesh, { key: one.key }));
+      const mesh = await this._fetch(one.mesh, { key: one.key });
+      meshes.set(one.key, { arrays: mesh.arrays, textures: await readTextures(mesh) });
     });
     const [levels] = await Promise.all([bodies, ...robots]);
     if (!this._crowd) {
@@ -67,13 +69,15 @@ export class Scene3D {
 
   /** Takes a frame of the channel "scene"; false if the description must be loaded again first. */
   apply(frame) {
+    const begin = performance.now();
     if (!this.state.apply(frame)) return false;
     this._crowd.update(this.state, new Set(this._marks("person")), this._markColor, this._look.shade);
-    this._robots.update(this.state, this._views.inside(this.state.description));
+    this._robots.update(this.state, this._hidden("robot"));
     this._stage.update(frame.arrays);
     for (const [name, one] of Object.entries(this._overlays)) {
       if (one.object.visible) one.update(this.state, this._look, name);
     }
+    this._applied = performance.now() - begin;
     return true;
   }
 
@@ -104,8 +108,8 @@ export class Scene3D {
   /** Chooses a camera by its name; target {kind, id} is whom "follow" follows. */
   setCamera(name, target = null) {
     this._views.choose(name, this.state.description, target);
-    this._stage.full = name === "follow" || name.startsWith("robot:");
-    if (this.state.frame) this._robots.update(this.state, this._views.inside(this.state.description));
+    this._stage.full = name === "follow" || this._views.firstPerson;
+    if (this.state.frame) this._robots.update(this.state, this._hidden("robot"));
   }
 
   /** Shows everything with the free camera. */
@@ -179,6 +183,7 @@ export class Scene3D {
       textures: memory.textures,
       frames: this._frames,
       milliseconds: this._spent,
+      work: this._work,
       camera: this._views.name,
       eye: [position.x, position.y, position.z],
       theme: this._theme,
@@ -189,11 +194,33 @@ export class Scene3D {
     const begin = performance.now();
     this._resize();
     this._views.update(this.state);
-    this._crowd?.choose(this._views.camera, this._renderer.domElement.height);
+    this._crowd?.choose(this._views.camera, this._renderer.domElement.height, this._hidden("person"));
     this._light();
     this._mark();
     this._renderer.info.reset();
+    this._work = this._applied + performance.now() - begin; // without the calls that draw
+    this._applied = 0;
     this._renderer.render(this._scene, this._views.camera);
+    this._frames += 1;
+    this._spent = performance.now() - begin;
+  }
+
+  /** Renderer and scene, for who draws with a camera of his own, such as a headset. */
+  get engine() {
+    return { renderer: this._renderer, scene: this._scene };
+  }
+
+  /** Draws with the camera of a headset whose eyes are at a point; the person with the id `hidden` is not drawn. */
+  renderFrom(camera, eye, hidden = null) {
+    const begin = performance.now();
+    this._stage.full = true;
+    this._views.camera.position.copy(eye);
+    this._views.controls.target.set(eye.x, eye.y, 0);
+    this._crowd?.choose({ position: eye, fov: 90 }, 2000, hidden);
+    this._light();
+    this._mark();
+    this._renderer.info.reset();
+    this._renderer.render(this._scene, camera);
     this._frames += 1;
     this._spent = performance.now() - begin;
   }
@@ -229,6 +256,12 @@ export class Scene3D {
     return decodeFrame(await response.arrayBuffer());
   }
 
+  /** Id of the person or robot in whose head the camera is, or null. */
+  _hidden(kind) {
+    const one = this._views.head(this.state);
+    return one?.kind === kind ? one.id : null;
+  }
+
   _marks(kind) {
     return [...this._marked.values()].filter((one) => one.kind === kind).map((one) => one.id);
   }
@@ -236,7 +269,7 @@ export class Scene3D {
   _mark() {
     const [one] = this._marked.values();
     const place = one && this.state.place(one.kind, one.id);
-    this._ring.visible = Boolean(place);
+    this._ring.visible = Boolean(place) && this._hidden(one.kind) !== one.id;
     if (!place) return;
     const radius = one.kind === "robot" ? this.state.description.robots.find((bot) => bot.id === one.id).radius + 0.12 : 0.42;
     this._ring.position.set(place[0], place[1], 0.02);
@@ -272,7 +305,7 @@ export class Scene3D {
     const middle = this._views.controls.target;
     const eye = this._views.camera.position;
     const reach = Math.min(SHADED, Math.max(7, 0.75 * eye.distanceTo(middle)));
-    const around = this._views.name.startsWith("robot:") ? eye : middle;
+    const around = this._views.firstPerson ? eye : middle;
     const shadow = this._sun.shadow.camera;
     shadow.left = shadow.bottom = -reach;
     shadow.right = shadow.top = reach;
@@ -285,6 +318,7 @@ export class Scene3D {
   }
 
   _resize() {
+    if (this._renderer.xr.isPresenting) return;
     const ratio = Math.min(2, devicePixelRatio || 1);
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height || (width === this._width && height === this._height && ratio === this._ratio)) return;

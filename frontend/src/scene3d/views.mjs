@@ -5,8 +5,14 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 const FIELD = 45;
 const WIDE = 75;
 /** Largest distance of the first view [m], so that people are seen. */
-const FARTHEST = 24;
-const NEARER = 17;
+const FARTHEST = 15;
+const NEARER = 13;
+/** Height of the eyes, as a share of the stature; how far [rad] they look down, and to each side. */
+const EYES = 0.93;
+const DOWN = 0.12;
+const NECK = 2.2;
+/** Turn [rad] of the head for each pixel of the mouse. */
+const DRAG = 0.005;
 
 export class Views {
   constructor(canvas) {
@@ -20,7 +26,16 @@ export class Views {
     this.name = "free";
     this._target = null;
     this._last = null;
+    this._gaze = [0, 0];
     canvas.addEventListener("keydown", (event) => this._key(event));
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.firstPerson && event.buttons & 1) this._turnHead(-DRAG * event.movementX, -DRAG * event.movementY);
+    });
+  }
+
+  /** Whether the camera is in the head of somebody. */
+  get firstPerson() {
+    return this.name === "eyes" || this.name.startsWith("robot:");
   }
 
   /** Cameras of a description. */
@@ -30,6 +45,7 @@ export class Views {
       { name: "overview", title: "Overview" },
       { name: "beside", title: "Beside" },
       { name: "follow", title: "Follow" },
+      { name: "eyes", title: "Through the eyes" },
       ...description.robots.map((one) => ({ name: `robot:${one.name}`, title: `From ${one.name}` })),
     ];
   }
@@ -38,8 +54,9 @@ export class Views {
   choose(name, description, target) {
     this.name = name;
     this._target = target ?? this._target;
-    this.controls.enabled = !name.startsWith("robot:");
-    this.camera.fov = name.startsWith("robot:") ? WIDE : FIELD;
+    this.controls.enabled = !this.firstPerson;
+    this.camera.fov = this.firstPerson ? WIDE : FIELD;
+    this._gaze = [0, 0];
     this.camera.updateProjectionMatrix();
     if (name === "overview") this.overview(description, true);
     if (name === "follow") this._start = true;
@@ -58,10 +75,11 @@ export class Views {
     return ids.length ? { kind: "person", id: ids[0] } : null;
   }
 
-  /** Id of the robot from which this camera looks, or null. */
-  inside(description) {
-    if (!this.name.startsWith("robot:")) return null;
-    return description.robots.find((one) => `robot:${one.name}` === this.name)?.id ?? null;
+  /** Whose head the camera is in, {kind, id}, or null. */
+  head(state) {
+    if (this.name === "eyes") return state.frame ? this.followed(state) : null;
+    const robot = state.description?.robots.find((one) => `robot:${one.name}` === this.name);
+    return robot ? { kind: "robot", id: robot.id } : null;
   }
 
   /** Shows all of a description, from above or from the side. */
@@ -100,7 +118,7 @@ export class Views {
     if (!state.frame) return;
     if (this.name === "follow") this._follow(state);
     else if (this.name === "beside") this._accompany(state);
-    else if (this.name.startsWith("robot:")) this._ride(state);
+    else if (this.firstPerson) this._ride(state);
     else this.controls.update();
   }
 
@@ -162,19 +180,27 @@ export class Views {
   }
 
   _ride(state) {
-    const id = this.inside(state.description);
-    const place = id === null ? null : state.place("robot", id);
+    const one = this.head(state);
+    const place = one && state.place(one.kind, one.id);
     if (!place) return;
     const [x, y, heading] = place;
-    const height = Math.max(0.6, state.height("robot", id));
+    const height = one.kind === "robot" ? Math.max(0.6, state.height("robot", one.id)) : EYES * state.height("person", one.id);
+    const [yaw, pitch] = [heading + this._gaze[0], this._gaze[1] - DOWN];
     this.camera.position.set(x, y, height);
-    this.camera.lookAt(x + Math.cos(heading), y + Math.sin(heading), height - 0.12);
+    this.camera.lookAt(x + Math.cos(yaw) * Math.cos(pitch), y + Math.sin(yaw) * Math.cos(pitch), height + Math.sin(pitch));
+  }
+
+  /** Looks around in the first person [rad]. */
+  _turnHead(yaw, pitch) {
+    this._gaze[0] = Math.max(-NECK, Math.min(NECK, this._gaze[0] + yaw));
+    this._gaze[1] = Math.max(-1.2, Math.min(1.2, this._gaze[1] + pitch));
   }
 
   _key(event) {
     const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (!step || !event.shiftKey || !this.controls.enabled) return;
+    if (!step || !event.shiftKey) return;
     event.preventDefault();
+    if (this.firstPerson) return this._turnHead(0.12 * step[0], -0.12 * step[1]);
     const away = this.camera.position.clone().sub(this.controls.target);
     const round = new THREE.Spherical().setFromCartesianCoords(away.x, away.z, -away.y);
     round.theta += 0.12 * step[0];

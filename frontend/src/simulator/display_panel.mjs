@@ -1,5 +1,9 @@
 // DisplayPanel: view, camera, and what the picture shows.
+import { legend } from "../scene/field.mjs";
+import { LOOKS } from "../scene/look.mjs";
+import { attempt } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
+import { CameraPanel } from "./camera_panel.mjs";
 
 export class DisplayPanel {
   constructor(app, picture) {
@@ -9,7 +13,14 @@ export class DisplayPanel {
     this.view = h("select", { "aria-label": "View", onchange: () => this._chooseView() }, views.map(([value, text]) => h("option", { value, selected: value === picture.view }, text)));
     this.camera = h("select", { "aria-label": "Camera", onchange: () => this.look(this.camera.value) });
     this.boxes = h("div", { class: "choice" });
-    this.element = h("details", { open: true }, h("summary", {}, "Display"), h("div", { class: "row" }, this.view, this.camera), this.boxes);
+    this.predictor = h("select", { "aria-label": "Predictor of the paths", onchange: () => this._predict() });
+    this.legend = h("ul", { class: "picture-legend", "aria-label": "Legend", hidden: true });
+    picture.element.append(this.legend);
+    this.paths = h("label", { class: "row", hidden: true }, "Predictor", this.predictor);
+    app.connection.on("simulator.predictor", (name) => this.predicts(name));
+    document.addEventListener("theme", () => this._explain());
+    this.images = new CameraPanel(app, picture);
+    this.element = h("details", { open: true }, h("summary", {}, "Display"), h("div", { class: "row" }, this.view, this.camera), this.boxes, this.paths, this.images.boxes);
     this._hidden = new Set((app.address.get("hide") ?? "").split(",").filter(Boolean));
     this._extra = new Set((app.address.get("show") ?? "").split(",").filter(Boolean));
   }
@@ -26,7 +37,42 @@ export class DisplayPanel {
       const box = h("input", { type: "checkbox", checked: visible, onchange: () => this._toggle(name, box.checked) });
       return h("label", {}, box, title);
     }));
+    this.images.loaded(scene.state.description);
     this._want();
+  }
+
+  /** Takes the names of the predictors. */
+  know(names) {
+    const chosen = this.predictor.value || this._chosen;
+    fill(this.predictor, names.map((name) => h("option", { value: name, selected: name === chosen }, name)));
+    this._explain();
+  }
+
+  /** Takes the predictor that the server uses. */
+  predicts(name) {
+    this._chosen = name;
+    this.predictor.value = name;
+    this._explain();
+  }
+
+  _predict() {
+    return attempt(() => this.app.connection.call("simulator.predictor", { name: this.predictor.value }));
+  }
+
+  /** Shows what colours mean. */
+  _explain() {
+    const { scene } = this.picture;
+    const shown = scene.wanted();
+    const look = LOOKS[this.app.theme === "dark" ? "dark" : "light"];
+    const rows = shown.flatMap((name) => legend(name, look, this._chosen ?? "constant-velocity"));
+    this.paths.hidden = !shown.includes("paths");
+    this.legend.hidden = !rows.length;
+    fill(this.legend, rows.map(({ color, text, width }) => {
+      const mark = h("i", { "aria-hidden": "true" });
+      mark.style.background = color;
+      mark.style.height = `${width}px`;
+      return h("li", {}, mark, text);
+    }));
   }
 
   /** Chooses a camera by its name. */
@@ -58,6 +104,7 @@ export class DisplayPanel {
   }
 
   _want() {
+    this._explain();
     this.app.connection.call("simulator.layers", { names: this.picture.scene.wanted() }).catch(() => {});
   }
 }

@@ -9,6 +9,24 @@ const KEYS = {
   ArrowLeft: [0, 1, 0], a: [0, 1, 0], ArrowRight: [0, -1, 0], d: [0, -1, 0], q: [0, 0, 1], e: [0, 0, -1],
 };
 
+/**
+ * Forward, turn and sideways of a gamepad. Two sticks (mapping "standard"): the left one walks and steps aside, the
+ * right one turns. With one stick, it walks and turns. The cross of buttons does as the arrow keys.
+ */
+export function gamepadInput(pad) {
+  const axis = (k) => {
+    const size = Math.abs(pad.axes[k] ?? 0);
+    return size > DEAD ? (Math.sign(pad.axes[k]) * Math.min(1, size - DEAD)) / (1 - DEAD) : 0;
+  };
+  const pressed = (k) => (pad.mapping === "standard" && pad.buttons[k]?.pressed ? 1 : 0);
+  const two = pad.mapping === "standard" || pad.axes.length > 2;
+  return [
+    -axis(1) + pressed(12) - pressed(13),
+    -axis(two ? 2 : 0) + pressed(14) - pressed(15),
+    two ? -axis(0) : 0,
+  ];
+}
+
 export class Drive {
   constructor(app, actions) {
     this.app = app;
@@ -65,13 +83,7 @@ export class Drive {
     const [x, y] = this._stick;
     sum[0] -= y;
     sum[1] -= x;
-    for (const pad of navigator.getGamepads?.() ?? []) {
-      if (!pad) continue;
-      const axis = (k) => (Math.abs(pad.axes[k] ?? 0) > DEAD ? pad.axes[k] : 0);
-      sum[0] -= axis(1);
-      sum[1] -= axis(2) || axis(0);
-      sum[2] -= axis(2) ? axis(0) : 0;
-    }
+    for (const pad of navigator.getGamepads?.() ?? []) if (pad) gamepadInput(pad).forEach((one, k) => (sum[k] += one));
     return sum.map((one) => Math.max(-1, Math.min(1, one)));
   }
 

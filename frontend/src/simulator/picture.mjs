@@ -1,6 +1,7 @@
 // Picture: the canvas of the simulator: the scene, the preview while it is prepared, clicks.
 import { Scene2D } from "../scene2d/scene2d.mjs";
 import { Scene3D } from "../scene3d/scene3d.mjs";
+import { Motion } from "../scene/motion.mjs";
 import { h } from "../ui/dom.mjs";
 import { say } from "../ui/dialog.mjs";
 import { drawPreview } from "./preview.mjs";
@@ -20,6 +21,7 @@ export class Picture {
     this.actions = actions;
     this.placing = false;
     this.frames = 0;
+    this.motion = new Motion();
     this._waiting = null;
     this._loading = null;
     this._awake = 0;
@@ -37,7 +39,7 @@ export class Picture {
   take(frame) {
     if (!this._shown || !this.scene) return undefined;
     this._finish();
-    this.newest = frame;
+    this.motion.push(frame, performance.now());
     return new Promise((resolve) => {
       this._waiting = resolve;
     });
@@ -47,7 +49,17 @@ export class Picture {
   preview(preview) {
     this._preview = preview && { ...preview, since: performance.now() };
     this.overlay.hidden = !preview;
-    if (preview) this.newest = null;
+    if (preview) this.forget();
+  }
+
+  /** The newest frame of the server, or null. */
+  get newest() {
+    return this.motion.newest;
+  }
+
+  /** Forgets the frames, because something else is shown. */
+  forget() {
+    this.motion.clear();
   }
 
   /** Text over the picture. */
@@ -135,21 +147,18 @@ export class Picture {
     requestAnimationFrame(() => this._tick());
     if (!this._shown || !this.scene || !this.canvas.clientWidth) return this._finish();
     if (this._preview) drawPreview(this.overlay, this._preview, this.app.theme);
-    const fresh = this._waiting !== null;
-    if (fresh) this._apply();
-    if (!fresh && performance.now() > this._awake) return undefined;
+    if (this._waiting === null && !this.motion.moving && performance.now() > this._awake) return undefined;
+    if (this._waiting !== null) this.frames += 1;
+    this._apply();
     if (this.scene.state.frame) this.scene.render();
     return this._finish();
   }
 
   _apply() {
-    if (!this.newest || this._loading) return;
-    if (this.scene.apply(this.newest)) {
-      this.frames += 1;
-      this.preview(null);
-      return;
-    }
-    this._loading = this._load().catch((error) => say(error.message, "error"));
+    const frame = this._loading ? null : this.motion.at(performance.now());
+    if (!frame) return;
+    if (this.scene.apply(frame)) this.preview(null);
+    else this._loading = this._load().catch((error) => say(error.message, "error"));
   }
 
   async _load() {
@@ -159,7 +168,7 @@ export class Picture {
         await this.scene.load(description);
         this.actions.loaded?.(description);
       }
-      if (this.newest && this.scene.apply(this.newest)) this.preview(null);
+      if (this.motion.newest && this.scene.apply(this.motion.newest)) this.preview(null);
       this.wake();
     } finally {
       this._loading = null;

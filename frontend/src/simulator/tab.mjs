@@ -15,6 +15,13 @@ import { ValuesPanel } from "./values_panel.mjs";
 const SUMMARY = 5000;
 const PING = 2000;
 
+/** What is shown until a run is prepared. */
+function preparation({ compiling, recorded }) {
+  if (!compiling) return recorded ? "" : "Preparing the simulation";
+  const meanwhile = recorded ? "you see a recording of the same run" : "everybody walks straight";
+  return `Compiling for the first run on this computer; until then ${meanwhile}`;
+}
+
 class SimulatorView {
   constructor(root, app) {
     this.app = app;
@@ -42,6 +49,8 @@ class SimulatorView {
   /** Takes the state of the server, when the page opens or connects again. */
   greet(state) {
     this.plots.know(state.plots);
+    this.display.predicts(state.predictor);
+    this.display.images.take(state.cameras);
     this._opened(state.source, state.status);
     this.plots.begin(state.history);
     this._take(state.status);
@@ -49,6 +58,7 @@ class SimulatorView {
     this.app.connection.call("simulator.names").then((names) => {
       this.tools.know(names);
       this.inspector.navigators = names.navigators;
+      this.display.know(names.predictors);
     }, () => {});
     if (state.status.state !== "none") this.app.connection.call("simulator.show_frame").catch(() => {});
   }
@@ -86,6 +96,7 @@ class SimulatorView {
     connection.on("simulator.opened", ({ source, status }) => {
       this._opened(source, status);
       this.plots.begin([]);
+      this._take(status);
     });
     connection.draw("scene", (frame) => this.picture.take(frame));
     connection.on("lost", () => this.drive.subject && this.drive.forget());
@@ -93,7 +104,7 @@ class SimulatorView {
 
   _opened(source, status) {
     this.source = source;
-    this.picture.newest = null;
+    this.picture.forget();
     this.picture.preview(status.state === "preparing" ? source.preview ?? null : null);
     this.library.mark(source.name);
     const live = source.kind === "run";
@@ -112,7 +123,7 @@ class SimulatorView {
     this.plots.take(status);
     this._showLine();
     if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
-    if (status.state === "preparing") this.picture.say(status.compiling ? "Compiling for the first run on this computer; meanwhile everybody walks straight" : "Preparing the simulation");
+    if (status.state === "preparing") this.picture.say(preparation(status));
     else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
     if (status.state === "failed") this.picture.preview(null);
     if (status.state === "ended" && before.state !== "ended" && this.drive.subject) this.drive.forget();
@@ -144,6 +155,7 @@ class SimulatorView {
     const robots = this.picture.scene.state.description?.robots ?? [];
     if (kind === "robot") this.inspector.select({ kind, id: robots.find((one) => one.name === name)?.id });
     this.display.look("follow");
+    if (kind === "avatar") this.display.look("eyes");
   }
 
   _became(name) {
@@ -223,6 +235,7 @@ class SimulatorView {
       ["g", "Goal of the chosen one by a click", () => this.inspector.state && this.tools.choose("goal")],
       ["Delete", "Remove the chosen one", () => this.inspector.remove()],
       ["f", "Follow", () => this.display.look("follow")],
+      ["i", "Through the eyes of the chosen one; Shift and arrows look around", () => this.display.look("eyes")],
       ["o", "Overview", () => this.display.reset()],
       ["v", "In space or from above", () => this._turnView()],
       ["Escape", "Cancel; give a robot back", () => this.tools.choose(null)],

@@ -94,8 +94,17 @@ export class App {
     this.connection.on("lost", () => this._tellConnection("not connected, trying again", "lost"));
     this.connection.on("hello", (greeting) => {
       this._greeting = greeting;
+      if (greeting.desks.jobs) this._countJobs(greeting.desks.jobs);
       for (const [name, view] of this._views) view.greet?.(greeting.desks[name] ?? {});
     });
+    this.connection.on("jobs.state", (state) => this._countJobs(state));
+  }
+
+  /** Shows the number of jobs that wait or run in the title of their tab. */
+  _countJobs({ jobs }) {
+    const active = jobs.filter((one) => one.state === "running" || one.state === "waiting").length;
+    const { title } = this.tabs.find((one) => one.name === "jobs");
+    this._buttons.get("jobs").textContent = active ? `${title} (${active})` : title;
   }
 
   _tellConnection(text, kind) {

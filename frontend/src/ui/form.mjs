@@ -3,7 +3,7 @@ import { field, h } from "./dom.mjs";
 
 /**
  * Makes the fields of a form. Each row of the table is
- * {name, label, kind: "number"|"whole"|"text"|"choice"|"switch", value, unit?, low?, high?, step?, choices?, note?}.
+ * {name, label, kind: "number"|"whole"|"text"|"choice"|"several"|"switch", value, unit?, low?, high?, step?, choices?, note?}.
  * Returns {element, values()}.
  */
 export function makeForm(rows, onchange = () => {}) {
@@ -19,13 +19,14 @@ export function makeForm(rows, onchange = () => {}) {
 }
 
 function control(row) {
-  if (row.kind === "choice") {
+  if (row.kind === "choice" || row.kind === "several") {
+    const several = row.kind === "several";
     return h(
       "select",
-      { name: row.name },
+      { name: row.name, multiple: several, size: several ? Math.min(8, Math.max(3, row.choices.length)) : null },
       row.choices.map((one) => {
         const [value, text] = Array.isArray(one) ? one : [one, one];
-        return h("option", { value, selected: value === row.value }, text);
+        return h("option", { value, selected: several ? row.value.includes(value) : value === row.value }, text);
       }),
     );
   }
@@ -37,6 +38,7 @@ function control(row) {
 
 function read(row, one) {
   if (row.kind === "switch") return one.checked;
+  if (row.kind === "several") return [...one.selectedOptions].map((option) => option.value);
   if (row.kind === "number" || row.kind === "whole") return one.value === "" ? null : Number(one.value);
   return one.value;
 }

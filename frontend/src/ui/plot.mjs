@@ -13,12 +13,12 @@ export function themeColour(colour) {
 /**
  * Makes a plot in an element.
  * @param {HTMLElement} element place of the plot; its width is that of the plot
- * @param {{title: string, x: {label, unit}, series: {label, unit, colour, dash}[], height?: number, points?: boolean, legend?: boolean}} options
+ * @param {{title: string, x: {label, unit}, series: {label, unit, colour, dash}[], height?: number, points?: boolean, legend?: boolean, log?: boolean}} options
  *   colour: CSS colour or name of a property such as "--data-1"; dash: lengths [px], [] for a solid line
  * @returns {{set(data: number[][]), mark(x: number|null), destroy()}} set takes [xs, values of series 1, ...]; values
  *   that are not finite are gaps; mark draws a vertical line at x
  */
-export function makePlot(element, { title, x, series, height = HEIGHT, points = false, legend = true }) {
+export function makePlot(element, { title, x, series, height = HEIGHT, points = false, legend = true, log = false }) {
   const place = h("div", { role: "img", "aria-label": `${title}: no data yet`, class: "plot-canvas" });
   const figure = h("figure", { class: "plot" }, h("figcaption", {}, title), place);
   element.append(figure);
@@ -60,8 +60,8 @@ export function makePlot(element, { title, x, series, height = HEIGHT, points = 
       {
         width: width(),
         height,
-        scales: { x: { time: false } },
-        axes: [{ ...axis(labelOf(x)), size: 30 }, axis(units.length === 1 ? `[${units[0]}]` : "")],
+        scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
+        axes: [{ ...axis(labelOf(x)), size: 30 }, { ...axis(units.length === 1 ? `[${units[0]}]` : ""), ...(log ? { grid: { show: false }, ticks: { show: false } } : {}) }],
         series: [
           { label: labelOf(x) },
           ...series.map((one) => ({

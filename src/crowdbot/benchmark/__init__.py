@@ -47,7 +47,7 @@ _MODULES = {
         "plot_frames",
         "sweep_degradations",
     ),
-    "speed": ("SpeedRow", "measure", "measurements"),
+    "speed": ("Gauge", "Measurement", "SpeedRow", "measure", "measurements"),
     "toy_gan": ("METHODS", "GanRun", "GanComparison", "plot_measures", "plot_samples", "with_settings"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
@@ -108,6 +108,8 @@ if TYPE_CHECKING:
     from .prediction import sweep_degradations as sweep_degradations
     from .report import PredictionResult as PredictionResult
     from .report import write_report as write_report
+    from .speed import Gauge as Gauge
+    from .speed import Measurement as Measurement
     from .speed import SpeedRow as SpeedRow
     from .speed import measure as measure
     from .speed import measurements as measurements

@@ -28,7 +28,10 @@ from .clock import MODES, BridgeClock, Pace
 from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
+from .join.command_guard import CommandGuard, DrivingArea, GuardLimits
+from .join.join_run import JoinRun, joined_trial
 from .latency import CommandLatency, LatencySummary
+from .load.bridge_load import LOADED_BRIDGES, BridgeLoad, bridge_load
 from .motion_capture import (
     MotionBinding,
     MotionCapture,
@@ -38,30 +41,40 @@ from .motion_capture import (
     open_stream,
     parse_captures,
 )
+from .plain_services import PLAIN_SERVICES, PlainService
 from .port import BridgePort, steered_trial
 from .quality import QUALITIES, QualityOfService
 from .run_control import RunControl
+from .stacks.stack_link import open_stack
 from .transport import Transport
 from .transports import TRANSPORTS, open_transport
 from .verbs.definitions import SERVICES, interface_store, request_kind, response_kind
 
 __all__ = [
+    "LOADED_BRIDGES",
     "MODES",
+    "PLAIN_SERVICES",
     "QUALITIES",
     "SERVICES",
     "TRANSPORTS",
     "BridgeClock",
+    "BridgeLoad",
     "BridgePort",
     "BridgeRun",
+    "CommandGuard",
     "CommandLatency",
+    "DrivingArea",
+    "GuardLimits",
     "Inbox",
     "InputTopic",
+    "JoinRun",
     "LatencySummary",
     "MotionBinding",
     "MotionCapture",
     "MotionSample",
     "OutputTopic",
     "Pace",
+    "PlainService",
     "PoseStream",
     "QualityOfService",
     "RobotInterface",
@@ -70,9 +83,12 @@ __all__ = [
     "ServiceCall",
     "StreamStatistics",
     "Transport",
+    "bridge_load",
     "fields_of",
     "interface_store",
+    "joined_trial",
     "message_of",
+    "open_stack",
     "open_stream",
     "open_transport",
     "parse_captures",

@@ -23,9 +23,10 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, check_trial
 
 from .clock import BridgeClock, Pace
+from .instant_repeat import InstantRepeat
 from .port import BridgePort, steered_trial
 from .run_control import PAUSED, PLAYING, RunControl
-from .transport import Transport
+from .transport import RemarkSource, Transport
 from .verbs.results import FAILED, result
 
 __all__ = ["BridgeRun", "run_bridge"]
@@ -96,6 +97,8 @@ class BridgeRun:
         self.note = note or (lambda text: None)
         self.stop = StopRequest()
         self.pace = Pace(trial.step, clock.rate)
+        self.port.inbox.asked_pace.rate = clock.rate if clock.mode == "paced" and not sources else None
+        self.repeat = InstantRepeat()
         self._back = -1
 
     def run(self) -> RunSummary:
@@ -122,6 +125,9 @@ class BridgeRun:
                 f"{self.port.inbox.count.received} messages received; {latency.commands} commands answered a step after"
                 f" {1e3 * latency.median:.1f} ms (median), {1e3 * latency.p99:.1f} ms (99 %)"
             )
+        for one in self.port.transports:
+            if isinstance(one, RemarkSource) and (text := one.remark()):
+                self.note(text)
         return summary
 
     def _run_once(self, number: int) -> RunSummary:
@@ -155,6 +161,7 @@ class BridgeRun:
         port, control = self.port, self.control
         self.pace.restart()
         port.begin(running.simulation)
+        self.repeat.begin()
         control.finish_restart()
         while running.outcome is None:
             port.serve(running.simulation)
@@ -167,6 +174,7 @@ class BridgeRun:
                 port.report("error", f"{type(order).__name__}: {reason}")
             running.refusals.clear()
             port.publish(running.simulation)
+            self.repeat.begin()
             control.note_step()
             if self.clock.mode == "paced" and (remark := self.pace.note_step()):
                 port.report("warning", remark)
@@ -193,11 +201,25 @@ class BridgeRun:
         if self.control.steps or mode in ("free", "step"):
             return 0.0
         if mode == "paced":
-            return self.pace.wait_time()
+            return self._wait_for_pace(simulation)
         if mode == "follow":
             return self._wait_for_time(simulation)
         wanted = {one.robot.name for one in simulation.robots if one.robot.pose is None}
-        return IDLE if wanted - inbox.commanded else 0.0
+        if wanted - inbox.commanded:
+            if self.repeat.must_send():
+                self.port.publish(simulation)
+            return IDLE
+        return 0.0 if self.repeat.is_settled(inbox.count.received) else IDLE
+
+    def _wait_for_pace(self, simulation: Simulation) -> float:
+        asked = self.port.inbox.asked_pace
+        if simulation.world.clock.nanoseconds < asked.until:
+            self.pace.restart()
+            return 0.0
+        if asked.rate is not None and asked.rate != self.pace.rate:
+            self.pace.rate = asked.rate
+            self.pace.restart()
+        return self.pace.wait_time()
 
     def _wait_for_time(self, simulation: Simulation) -> float:
         clock, now = simulation.world.clock, self.port.inbox.external_time

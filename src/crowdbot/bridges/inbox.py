@@ -13,6 +13,7 @@ from crowdbot.simulation import Order, VelocityOrder
 
 from .interface import InputTopic, RobotInterface
 from .latency import CommandLatency
+from .pace_request import PaceRequest
 
 __all__ = ["Inbox", "ServiceCall"]
 
@@ -65,6 +66,7 @@ class Inbox:
         self.interface = interface
         self.count = _Count()
         self.latency = CommandLatency()
+        self.asked_pace = PaceRequest()
         self.external_time: int | None = None
         """Latest time [ns] received on ``/clock``, for a simulation that follows it."""
         self.commanded: set[str] = set()
@@ -169,7 +171,7 @@ class Inbox:
     def clear(self, interface: RobotInterface) -> None:
         """Begin another run: forget commands and orders; calls stay."""
         with self._news:
-            self.interface, self.external_time = interface, None
+            self.interface, self.external_time, self.asked_pace.until = interface, None, 0
             self._orders.clear()
             self._velocity.clear()
             self.commanded.clear()

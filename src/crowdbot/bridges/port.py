@@ -9,7 +9,7 @@ from crowdbot.core import InputError
 from crowdbot.navigation import ExternalNavigator
 from crowdbot.recording import StepMessage, StepMessages
 from crowdbot.simulation import Order, Simulation, StepRecord
-from crowdbot.trials import Trial
+from crowdbot.trials import RobotSpec, Trial
 
 from .inbox import Inbox
 from .interface import RobotInterface
@@ -24,7 +24,8 @@ __all__ = ["BridgePort", "steered_trial"]
 def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     """Return the trial with robots that other programs drive.
 
-    Robots with the navigator ``external`` are driven from outside; if there is none, all robots are.
+    Robots with the navigator ``external``, ``rosbridge`` or ``ros2`` are driven from outside, over the bridges that are
+    given instead of their own; if there is none, all robots are.
 
     Args:
         trial: the trial.
@@ -34,10 +35,17 @@ def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     >>> steered_trial(load_trial("frontal")).robots[0].navigator
     ExternalNavigator(timeout=0.5)
     """
-    if any(isinstance(one.navigator, ExternalNavigator) for one in trial.robots):
-        return trial
     navigator = ExternalNavigator(timeout=timeout)
-    robots = tuple(dataclasses.replace(one, navigator=navigator) for one in trial.robots)
+    chosen = [one.navigator for one in trial.robots if isinstance(one.navigator, ExternalNavigator)]
+    if chosen and not any(one.source for one in chosen):
+        return trial
+
+    def steered(one: RobotSpec) -> RobotSpec:
+        if chosen and not (isinstance(one.navigator, ExternalNavigator) and one.navigator.source):
+            return one
+        return dataclasses.replace(one, navigator=navigator, deadline=None)
+
+    robots = tuple(map(steered, trial.robots))
     return dataclasses.replace(trial, robots=robots)
 
 
@@ -70,10 +78,14 @@ class BridgePort:
         self.transports = list(transports)
         self.control = control or RunControl()
         self.follows_clock = follows_clock
-        self.interface = RobotInterface.of(trial, follows_clock)
+        self.interface = self.describe(trial)
         self.inbox = Inbox(self.interface)
         self._steps: StepMessages | None = None
         self._skipped: set[str] = set()
+
+    def describe(self, trial: Trial) -> RobotInterface:
+        """Return the topics and services of a trial."""
+        return RobotInterface.of(trial, self.follows_clock)
 
     def start(self) -> None:
         """Open all transports."""
@@ -150,7 +162,7 @@ class BridgePort:
             one.report(level, text)
 
     def _announce(self, trial: Trial) -> None:
-        self.interface = self.inbox.interface = RobotInterface.of(trial, self.follows_clock)
+        self.interface = self.inbox.interface = self.describe(trial)
         self._skipped = {one.name for one in self.interface.inputs}
         for one in self.transports:
             one.start(self.interface, self.inbox)

@@ -37,6 +37,6 @@ LATCHED = QualityOfService("latched", True, True, 1)
 """What is sent once: the map, fixed transforms, descriptions of robots."""
 STATE = QualityOfService("state", True, False, 10)
 """Odometry, joints, people, contacts, orders."""
-COMMAND = QualityOfService("command", True, False, 1)
-"""Commands to the robot; a best-effort publisher does not match."""
+COMMAND = QualityOfService("command", True, False, 10)
+"""Commands to the robot; a best-effort publisher does not match. The newest counts, but none is lost on the way."""
 QUALITIES = (SENSOR, CLOCK, TF, LATCHED, STATE, COMMAND)

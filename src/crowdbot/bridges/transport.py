@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from crowdbot.recording import StepMessage
 
 from .inbox import Inbox
 from .interface import RobotInterface
 
-__all__ = ["Transport"]
+__all__ = ["RemarkSource", "Transport"]
 
 
 class Transport(Protocol):
@@ -51,3 +51,11 @@ class Transport(Protocol):
 
     def stop(self) -> None:
         """Close the connection; called once."""
+
+
+@runtime_checkable
+class RemarkSource(Protocol):
+    """A transport that has something to tell people after a run."""
+
+    def remark(self) -> str:
+        """Return a line, empty for none; called after :meth:`Transport.stop`."""

@@ -16,8 +16,12 @@ __all__ = ["TRANSPORTS", "open_transport"]
 TRANSPORTS: dict[str, tuple[str, str]] = {
     "rosbridge": ("rosbridge.server:RosbridgeServer.of", "rosbridge[:PORT], a server for roslibpy and roslib.js"),
     "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),
+    "ros1": ("ros1.node:Ros1Node.of", "ros1[:http://HOST:PORT], a ROS 1 node at a master"),
     "ros2": ("ros2.node:Ros2Node.of", "ros2[:DOMAIN], a ROS 2 node (rclpy)"),
+    "rosless": ("rosless.node:RoslessNode.of", "rosless[:DOMAIN], topics of ROS 2 without ROS, experimental"),
+    "naoqi": ("naoqi.bridge:NaoqiBridge.of", "naoqi:HOST[:PORT], virtual sensors in the memory of a Pepper (qi)"),
     "foxglove": ("foxglove.server:FoxgloveServer.of", "foxglove[:PORT], a live server for the Foxglove app"),
+    "tcp": ("tcp.challenge_server:ChallengeServer.of", "tcp[:PORT], the server of the challenge of ICRA 2021"),
 }
 """Module and function of each transport, relative to this room, and a line for people.
 

@@ -33,7 +33,7 @@ def goal_class(name: str) -> type[Goal]:
 
 
 def goal_for(name: str, recording: Recording) -> Goal:
-    """Return a goal for a recording: with its true future, or fitted to its learning part, if the goal requires it.
+    """Return a goal for a recording: with its true future, fitted to its learning part, or for its layout.
 
     Raises:
         InputError: the name is unknown, or the goal is learned and the recording has no learning part.
@@ -42,7 +42,8 @@ def goal_for(name: str, recording: Recording) -> Goal:
     if issubclass(kind, GroundTruth):
         return GroundTruth(*recording.windows)
     if kind.learns:
-        return kind.learn(recording.learning_part)
+        known = recording.layout is not None and recording.learn == 0.0
+        return kind.at(recording.layout) if known and recording.layout else kind.learn(recording.learning_part)
     return resolve_goal(name)
 
 

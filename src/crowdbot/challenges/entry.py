@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import InputError, explain_write_errors
-from crowdbot.evaluation import Estimate, RunRow, parse_statistic, row_of, row_values
+from crowdbot.evaluation import DECISION_METRICS, Estimate, RunRow, parse_statistic, row_of, row_values
 
 from .challenge import Challenge
 
@@ -129,6 +129,11 @@ def entry_differences(claimed: ChallengeEntry, found: ChallengeEntry) -> list[st
             elif (other.digest, other.outcome) != (row.digest, row.outcome):
                 lines.append(f"{trial}, seed {row.seed}: {other.outcome} {other.digest[:12]} claimed,"
                              f" {row.outcome} {row.digest[:12]} found")  # fmt: skip
-            elif row_values(other)["metrics"] != row_values(row)["metrics"]:
+            elif _without_times(other) != _without_times(row):
                 lines.append(f"{trial}, seed {row.seed}: same digest, other metrics")
     return lines
+
+
+def _without_times(row: RunRow) -> dict[str, Any]:
+    """Return the metrics of a run without those of real time."""
+    return {name: value for name, value in row_values(row)["metrics"].items() if name not in DECISION_METRICS}

@@ -19,6 +19,7 @@ __all__ = ["main"]
 COMMANDS = {
     "demo": "run a demonstration on built-in data and write a report",
     "run": "run one trial and record it",
+    "join": "let a real robot drive among the people of a trial",
     "app": "open the app in the browser: simulator, prediction, editor",
     "render": "render a trial as an image or a video",
     "replay": "run a recorded episode again and check its digest",

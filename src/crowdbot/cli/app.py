@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+import dataclasses
 import ssl
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,22 @@ from typing import TYPE_CHECKING
 from crowdbot.core import InputError
 
 if TYPE_CHECKING:
-    from crowdbot.web import AppServer
+    from crowdbot.vr import VrServer
+    from crowdbot.web import SessionLimits
+
+LIMITS: dict[str, tuple[type, int, str, str]] = {
+    "jobs": (int, 1, "N", "jobs that run at the same time (default: 2; 1)"),
+    "waiting": (int, 1, "N", "jobs that may wait (default: 20; 5)"),
+    "cpu-time": (float, 1, "SECONDS", "processor time of all jobs (default: no limit; 7200)"),
+    "memory": (float, 10**6, "MB", "memory of each job (default: 80 %% of this machine; 2000)"),
+    "upload-size": (float, 10**6, "MB", "largest file that is taken (default: 512; 128)"),
+    "disk-space": (float, 10**6, "MB", "size of the folder (default: no limit; 1000)"),
+    "windows": (int, 1, "N", "windows at the same time (default: 20; 6)"),
+    "idle-time": (float, 60, "MINUTES", "time without a window and a job until the session ends (default: never; 120)"),
+}
+"""Options of the limits: type, factor to the unit of the limit, metavariable, help."""
+
+EVERYWHERE = "0.0.0.0"  # noqa: S104 - asked for with --vr; every request then needs the token
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,9 +35,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=int, default=8700, metavar="N", help="port (default: 8700; 0 takes a free one)")
     parser.add_argument(
         "--host",
-        default="127.0.0.1",
         metavar="ADDRESS",
-        help="address to listen on (default: 127.0.0.1, this machine only); others need the token that is printed",
+        help="address to listen on (default: 127.0.0.1, this machine only; with --vr all addresses of this machine);"
+        " others need the token that is printed",
     )
     parser.add_argument(
         "--folder",
@@ -36,31 +52,73 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="trial file, built-in name, or episode that is shown first (default: a robot among walking people)",
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser window")
+    parser.add_argument(
+        "--vr",
+        action="store_true",
+        help="let headsets of the local network in: HTTPS with an own certificate, on all addresses of this machine",
+    )
     parser.add_argument("--certificate", type=Path, metavar="FILE", help="certificate for HTTPS, PEM")
     parser.add_argument("--key", type=Path, metavar="FILE", help="private key of the certificate, PEM")
+    parser.add_argument("--sessions", type=int, default=40, metavar="N", help="sessions at the same time (default: 40)")
+    group = parser.add_argument_group(
+        "limits of each session", "the second default is that of a server for other machines (--host)"
+    )
+    for name, (kind, _, word, text) in LIMITS.items():
+        group.add_argument(f"--{name}", type=kind, metavar=word, help=text)
 
 
 def main(options: argparse.Namespace) -> int:
     """Serve until Ctrl-C."""
-    from crowdbot.web import DESKS, AppServer, opened_first
+    from crowdbot.vr import VR_DESKS, VrServer
+    from crowdbot.web import opened_first
 
     if not 0 <= options.port <= 65535:
         raise InputError(f"--port = {options.port}: expected 0 to 65535")
-    desks, readable = DESKS, tuple[Path, ...]()
+    desks, readable = VR_DESKS, tuple[Path, ...]()
     if options.open is not None:
-        desks, readable = opened_first(DESKS, options.open)
-    server = AppServer(desks, options.folder, options.host, options.port, readable=readable, tls=_tls(options))
+        desks, readable = opened_first(VR_DESKS, options.open)
+    host = options.host or (EVERYWHERE if options.vr else "127.0.0.1")
+    server = VrServer(
+        desks,
+        options.folder,
+        host,
+        options.port,
+        readable=readable,
+        tls=_tls(options),
+        limits=_limits(options, host),
+        most_sessions=options.sessions,
+    )
     try:
-        asyncio.run(_serve(server, not options.no_browser))
+        asyncio.run(_serve(server, not options.no_browser, options.vr))
     except KeyboardInterrupt:
         print("crowdbot: the app has stopped")
     return 0
+
+
+def _limits(options: argparse.Namespace, host: str) -> SessionLimits:
+    """Return the limits of each session: those of the place, with the options that are given."""
+    from crowdbot.web import CLASSROOM, SessionLimits, is_loopback
+
+    if options.sessions < 1:
+        raise InputError(f"--sessions = {options.sessions}: expected at least 1")
+    given = {}
+    for name, (_, unit, _, _) in LIMITS.items():
+        value = getattr(options, name.replace("-", "_"))
+        if value is not None:
+            if not value > 0:
+                raise InputError(f"--{name} = {value:g}: expected a positive number")
+            given[name.partition("-")[0]] = value * unit
+    return dataclasses.replace(SessionLimits() if is_loopback(host) else CLASSROOM, **given)
 
 
 def _tls(options: argparse.Namespace) -> ssl.SSLContext | None:
     if options.certificate is None:
         if options.key is not None:
             raise InputError("--key needs --certificate")
+        if options.vr:
+            from crowdbot.vr import certificate_files, tls_context
+
+            return tls_context(*certificate_files())
         return None
     context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
     try:
@@ -70,11 +128,20 @@ def _tls(options: argparse.Namespace) -> ssl.SSLContext | None:
     return context
 
 
-async def _serve(server: AppServer, browser: bool) -> None:
+async def _serve(server: VrServer, browser: bool, vr: bool) -> None:
     import webbrowser
 
+    from crowdbot.vr import link_text, local_addresses
+
+    if server.host == EVERYWHERE:
+        server.reached_at = next(iter(local_addresses()), "127.0.0.1")
     async with server.running():
-        print(f"crowdbot app: {server.url}  (Ctrl-C stops it)", flush=True)
+        print(f"crowdbot app: {server.url.replace(EVERYWHERE, '127.0.0.1', 1)}  (Ctrl-C stops it)", flush=True)
+        if vr:
+            print(f"headset: {server.vr_url}")
+            print("The certificate is made by this machine: accept the warning of the headset once.")
+            print(link_text(server.vr_url), flush=True)
         if browser:
-            await asyncio.get_running_loop().run_in_executor(None, webbrowser.open, server.url)
+            page = server.url.replace(EVERYWHERE, "127.0.0.1", 1)
+            await asyncio.get_running_loop().run_in_executor(None, webbrowser.open, page)
         await asyncio.Event().wait()

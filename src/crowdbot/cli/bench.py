@@ -57,6 +57,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--page", type=Path, metavar="FILE.md", help=f"page for {DRIVES}, with its plots in a folder of the same name"
     )
+    parser.add_argument(
+        "--keep",
+        type=Path,
+        metavar="FOLDER",
+        help=f"folder of the motions measured by {DRIVES}: the same command continues there after an interruption",
+    )
     add_json(parser)
 
 
@@ -64,6 +70,7 @@ def main(options: argparse.Namespace) -> int:
     """Measure and print the rows."""
     from crowdbot.benchmark import measure
     from crowdbot.core import InputError
+    from crowdbot.web import app_measurements
 
     if ENVIRONMENTS in options.names:
         if len(options.names) > 1 or options.data is not None or options.robot or options.makers or options.page:
@@ -73,12 +80,12 @@ def main(options: argparse.Namespace) -> int:
         if len(options.names) > 1 or options.data is not None:
             raise InputError(f"{DRIVES} is measured alone, without other measurements and without --data")
         return _measure_drives(options)
-    if options.robot or options.makers or options.page is not None:
-        raise InputError(f"--robot, --makers and --page belong to crowdbot bench {DRIVES}")
+    if options.robot or options.makers or options.page is not None or options.keep is not None:
+        raise InputError(f"--robot, --makers, --page and --keep belong to crowdbot bench {DRIVES}")
     if options.quick:
         raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS} or {DRIVES}; use --repeats 1")
     with progress(options.json) as report:
-        rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
+        rows = measure(options.names, options.repeats, report, options.data, app_measurements())
     table = [row.as_dict() for row in rows]
     _write(options.out, table)
     if options.json:
@@ -117,7 +124,9 @@ def _measure_drives(options: argparse.Namespace) -> int:
     from crowdbot.benchmark import measure_drives, write_drives_page
 
     with progress(options.json) as report:
-        found = measure_drives(options.robot, quick=options.quick, makers=options.makers, report=report)
+        found = measure_drives(
+            options.robot, quick=options.quick, makers=options.makers, keep=options.keep, report=report
+        )
     _write(options.out, found.as_dict())
     if options.page is not None:
         write_drives_page(found, options.page, _command(options))

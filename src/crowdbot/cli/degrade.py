@@ -48,6 +48,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="parameters of the degradation, such as occlusion.eye=3,1.5 (default: none)",
     )
     add(
+        "--set-predictor",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameters of the predictor or its crowd model, as --set of `crowdbot predict` (default: none)",
+    )
+    add(
         "--out",
         type=Path,
         metavar="DIR",
@@ -187,7 +194,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
         if not issubclass(known[name], prediction.LearnedPredictor) and not required_fields(known[name])
     )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
-    options.set = []  # --set applies to degradations here
+    options.set = options.set_predictor  # --set applies to degradations here
     made = predictor_specs(options)
     late = next((one.goal for one in made if one.goal is not None), None)
     if late is not None and len(found) > 1:
@@ -320,8 +327,8 @@ def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Cha
     from crowdbot.core import InputError, stream
     from crowdbot.data import save
 
-    if options.predictor or options.out is not None:
-        raise InputError("--write does not evaluate predictors; omit --predictor and --out")
+    if options.predictor or options.set_predictor or options.out is not None:
+        raise InputError("--write does not evaluate predictors; omit --predictor, --set-predictor and --out")
     if len(options.data) > 1 or len(degradations) > 1 or len(options.levels or ()) > 1:
         raise InputError("--write requires exactly one --data, one --by (chain with A+B) and at most one of --levels")
     degradation = degradations[0].at(options.levels[0]) if options.levels else degradations[0]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, number, print_json, print_table, progress
+from .recordings import add_file_options, columns, transform
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
@@ -46,9 +47,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--steady", nargs=2, type=float, metavar=("FIRST", "LAST"), help="reference of the steady state in seconds"
         " (default: none)")  # fmt: skip
     add("--dt", type=float, default=0.1, metavar="SECONDS", help="time step of people of a trial (default: 0.1)")
-    add("--fps", type=float, metavar="FRAMES", help="frame rate of the frame column in Hz (default: from the file)")
-    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
-    add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm or px (default: from the file)")
+    add_file_options(parser)
     add("--seed", type=int, default=0, metavar="N", help="seed of shuffles and intervals (default: 0)")
     add("--trust", action="store_true", help="allow code outside the folder of a trial")
     add("--out", type=Path, metavar="DIR", help="folder for tables (CSV), measurements.json and plots (default: none)")
@@ -115,7 +114,8 @@ def _tracks(source: str, options: argparse.Namespace, report: Progress) -> list[
 
     path = Path(source)
     if path.suffix.lower() != ".xml" and path.is_file():
-        return [load(path, options.fps, options.format, options.units)]
+        named, metres = dict(columns(options)), transform(options)
+        return [load(path, options.fps, options.format, options.units, columns=named, transform=metres)]
     return _run(source, options, report)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import sys
 import textwrap
 import warnings
@@ -136,9 +137,13 @@ def print_warnings() -> Iterator[None]:
 def progress(quiet: bool = False) -> Iterator[Progress]:
     """Show progress bars on stderr, one for each task; plain lines if stderr is not a terminal.
 
-    Also reports the compilation of kernels.
+    With ``CROWDBOT_PROGRESS=json`` in the environment, the lines are JSON, ``{"task": "evaluate", "share": 0.25}``, for
+    programs that start a command. Also reports the compilation of kernels.
     """
-    if quiet:
+    if os.environ.get("CROWDBOT_PROGRESS") == "json":
+        with _report_compilation(note):
+            yield _json_lines()
+    elif quiet:
         yield lambda what, share: None
     elif sys.stderr.isatty():
         with _bars() as report:
@@ -179,6 +184,17 @@ def _bars() -> Iterator[Progress]:
 
         with _report_compilation(lambda sentence: bars.console.print(sentence, highlight=False, markup=False)):
             yield report
+
+
+def _json_lines() -> Progress:
+    newest: dict[str, float] = {}
+
+    def report(what: str, share: float) -> None:
+        if share - newest.get(what, -1.0) >= 0.002 or share >= 1.0:
+            newest[what] = share
+            note(json.dumps({"task": what, "share": round(float(share), 4)}))
+
+    return report
 
 
 def _lines() -> Progress:

@@ -48,6 +48,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
     add("--out", type=Path, metavar="DIR", help="folder for tables, plots and resumable results (default: none)")
     add("--animate", type=int, metavar="FRAME", help="frame to animate; requires --out")
+    add(
+        "--animate-format",
+        default="gif",
+        choices=("gif", "mp4", "webp"),
+        help="format of the animation: gif, mp4 (requires PyAV) or webp (default: gif)",
+    )
     add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
@@ -195,5 +201,6 @@ def _write_results(options: argparse.Namespace, evaluation: Evaluation, results:
     plot_frames(results, options.out / "frames.png")
     names = ["scores.json", "frames.parquet", "errors.png", "frames.png"]
     if options.animate is not None:
-        names += [animate_window(evaluation, options.animate, options.out / f"frame-{options.animate}.gif").name]
+        file = options.out / f"frame-{options.animate}.{options.animate_format}"
+        names += [animate_window(evaluation, options.animate, file).name]
     note(f"wrote {', '.join(names)} in {options.out}")

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from .output import note
 
 if TYPE_CHECKING:
-    from crowdbot.data import Recording
+    from crowdbot.data import Recording, Trajectories
 
-__all__ = ["add_recordings", "horizon", "print_notes", "recordings"]
+__all__ = ["add_file_options", "add_recordings", "columns", "horizon", "print_notes", "recordings", "transform"]
 
 
 def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
@@ -33,21 +33,15 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         metavar="METRES",
         help="maximum distance of scored people from a recorded robot (default: none)",
     )
-    add(
-        "--fps",
-        type=float,
-        metavar="FRAMES",
-        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s",
-    )
     add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
-    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
     add(
         "--time-base",
         default="true",
         metavar="NAME",
         help="time base of the ETH recording: true or published (default: true)",
     )
-    add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm or px (default: from the file)")
+    add_file_options(parser)
+    _add_stage(parser)
     add(
         "--late",
         default="skip",
@@ -61,23 +55,111 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
+def _add_stage(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--stage",
+        metavar="FILE",
+        help="walls and exits of the place: a trial, a ROS map (.yaml), or an area (.wkt, .geojson), in metres",
+    )
+
+
+def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """Add the options for the content of a file: format, frame rate, units, columns, and the scale of pixels."""
+    add = parser.add_argument
+    add(
+        "--fps",
+        type=float,
+        metavar="FRAMES",
+        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s",
+    )
+    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
+    add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm, ft or px (default: from the file)")
+    add(
+        "--columns",
+        nargs="+",
+        default=[],
+        metavar="NAME=COLUMN",
+        help="columns of a CSV or Parquet file: id, frame, time, x, y, label (default: by their usual names)",
+    )
+    add("--scale", type=float, metavar="METRES", help="metres per pixel of coordinates in pixels (default: none)")
+    add("--homography", type=Path, metavar="FILE", help="text file with the 3 x 3 matrix from pixels to metres")
+
+
+def columns(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
+    """Return the columns of the options as pairs of a quantity and a name."""
+    from crowdbot.core import InputError
+
+    pairs = []
+    for word in options.columns:
+        quantity, sign, column = word.partition("=")
+        if not sign or not column:
+            raise InputError(f"--columns {word}: write NAME=COLUMN, such as id=pedestrian")
+        pairs.append((quantity, column))
+    return tuple(pairs)
+
+
+def transform(options: argparse.Namespace) -> float | tuple[tuple[float, ...], ...] | None:
+    """Return metres per pixel or a homography of the options, or None."""
+    from crowdbot.core import InputError
+    from crowdbot.data import read_homography
+
+    if options.scale is not None and options.homography is not None:
+        raise InputError("--scale and --homography are given; coordinates have one scale")
+    if options.homography is None:
+        return None if options.scale is None else float(options.scale)
+    return tuple(map(tuple, read_homography(options.homography).tolist()))
+
+
 def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
     """Return the recordings of the options."""
     from crowdbot.data import Recording
 
+    named, metres = columns(options), transform(options)
+    layout = None
+    if options.stage is not None:
+        from crowdbot.trials import load_layout
+
+        layout = load_layout(options.stage)
     return tuple(
         Recording(
             str(path), options.fps, options.format, options.units, options.time_base, options.step, options.observe,
             options.predict, options.protocol, options.near, options.late, options.learn, options.every,
+            named, metres, layout,
         )
         for path in options.data
     )  # fmt: skip
 
 
 def print_notes(found: tuple[Recording, ...]) -> None:
-    """Print the notes of the recordings, without duplicates."""
-    for sentence in dict.fromkeys(f"{one.name}: {one.tracks.note}" for one in found if one.tracks.note):
-        note(sentence)
+    """Print what was understood of each recording, in two lines, and the notes on it, without duplicates."""
+    for one in dict.fromkeys(found):
+        tracks = one.tracks
+        for sentence in (*describe_tracks(tracks), *((tracks.note,) if tracks.note else ())):
+            note(f"{one.name}: {sentence}")
+
+
+def describe_tracks(tracks: Trajectories) -> tuple[str, str]:
+    """Return two lines on tracks: rows, people and seconds; extent and speeds.
+
+    >>> from crowdbot.data import Trajectories
+    >>> describe_tracks(Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5))
+    ('2 rows of 1 person, 0.4 s with a step of 0.4 s', '0.5 x 0 m; speed 1.25 m/s (5 to 95 %: 1.2 to 1.2 m/s)')
+    """
+    import numpy as np
+
+    robots = len(tracks.robots)
+    people = len(tracks.ids) - robots
+    who = f"{people} {'person' if people == 1 else 'people'}" + (f" and {robots} robots" if robots else "")
+    first = f"{len(tracks)} rows of {who}, {tracks.time[-1]:.4g} s with a step of {tracks.dt:.4g} s"
+    width, height = np.ptp(tracks.position, axis=0)
+    extent = f"{width:.3g} x {height:.3g} {tracks.units}"
+    speed = np.hypot(*tracks.velocities()[~np.isin(tracks.id, list(tracks.robots))].T)
+    speed = speed[~np.isnan(speed)]
+    if len(speed) == 0:
+        return first, f"{extent}; no speeds, each person has one row"
+    low, middle, high = np.percentile(speed, [5, 50, 95])
+    per = f"{tracks.units}/s"
+    return first, f"{extent}; speed {middle:.3g} {per} (5 to 95 %: {low:.2g} to {high:.2g} {per})"
 
 
 def horizon(steps: Sequence[float], observe: int, predict: int) -> str:

@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from .example import example_windows
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .forecast import Forecast
+    from .homography import read_homography
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
+    from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
@@ -32,8 +34,10 @@ __getattr__, __dir__ = lazy_exports(
         "example": ["example_windows"],
         "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
         "forecast": ["Forecast"],
+        "homography": ["read_homography"],
         "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
         "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
+        "place_layout": ["PlaceLayout"],
         "protocols": ["PROTOCOLS"],
         "readers.time_base": ["RowRateError"],
         "readers.ucy": ["UCY_TO_METRES"],
@@ -57,6 +61,7 @@ __all__ = [
     "McapError",
     "McapOpcode",
     "McapReader",
+    "PlaceLayout",
     "PrimaryScene",
     "Recording",
     "RowRateError",
@@ -69,6 +74,7 @@ __all__ = [
     "load",
     "observed_velocity",
     "read_attachment",
+    "read_homography",
     "save",
     "slice_rows",
     "steady_velocity",

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
+
+from numpy.typing import ArrayLike
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from .readers import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
 from .readers.assemble import check_units
+from .readers.columns import check_quantities
 from .readers.reader import Reader, ReadOptions
-from .readers.time_base import check_fps
+from .readers.time_base import check_fps, check_walkers
 from .source import Source
 from .trajectories import Trajectories
 
@@ -31,6 +35,8 @@ _READERS: tuple[Reader, ...] = (
     tables.CSV,
 )
 
+TABLES = (tables.CSV, tables.PARQUET)
+
 FORMATS = {reader.name: reader.about for reader in _READERS}
 """Supported formats, each with a line of description."""
 
@@ -46,6 +52,8 @@ def load(
     format: str | None = None,
     units: str | None = None,
     time_base: str = "true",
+    columns: Mapping[str, str] | None = None,
+    transform: ArrayLike | None = None,
 ) -> Trajectories:
     """Load a recording of people.
 
@@ -56,8 +64,12 @@ def load(
             step of 10 frames at ``fps=25``, which is 0.4 s. Without a frame column, or where frames number the rows
             (``social-ways``, ``episode``), ``fps`` is rows per second.
         format: one of ``FORMATS`` (default: detected).
-        units: units of the coordinates in the file, ``m``, ``cm``, ``mm`` or ``px`` (default: from the file).
+        units: units of the coordinates in the file, ``m``, ``cm``, ``mm``, ``ft`` or ``px`` (default: from the file).
         time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong time step.
+        columns: columns of a CSV or Parquet file by quantity (``id``, ``frame``, ``time``, ``x``, ``y``, ``label``),
+            for names that are not found: ``{"id": "who", "x": "east"}``.
+        transform: metres per pixel, or a homography ``[3, 3]`` from (x, y, 1) of the file to metres. The coordinates
+            of the file are pixels then.
 
     Raises:
         InputError: an argument is not allowed.
@@ -76,10 +88,18 @@ def load(
         if word is not None and word not in known:
             raise InputError(f"unknown {what} {word!r}{did_you_mean(str(word), known)}; known are {', '.join(known)}")
     check_units(units)
-    options = ReadOptions(None if fps is None else check_fps(fps), units, time_base)
+    check_quantities(columns or {})
+    if transform is not None and units not in (None, "px"):
+        raise InputError(f"units {units!r} and a transform are given; a transform is from pixels to metres")
+    units = units if transform is None else "px"
+    options = ReadOptions(None if fps is None else check_fps(fps), units, time_base, columns or {})
     source = Source.of(Path(path))
-    reader = next((reader for reader in _READERS if reader.name == format), None) or _detect(source)
-    return reader.read(source, options)
+    reader = next((reader for reader in _READERS if reader.name == format), None)
+    reader = reader or (_table(source) if columns else _detect(source))
+    if columns and reader not in TABLES:
+        raise InputError(f"columns are given, but the format {reader.name} has none; they need a CSV or Parquet file")
+    tracks = reader.read(source, options)
+    return tracks if transform is None else check_walkers(tracks.metres(transform), options)
 
 
 def detect_format(path: str | PathLike[str]) -> str:
@@ -96,6 +116,11 @@ def detect_format(path: str | PathLike[str]) -> str:
     'sgan'
     """
     return _detect(Source.of(Path(path))).name
+
+
+def _table(source: Source) -> Reader:
+    """Return the reader of tables for a file whose columns the user names."""
+    return tables.PARQUET if source.kind == "parquet" else tables.CSV
 
 
 def _detect(source: Source) -> Reader:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import hashlib
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from pathlib import Path
 from crowdbot.core import DataError, InputError
 
 from .file_formats import load
+from .place_layout import PlaceLayout
 from .trajectories import Trajectories
 from .windows import Windows
 
@@ -29,6 +31,9 @@ class Recording:
         observe, predict, protocol, near, late: see :meth:`Trajectories.windows`.
         learn: initial share of the recording for learning goals; it is not predicted.
         every: only every n-th window is predicted.
+        columns: pairs of a quantity and the name of its column, see :func:`crowdbot.load`.
+        transform: metres per pixel, or the rows of a homography to metres, see :func:`crowdbot.load`.
+        layout: walls and exits of the place, instead of the walls of the file.
 
     Raises:
         InputError: ``learn`` is not in [0, 1), or ``every`` is below 1.
@@ -47,6 +52,9 @@ class Recording:
     late: str = "skip"
     learn: float = 0.0
     every: int = 1
+    columns: tuple[tuple[str, str], ...] = ()
+    transform: float | tuple[tuple[float, ...], ...] | None = None
+    layout: PlaceLayout | None = None
 
     def __post_init__(self) -> None:
         if self.step is not None and not self.step > 0.0:
@@ -100,9 +108,15 @@ class Recording:
 
 @functools.lru_cache(maxsize=4)
 def _tracks(recording: Recording) -> Trajectories:
-    tracks = load(recording.path, recording.fps, recording.format, recording.units, recording.time_base)
+    one = recording
+    tracks = load(one.path, one.fps, one.format, one.units, one.time_base, dict(one.columns), one.transform)
     if tracks.units == "px" and tracks.homography is not None:
         tracks = tracks.metres()
+    if one.layout is not None:
+        if tracks.units != "m":
+            raise InputError(f"{one.path} is in pixels, and a layout in metres; give metres per pixel or a homography")
+        remarks = filter(None, (tracks.note, one.layout.remark(tracks.position)))
+        tracks = dataclasses.replace(tracks, walls=one.layout.rings, note="; ".join(remarks))
     step = recording.step or (EPISODE_STEP if tracks.robots and recording.fps is None else None)
     return tracks if step is None else tracks.resample(step)
 

@@ -1,6 +1,7 @@
 """Evaluation of navigators: many trials, robots and seeds, with intervals, comparisons and requirements."""
 
-from .comparison import PairedComparison, correct_p_values, paired_comparison
+from .comparison import PairedComparison, paired_comparison
+from .decision_metrics import DECISION_METRICS
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
 from .intervals import Estimate, bootstrap_interval, wilson_interval
@@ -12,7 +13,7 @@ from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .reality import RealPlacement, place_reality, reality_svg
 from .report import write_report
 from .requirement import Requirement, RequirementVerdict, parse_requirement
-from .result import CellResult, EvaluationResult, load_evaluation
+from .result import CellResult, EvaluationResult, load_evaluation, result_schema
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .statistic import Statistic, parse_statistic
@@ -21,6 +22,7 @@ from .trial_of_recording import recorded_trial
 from .worst_run import WorstRun, worst_runs
 
 __all__ = [
+    "DECISION_METRICS",
     "PAIRED_FAMILIES",
     "CellResult",
     "Estimate",
@@ -39,7 +41,6 @@ __all__ = [
     "Statistic",
     "WorstRun",
     "bootstrap_interval",
-    "correct_p_values",
     "episode_log",
     "episode_metrics",
     "evaluate",
@@ -59,6 +60,7 @@ __all__ = [
     "place_reality",
     "reality_svg",
     "recorded_trial",
+    "result_schema",
     "row_of",
     "row_values",
     "sweep_trials",

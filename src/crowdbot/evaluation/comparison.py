@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +13,7 @@ from crowdbot.core import stream
 
 from .intervals import Estimate, bootstrap_interval
 
-__all__ = ["PairedComparison", "correct_p_values", "paired_comparison"]
+__all__ = ["PairedComparison", "paired_comparison"]
 
 Floats = NDArray[np.float64]
 PERMUTATIONS = 10_000
@@ -82,19 +81,3 @@ def _sign_flips(gap: Floats, seed: int) -> float:
     signs = 1 - 2 * rng.integers(0, 2, (PERMUTATIONS, len(gap)), dtype=np.int8)
     above = int(np.sum(np.abs(signs @ gap) >= wanted * (1 - 1e-12)))
     return (above + 1) / (PERMUTATIONS + 1)
-
-
-def correct_p_values(p_values: Sequence[float]) -> list[float]:
-    """Return p-values after the correction of Holm; NaN values stay and do not count.
-
-    Holm 1979, A simple sequentially rejective multiple test procedure, https://www.jstor.org/stable/4615733.
-
-    >>> correct_p_values([0.01, 0.04, 0.03])
-    [0.03, 0.06, 0.06]
-    """
-    order = sorted((k for k, value in enumerate(p_values) if not math.isnan(value)), key=lambda k: p_values[k])
-    corrected, highest = list(map(float, p_values)), 0.0
-    for rank, k in enumerate(order):
-        highest = max(highest, min(1.0, p_values[k] * (len(order) - rank)))
-        corrected[k] = highest
-    return corrected

@@ -75,17 +75,20 @@ def bootstrap_interval(
     statistic: Callable[[Floats], Floats] | None = None,
     confidence: float = 0.95,
     seed: int = 0,
+    infinite: bool = False,
 ) -> Estimate:
     """Return a statistic with its bias-corrected bootstrap interval.
 
-    Values that are not finite are left out. Efron 1987, Better bootstrap confidence intervals,
-    https://doi.org/10.1080/01621459.1987.10478410, without the acceleration.
+    Values that are not finite are left out, unless infinite ones count. Efron 1987, Better bootstrap confidence
+    intervals, https://doi.org/10.1080/01621459.1987.10478410, without the acceleration.
 
     Args:
         values: ``[N]`` one value for each run.
         statistic: function of ``[R, N]`` that returns ``[R]`` (default: the mean).
         confidence: level, between 0 and 1.
         seed: seed of the resamples.
+        infinite: whether infinite values count; an end of the interval is then one of the resampled statistics, without
+            interpolation.
 
     Raises:
         InputError: the level is out of range.
@@ -96,7 +99,7 @@ def bootstrap_interval(
     """
     _check(confidence)
     kept = np.asarray(values, dtype=np.float64)
-    kept = kept[np.isfinite(kept)]
+    kept = kept[~np.isnan(kept) if infinite else np.isfinite(kept)]
     if not len(kept):
         return Estimate(math.nan, math.nan, math.nan, 0)
     find = statistic or _mean
@@ -109,7 +112,10 @@ def bootstrap_interval(
     below = (np.sum(found < value) + 0.5 * np.sum(found == value)) / len(found)
     shift = float(special.ndtri(np.clip(below, 1.0 / len(found), 1.0 - 1.0 / len(found))))
     edges = special.ndtr(2.0 * shift + special.ndtri(np.array([0.5 - confidence / 2.0, 0.5 + confidence / 2.0])))
-    low, high = np.quantile(found, edges)
+    if np.isfinite(kept).all():
+        low, high = np.quantile(found, edges)
+    else:
+        low, high = np.quantile(found, edges[0], method="lower"), np.quantile(found, edges[1], method="higher")
     return Estimate(value, float(low), float(high), len(kept))
 
 

@@ -14,6 +14,7 @@ from crowdbot.core import CrowdbotError, MissingExtra
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
 from crowdbot.trials import Trial, parse_trial
 
+from .decision_metrics import decision_metrics
 from .episode_metrics import episode_metrics, paired_variants
 
 __all__ = ["RunJob", "RunRow", "read_rows", "run_job", "write_rows"]
@@ -114,6 +115,7 @@ def _row(seed: int, episode: Episode | str, families: Sequence[str], paired: dic
     metrics = {name: float(value) for name, value in episode.metrics.items() if "." not in name}
     if families and len(episode.times):
         metrics |= episode_metrics(episode, families, paired)
+    metrics |= decision_metrics(episode)
     if failed:
         metrics |= {"success": 0.0}
     message = "" if episode.failure is None else str(episode.failure)

@@ -1,4 +1,4 @@
-"""Pareto picture: success against time to the goal, with collisions as colour."""
+"""Pareto picture: success against time to the goal, with the severity of contacts as colour."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import html
 import math
 from collections.abc import Callable, Sequence
 
+from .intervals import Estimate
 from .result import CellResult
 
 __all__ = ["pareto_front", "pareto_svg"]
@@ -34,7 +35,9 @@ def _dominates(first: tuple[float, ...], second: tuple[float, ...]) -> bool:
 def pareto_svg(cells: Sequence[CellResult]) -> str:
     """Return an SVG picture of all cells with a success, or an empty text.
 
-    The best cells of a trial, which no other beats in success, time and collisions, have a dark edge.
+    The best cells of a trial, which no other beats in success, time and severity, have a dark edge. Severity is the
+    mean over runs of what the physics world measured, or of the lower bound of discs in the plane. If a cell has
+    neither, because the mass of its robot is unknown, collisions take its place.
     """
     rows = [(cell, cell.estimate("success-rate"), cell.estimate("time_to_goal")) for cell in cells]
     rows = [row for row in rows if not math.isnan(row[2].value) and not math.isnan(row[1].value)]
@@ -42,7 +45,9 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
         return ""
     slowest = max(row[2].high if math.isfinite(row[2].high) else row[2].value for row in rows) * 1.05
     fastest = min(row[2].low if math.isfinite(row[2].low) else row[2].value for row in rows) * 0.95
-    best = _best(rows)
+    harm, measure = _harm([row[0] for row in rows])
+    best = _best(rows, harm)
+    worst = max((value for value in harm if math.isfinite(value)), default=0.0)
 
     def x_of(time: float) -> float:
         return MARGIN + (WIDTH - 2 * MARGIN) * (time - fastest) / max(1e-9, slowest - fastest)
@@ -50,16 +55,16 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
     def y_of(share: float) -> float:
         return HEIGHT - MARGIN - (HEIGHT - 1.6 * MARGIN) * share
 
-    parts = [_axes(fastest, slowest, x_of, y_of)]
+    legend = f"success rate; {measure}: green 0" + (f", red {worst:.2g} and more" if worst > 0.0 else "")
+    parts = [_axes(fastest, slowest, x_of, y_of, legend)]
     labels = [(x_of(time.value) - DOT, x_of(time.value) + DOT, y_of(share.value) + 4.0) for _, share, time in rows]
     for k, (cell, success, time) in enumerate(rows):
-        collisions = cell.estimate("collision-rate").value
         x, y = x_of(time.value), y_of(success.value)
         edge = "#111" if k in best else "#9aa4b0"
         low, high = (value if math.isfinite(value) else time.value for value in (time.low, time.high))
         bars = f"M{x:.1f} {y_of(success.low):.1f}V{y_of(success.high):.1f}M{x_of(low):.1f} {y:.1f}H{x_of(high):.1f}"
         parts.append(f'<path d="{bars}" stroke="#9aa4b0" fill="none"/>')
-        hue = 130.0 * (1.0 - min(1.0, collisions))
+        hue = 130.0 * (1.0 - min(1.0, harm[k] / worst)) if worst > 0.0 else 0.0 if math.isinf(harm[k]) else 130.0
         parts.append(
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="hsl({hue:.0f} 60% 50%)" stroke="{edge}" stroke-width="2"/>'
         )
@@ -80,23 +85,28 @@ def _free_line(labels: Sequence[tuple[float, float, float]], left: float, right:
     return line
 
 
-def _best(rows: Sequence[tuple[CellResult, object, object]]) -> set[int]:
+def _harm(cells: Sequence[CellResult]) -> tuple[list[float], str]:
+    """Return the severity of each cell, or its collision rate if one has no severity, and what it is."""
+    names = ("max_severity", "severity_lower_bound")
+    measured = [next((name for name in names if name in cell.metrics), "") for cell in cells]
+    values = [cell.estimate(name).value if name else math.nan for cell, name in zip(cells, measured, strict=True)]
+    if any(math.isnan(value) for value in values):
+        return [cell.estimate("collision-rate").value for cell in cells], "collision rate"
+    return values, "mean severity" if set(measured) == {names[0]} else "mean severity (lower bound in the plane)"
+
+
+def _best(rows: Sequence[tuple[CellResult, Estimate, Estimate]], harm: Sequence[float]) -> set[int]:
+    """Return the rows that no other of their trial beats in success, time and severity."""
     found: set[int] = set()
     for trial in {row[0].trial for row in rows}:
         own = [k for k, row in enumerate(rows) if row[0].trial == trial]
-        points = [
-            (
-                -rows[k][0].estimate("success-rate").value,
-                rows[k][0].estimate("time_to_goal").value,
-                rows[k][0].estimate("collision-rate").value,
-            )
-            for k in own
-        ]
-        found |= {own[k] for k in pareto_front(points)}
+        found |= {own[k] for k in pareto_front([(-rows[k][1].value, rows[k][2].value, harm[k]) for k in own])}
     return found
 
 
-def _axes(fastest: float, slowest: float, x_of: Callable[[float], float], y_of: Callable[[float], float]) -> str:
+def _axes(
+    fastest: float, slowest: float, x_of: Callable[[float], float], y_of: Callable[[float], float], legend: str
+) -> str:
     base, left, right = y_of(0.0), MARGIN, WIDTH - MARGIN
     parts = [f'<path d="M{left} {y_of(1.0):.1f}V{base:.1f}H{right}" stroke="#59636f" fill="none"/>']
     for share in (0.0, 0.25, 0.5, 0.75, 1.0):
@@ -105,5 +115,5 @@ def _axes(fastest: float, slowest: float, x_of: Callable[[float], float], y_of: 
         time = fastest + (slowest - fastest) * k / 4
         parts.append(f'<text x="{x_of(time):.1f}" y="{base + 18:.1f}" text-anchor="middle">{time:.1f}</text>')
     parts.append(f'<text x="{WIDTH / 2}" y="{base + 38:.1f}" text-anchor="middle">mean time to the goal [s]</text>')
-    parts.append(f'<text x="{left}" y="14">success rate; green: no collisions, red: all runs</text>')
+    parts.append(f'<text x="{left}" y="14">{html.escape(legend)}</text>')
     return "".join(parts)

@@ -58,7 +58,7 @@ class EvaluationCell:
 
     @property
     def protocol(self) -> dict[str, Any]:
-        """What a reader must know to compare the numbers: world, visibility, sensors, time steps."""
+        """What a reader must know to compare the numbers: world, visibility, margin, sensors, time steps."""
         robot = self.variant.robots[0]
         sensors = sorted({type(mount.sensor).__name__ for mount in robot.sensors})
         return {
@@ -69,6 +69,7 @@ class EvaluationCell:
             "drive": type(robot.drive).__name__,
             "holonomic": robot.holonomic,
             "safety": robot.safety is not None,
+            "margin": _margin(robot.navigator),
             "senses": sensors,
             "people": self.variant.people,
             "crowd": type(self.variant.crowd).__name__,
@@ -156,6 +157,12 @@ class EvaluationPlan:
             for method in self.methods
         )
         object.__setattr__(self, "cells", cells)
+
+
+def _margin(navigator: object) -> float | None:
+    """Return the clearance that a navigator adds to the bodies or keeps [m], or None if it has no such number."""
+    found = getattr(navigator, "margin", getattr(navigator, "safety", None))
+    return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

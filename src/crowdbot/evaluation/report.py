@@ -108,6 +108,8 @@ def _protocol(cells: Sequence[CellResult]) -> str:
 
 
 def _words(value: object) -> str:
+    if value is None:
+        return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list | tuple):

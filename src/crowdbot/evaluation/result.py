@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import importlib.resources
 import json
 import platform
 import sys
@@ -16,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError, explain_write_errors, source_digest
+from crowdbot.metrics import correct_p_values
 
-from .comparison import PairedComparison, correct_p_values, paired_comparison
+from .comparison import PairedComparison, paired_comparison
 from .intervals import Estimate
 from .job import RunRow, row_of, row_values
 from .statistic import Statistic, parse_statistic
 
-__all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation"]
+__all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "result_schema"]
 
 SCHEMA = "crowdbot-evaluation/1"
 MOST_BYTES = 2_000_000_000
@@ -117,7 +119,7 @@ class EvaluationResult:
         return [one._replace(corrected=value) for one, value in zip(found, corrected, strict=True)]
 
     def save(self, path: Path) -> None:
-        """Write the result as JSON."""
+        """Write the result as JSON, in the form of :func:`result_schema`."""
         cells = [
             {
                 "trial": cell.trial,
@@ -160,6 +162,17 @@ def load_evaluation(path: Path | str) -> EvaluationResult:
         return EvaluationResult(tuple(map(_cell, content["cells"])), dict(content["provenance"]))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise EpisodeError(f"{file} is damaged: {type(error).__name__}: {error}") from None
+
+
+def result_schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of ``result.json``, for programs that read or check it.
+
+    >>> result_schema()["properties"]["schema"]
+    {'const': 'crowdbot-evaluation/1'}
+    """
+    file = importlib.resources.files("crowdbot").joinpath("assets", "evaluation", "result.schema.json")
+    found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return found
 
 
 def provenance() -> dict[str, Any]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
+from crowdbot.metrics import metric_table
 
 from .intervals import Estimate, bootstrap_interval, wilson_interval
 from .own_metric import metric_name
@@ -52,8 +53,10 @@ class Statistic:
     def estimate(self, values: Floats, confidence: float = 0.95) -> Estimate:
         """Return the statistic of one value for each run, with its interval.
 
-        A run without the metric (NaN), such as the time to the goal of a run that fails, does not count. The interval
-        of ``max`` and ``min`` ends at the value: a bootstrap cannot go beyond what has been seen.
+        A run without the metric (NaN), such as the time to the goal of a run that fails, does not count. An infinite
+        value counts where lower is better: one contact with a head, whose severity is infinite, makes the mean
+        infinite. Other infinite values do not count, such as the time to collision of a run in which nobody comes
+        nearer. The interval of ``max`` and ``min`` ends at the value: a bootstrap cannot go beyond what has been seen.
         """
         kept = np.asarray(values, dtype=np.float64)
         kept = kept[~np.isnan(kept)]
@@ -61,8 +64,8 @@ class Statistic:
             return wilson_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
         if not len(kept):
             return bootstrap_interval(kept, confidence=confidence)
-        kept = np.where(np.isinf(kept), np.nan, kept) if np.isfinite(kept).any() else kept
-        return bootstrap_interval(kept, _FUNCTIONS.get(self.kind) or _of_percentile(self.kind), confidence)
+        function = _FUNCTIONS.get(self.kind) or _of_percentile(self.kind)
+        return bootstrap_interval(kept, function, confidence, infinite=_is_better_lower(self.metric))
 
 
 def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> Statistic:
@@ -106,12 +109,26 @@ _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {
 }
 
 
+def _is_better_lower(metric: str) -> bool:
+    """Return whether the table says that a metric is better when it is lower."""
+    table = metric_table()
+    row = table.get("impact_severity_*" if metric.startswith("impact_severity_") else metric)
+    return row is not None and row.better == "lower"
+
+
 def _of_percentile(kind: str) -> Callable[[Floats], Floats]:
     """Return a percentile of each row, or the mean of its values from there on (expected shortfall)."""
     if match := TAIL.fullmatch(kind):
         return functools.partial(_tail_mean, share=int(match[1]) / 100.0)
     share = int(kind[1:]) / 100.0
-    return lambda rows: np.asarray(np.quantile(rows, share, axis=1))
+    return lambda rows: _quantile(rows, share)
+
+
+def _quantile(rows: Floats, share: float) -> Floats:
+    """Return a quantile of each row; next to an infinite value it is not interpolated."""
+    if np.isfinite(rows).all():
+        return np.asarray(np.quantile(rows, share, axis=1))
+    return np.asarray(np.quantile(rows, share, axis=1, method="higher"))
 
 
 def _tail_mean(rows: Floats, share: float) -> Floats:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from crowdbot.core import Clock
 from crowdbot.recording import open_run
-from crowdbot.simulation import Episode, EpisodeLog, Simulation, SimulationRun, Sink
+from crowdbot.simulation import Episode, EpisodeLog, OrderSource, Simulation, SimulationRun, Sink
 from crowdbot.trials import Trial
 
 __all__ = ["Aborted", "BackgroundRun"]
@@ -28,6 +28,7 @@ class BackgroundRun:
         out: file of the episode (default: no file).
         clock: a paced clock shows the trial in real time (default: as fast as possible).
         sinks: further consumers of the step records, called in the thread of the run.
+        sources: programs that steer the run, such as an emulated participant; called in the thread of the run.
 
     >>> from crowdbot.models import ORCA
     >>> running = BackgroundRun(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
@@ -44,6 +45,7 @@ class BackgroundRun:
         out: Path | None = None,
         clock: Clock | None = None,
         sinks: Sequence[Sink] = (),
+        sources: Sequence[OrderSource] = (),
     ) -> None:
         self.share = 0.0
         """Completed share of the duration, 0 to 1."""
@@ -53,7 +55,7 @@ class BackgroundRun:
         self._episode: Episode | None = None
         self._error: Exception | None = None
         self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in all Python versions
-        threading.Thread(target=self._run, args=(trial, seed, out, clock, sinks), daemon=True).start()
+        threading.Thread(target=self._run, args=(trial, seed, out, clock, sinks, sources), daemon=True).start()
 
     @property
     def simulation(self) -> Simulation | None:
@@ -94,10 +96,18 @@ class BackgroundRun:
         assert self._episode is not None
         return self._episode
 
-    def _run(self, trial: Trial, seed: int, out: Path | None, clock: Clock | None, sinks: Sequence[Sink]) -> None:
+    def _run(
+        self,
+        trial: Trial,
+        seed: int,
+        out: Path | None,
+        clock: Clock | None,
+        sinks: Sequence[Sink],
+        sources: Sequence[OrderSource],
+    ) -> None:
         log = EpisodeLog(trial, seed)
         try:
-            with open_run(trial, seed, out, clock, sinks=[log, *sinks]) as running:
+            with open_run(trial, seed, out, clock, sources, sinks=[log, *sinks]) as running:
                 self._running = running
                 if self._held:
                     running.hold()

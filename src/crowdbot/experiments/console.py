@@ -6,10 +6,12 @@ import contextlib
 import signal
 import textwrap
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from types import FrameType
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, PacedClock
+from crowdbot.simulation import OrderSource
+from crowdbot.trials import Trial
 
 from .background_run import BackgroundRun
 from .event import Abort, Answered, Event, Next, Pause, Repeat, Resume, Start
@@ -44,6 +46,8 @@ class Console:
         respondent: source of the answers.
         write: shows a text to the participant.
         report: called with the name of the running trial and the completed fraction, 0 to 1.
+        rehearse: returns the programs that take the place of the participant in a trial (default: none).
+        rate: simulated time over real time in the trials; None: as fast as possible.
     """
 
     def __init__(
@@ -52,7 +56,10 @@ class Console:
         respondent: Respondent,
         write: Callable[[str], None],
         report: Callable[[str, float], None],
+        rehearse: Callable[[Trial], Sequence[OrderSource]] = lambda trial: (),
+        rate: float | None = None,
     ) -> None:
+        self._rehearse, self._rate = rehearse, rate
         self.runner, self.respondent, self.write, self.report = runner, respondent, write, report
         self._interrupt = Interrupt()
 
@@ -90,6 +97,8 @@ class Console:
             self.runner.log_screen(text)
         for question in self.runner.session.open:
             self._ask(step.name, question)
+            if self.runner.session.over:
+                return
         self.write("\n[Enter] ")
         with self._interrupt.interruptible():
             self.respondent.go_on()
@@ -115,7 +124,9 @@ class Console:
         trial, seed, folder = self.runner.begin()
         steps = self.runner.session.steps
         what = f"trial {self.runner.session.step.number} of {max(step.number for step in steps)}"
-        running = BackgroundRun(trial, seed, folder / "episode.mcap")
+        clock = None if self._rate is None else PacedClock(trial.step, rate=self._rate)
+        sources = self._rehearse(trial)
+        running = BackgroundRun(trial, seed, folder / "episode.mcap", clock, self.runner.sinks, sources)
         self.report(what, 0.0)
         while self.runner.session.phase == "running":
             try:

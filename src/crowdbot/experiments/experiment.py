@@ -9,24 +9,38 @@ from pathlib import Path
 from crowdbot.trials import attribute, check, children
 
 from .question import QUESTIONS, SHORT, Question
+from .questionnaires import QUESTIONNAIRES, questionnaire_questions
 
 __all__ = ["ORDERS", "SEEDS", "Block", "Experiment", "Screen", "TrialEntry"]
 
 ORDERS = ("fixed", "random", "latin-square")
 SEEDS = ("same", "by-repetition", "by-participant")
+ANALYSES = ("", "leader-follower", "crossing", "encounters")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Screen:
-    """A screen with a text and questions."""
+    """A screen with a text and questions.
+
+    A screen with a ``questionnaire`` and no questions gets the questions of the questionnaire; the copy of the
+    experiment in a session holds them.
+
+    >>> len(Screen(name="before", questionnaire="sickness").questions)
+    16
+    """
 
     name: str = attribute(about="name of the screen in the answers", pattern=SHORT)
     text: str = attribute("", about="short text to show")
     file: str = attribute("", about="text to show: a .txt or .html file in the folder of the experiment")
+    questionnaire: str = attribute(
+        "", about="built-in questions of a screen without questions", choices=("", *QUESTIONNAIRES)
+    )
     questions: tuple[Question, ...] = children(QUESTIONS, about="questions", max=100)
 
     def __post_init__(self) -> None:
         check(self)
+        if self.questionnaire in QUESTIONNAIRES and not self.questions:
+            object.__setattr__(self, "questions", questionnaire_questions(self.questionnaire))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +111,7 @@ class Experiment:
     about: str = attribute("", about="description, one line")
     seed: int = attribute(0, about="seed of random orders", min=-(2**53), max=2**53)
     participants: int | None = attribute(None, about="number of participants", min=1, max=100_000)
+    analysis: str = attribute("", about="kind of the experiment: what is measured in its trials", choices=ANALYSES)
     instructions: tuple[Screen, ...] = children("instructions", about="first screens", max=100)
     blocks: tuple[Block, ...] = children("block", about="groups of trials", min=1, max=100)
     endings: tuple[Screen, ...] = children("ending", about="last screens", max=100)

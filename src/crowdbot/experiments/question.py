@@ -75,6 +75,7 @@ class ChoiceOption:
 
     value: str = attribute(about="recorded value", pattern=SHORT)
     text: str = attribute("", about="text to show (default: the value)")
+    ends: bool = attribute(False, about="whether the session ends with this answer, for consent and exclusion criteria")
 
     def __post_init__(self) -> None:
         check(self)
@@ -106,6 +107,11 @@ class Choice(Question):
         """The options."""
         values = [option.value for option in self.options]
         return f"some of {', '.join(values)}" if self.multiple else " or ".join(values)
+
+    def ends(self, answer: Answer) -> bool:
+        """Return whether the session ends with an answer."""
+        given = answer if isinstance(answer, tuple) else (answer,)
+        return any(option.ends for option in self.options if option.value in given)
 
     def problem(self) -> str:
         """Return duplicate options as well."""

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import InputError, did_you_mean, stream
 
 from .experiment import Experiment
-from .question import Question
+from .question import Choice, Number, Question, Scale
 from .session_plan import plan
 
-__all__ = ["ConsoleRespondent", "Respondent", "ScriptedRespondent"]
+__all__ = ["ConsoleRespondent", "EmulatedRespondent", "Respondent", "ScriptedRespondent"]
 
 
 class Respondent(ABC):
@@ -122,6 +123,40 @@ class ScriptedRespondent(Respondent):
         if value is None:
             return ""
         return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+    def go_on(self) -> None:
+        """Do not wait."""
+
+    def choose(self, words: tuple[str, ...]) -> str:
+        """Close the program."""
+        return "leave"
+
+
+class EmulatedRespondent(Respondent):
+    """Draws answers at random, for rehearsals; never one that ends the session. Ends the session at a pause.
+
+    Args:
+        participant, seed: the answers of a participant are always the same.
+    """
+
+    def __init__(self, participant: int, seed: int = 0) -> None:
+        self._rng = stream(seed, "emulated respondent", participant)
+
+    def answer(self, screen: str, question: Question) -> str:
+        """Return a random answer; a text says that it is a rehearsal."""
+        match question:
+            case Choice(options=options):
+                names = [option.value for option in options if not option.ends]
+                return str(self._rng.choice(names)) if names else ""
+            case Scale(low=low, high=high):
+                return str(int(self._rng.integers(low, high + 1)))
+            case Number(min=least, max=most):
+                bottom = float(math.ceil(least)) if least is not None else min(0.0, most or 0.0)
+                top = most if most is not None else bottom + 100.0
+                value = bottom + float(self._rng.random()) * (top - bottom)
+                return str(math.floor(value) if question.integer else value)
+            case _:
+                return "rehearsal"
 
     def go_on(self) -> None:
         """Do not wait."""

@@ -3,7 +3,8 @@
 States and transitions::
 
     ready    start -> screen or trial
-    screen   answered -> screen, next -> the following screen or trial, or done
+    screen   answered -> screen, or aborted by an answer that ends the session;
+             next -> the following screen or trial, or done
     trial    begin -> running
     running  finish -> the following screen or trial, or done; fail -> pause
     pause    resume -> the interrupted state; after a failed trial: next -> the following screen or trial
@@ -24,7 +25,7 @@ from crowdbot.core import InputError, kebab_case
 
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment
-from .question import Answer, Question
+from .question import Answer, Choice, Question
 from .session_plan import SessionStep, plan
 
 __all__ = ["Result", "Session"]
@@ -175,8 +176,12 @@ class Session:
         if name not in questions:
             known = ", ".join(questions) or "nothing"
             raise InputError(f"the screen {self.step.name!r} has no question {name[:40]!r}; it has {known}")
-        here = {**self.answers.get(self.index, {}), name: questions[name].take(value)}
-        return dataclasses.replace(self, answers={**self.answers, self.index: here})
+        question = questions[name]
+        here = {**self.answers.get(self.index, {}), name: question.take(value)}
+        session = dataclasses.replace(self, answers={**self.answers, self.index: here})
+        if isinstance(question, Choice) and question.ends(here[name]):
+            return session.after(Abort(f"answer to {name!r}"))
+        return session
 
     def _running(self, result: Result, **changes: Any) -> Session:
         attempts = {**self.attempts, self.index: result.attempt}

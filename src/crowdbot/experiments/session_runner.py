@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any
 
 from crowdbot.core import CrowdbotError, EpisodeError, InputError
 from crowdbot.recording import as_json, versions
-from crowdbot.simulation import Episode
+from crowdbot.simulation import Episode, Sink
 from crowdbot.trials import Trial, restore_old_names, trial_xml
 
 from .event import Answered, Begin, Event, Fail, Finish, Repeat, Resume, event_of, record_of
@@ -22,18 +23,13 @@ from .order import seed_of
 from .page import Page, page_of
 from .parser import check_experiment, experiment_xml
 from .session import Session
+from .session_folder import ANSWERS, COPY, LOG, folder_of, withdrawn
+from .streams import StreamOutlets, TrialClockLog
 from .trial_source import trial_of
 
-__all__ = ["ANSWERS", "COPY", "LOG", "SessionRunner", "folder_of"]
-
-LOG, COPY, ANSWERS = "session.jsonl", "experiment.xml", "answers.jsonl"
+__all__ = ["SessionRunner"]
 
 Clock = Callable[[], float]
-
-
-def folder_of(out: Path, participant: int) -> Path:
-    """Return the folder of a participant."""
-    return out / f"participant-{participant:03d}"
 
 
 class SessionRunner:
@@ -49,6 +45,8 @@ class SessionRunner:
         clock: returns the time [s] of each record.
         resume: continue an existing session.
         trust: whether trials outside the folder, and their code, may be loaded.
+        outlets: sends the events and trials of the session to other programs; the caller closes it.
+        monotonic: monotonic clock of the computer [s], logged beside ``clock`` at the start and at each trial.
 
     Raises:
         InputError: there is no such participant.
@@ -65,9 +63,13 @@ class SessionRunner:
         *,
         resume: bool = False,
         trust: bool = False,
+        outlets: StreamOutlets | None = None,
+        monotonic: Clock = time.monotonic,
     ) -> None:
         check_experiment(experiment, trust=trust)
         self.experiment, self.participant, self.clock = experiment, participant, clock
+        self._outlets, self._monotonic = outlets, monotonic
+        self._clocks: TrialClockLog | None = None
         self.session = Session.of(experiment, participant)
         self.folder = folder_of(out, participant)
         entries = {step.entry.source: step.entry for step in self.session.steps if step.entry}
@@ -80,7 +82,7 @@ class SessionRunner:
             "experiment": experiment.name,
             "participant": participant,
             "digest": self._digest(),
-            "at": clock(),
+            **self._clock_values(),
             **versions(),
         }
         self.log: SessionLog
@@ -88,6 +90,12 @@ class SessionRunner:
             self._resumed(head)
         else:
             self._begun(head)
+
+    @property
+    def sinks(self) -> tuple[Sink, ...]:
+        """Consumers of the step records of the trial that has begun: its clocks, and the streams to other programs."""
+        found = (self._clocks, self._outlets)
+        return tuple(one for one in found if one is not None)
 
     def do(self, event: Event) -> Session:
         """Apply an event, log it and return the new session.
@@ -100,6 +108,8 @@ class SessionRunner:
             event = Answered(event.question, after.answers[index][event.question])
         self.log.append({"at": at, **record_of(event)})
         self.session = after
+        if self._outlets is not None:
+            self._outlets.tell(record_of(event))
         if isinstance(event, Answered):
             self._times[index, event.question] = at
             self._write_answers(self.session.steps[index].number)
@@ -134,6 +144,11 @@ class SessionRunner:
         except OSError as error:
             raise EpisodeError(f"cannot create {folder}: {error.strerror}") from None
         self._write_answers(step.number)
+        self._close_clocks()
+        self._clocks = TrialClockLog(folder, self._monotonic)
+        self.log.append(self._clock_values())
+        if self._outlets is not None:
+            self._outlets.begin(trial)
         return trial, seed, folder
 
     def finish(self, episode: Episode) -> None:
@@ -149,7 +164,7 @@ class SessionRunner:
         """
         report = folder / "error.txt"
         try:
-            episode = result()
+            episode = self._result(result)
         except CrowdbotError as error:
             self.do(Fail(str(error)))
         except Exception as error:  # the code of a trial may raise anything; the session must continue
@@ -171,10 +186,30 @@ class SessionRunner:
 
     def close(self) -> None:
         """Close the log."""
+        self._close_clocks()
         self.log.close()
+
+    def _result(self, result: Callable[[], Episode]) -> Episode:
+        """Return the episode of a trial, and close the file of its clocks."""
+        try:
+            return result()
+        finally:
+            self._close_clocks()
+
+    def _close_clocks(self) -> None:
+        if self._clocks is not None:
+            self._clocks.close()
+            self._clocks = None
+
+    def _clock_values(self) -> dict[str, float]:
+        """Return the time of day, the monotonic clock, and the offset between them [s]."""
+        at, own = self.clock(), self._monotonic()
+        return {"at": at, "monotonic": own, "offset": at - own}
 
     def _begun(self, head: dict[str, Any]) -> None:
         path = self.folder / LOG
+        if self.participant in withdrawn(self.folder.parent):
+            raise EpisodeError(f"participant {self.participant} has withdrawn; give this participant another number")
         if path.exists():
             raise EpisodeError(
                 f"participant {self.participant} already has a session in {self.folder}; continue it with --resume, or"
@@ -201,7 +236,8 @@ class SessionRunner:
                 )
             for number, record in enumerate(records[1:], 2):
                 self._again(path, number, record)
-            self.log.append({"resumed": True, "at": head["at"], **versions()})
+            clocks = {name: head[name] for name in ("at", "monotonic", "offset")}
+            self.log.append({"resumed": True, **clocks, **versions()})
             self._copy()
             for number in {step.number for step in self.session.steps}:
                 self._write_answers(number)

@@ -13,8 +13,9 @@ from crowdbot.trials import read_trial_bytes
 from .event import event_of
 from .log import read_log
 from .parser import parse_experiment
+from .questionnaires import questionnaire_scores
 from .session import Session
-from .session_runner import COPY, LOG
+from .session_folder import COPY, LOG
 
 __all__ = ["save_summary", "session_of", "summary"]
 
@@ -52,7 +53,8 @@ def summary(folder: Path | str) -> list[Row]:
     Each row contains ``participant``, ``session`` (``done``, ``aborted`` or ``unfinished``), ``number``, ``block``,
     ``repetition`` (from 1), ``trial``, ``source``, ``attempt``, ``seed``, ``outcome`` (of the episode; ``failed``,
     ``running`` or ``not run``), ``digest``, ``folder``, the metrics of the episode, and the answers as
-    ``screen.question``. Answers without a trial are repeated in all rows of the participant.
+    ``screen.question``, with the scores of questionnaires as ``screen.sickness_total``, ``screen.presence`` and so on.
+    Answers without a trial are repeated in all rows of the participant.
 
     Raises:
         EpisodeError: there is no session, or one is damaged.
@@ -115,6 +117,8 @@ def _answers(session: Session, number: int) -> Iterator[tuple[str, Any]]:
             for question in step.screen.questions:
                 value = given.get(question.name)
                 yield f"{step.name}.{question.name}", "; ".join(value) if isinstance(value, tuple) else value
+            for name, score in questionnaire_scores(given).items():
+                yield f"{step.name}.{name}", score
 
 
 def _number(value: Any) -> float | None:

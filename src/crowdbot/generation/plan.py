@@ -82,7 +82,7 @@ class GenerationPlan:
     kind: str = "npz"
     coco: bool = False
     compressed: bool = False
-    shard_bytes: int = 128_000_000
+    shard_bytes: int = 400_000_000
     noisy: bool = False
     trust: bool = True
     variants: tuple[Trial, ...] = dataclasses.field(init=False)

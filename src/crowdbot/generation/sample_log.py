@@ -216,24 +216,28 @@ def _join(parts: Sequence[Table]) -> Table:
     """Return the rows of all parts, ordered by episode and time; people columns are filled up."""
     if not parts:
         return {}
+    episode, time = (np.concatenate([part[name] for part in parts]) for name in ("episode", "nanoseconds"))
+    places = np.empty(len(episode), dtype=np.int64)
+    places[np.lexsort((time, episode))] = np.arange(len(episode))
     found: Table = {}
-    for name in parts[0]:
-        if name.startswith("shared."):
-            found[name] = parts[0][name]
-            continue
-        arrays = [part[name] for part in parts]
-        width = max(array.shape[1] for array in arrays) if arrays[0].ndim > 1 else 0
-        filler = -1 if name == "ids" else np.nan if arrays[0].dtype.kind == "f" else 0
-        found[name] = np.concatenate([_widen(array, width, filler) for array in arrays])
-    order = np.lexsort((found["nanoseconds"], found["episode"]))
-    if not np.array_equal(order, np.arange(len(order))):
-        found = {name: array if name.startswith("shared.") else array[order] for name, array in found.items()}
+    for name, first in parts[0].items():
+        found[name] = first if name.startswith("shared.") else _place([part[name] for part in parts], places, name)
     return found
 
 
-def _widen(array: NDArray[Any], width: int, filler: float) -> NDArray[Any]:
-    missing = width - array.shape[1] if array.ndim > 1 else 0
-    if not missing:
-        return array
-    rest = np.full((len(array), missing, *array.shape[2:]), filler, dtype=array.dtype)
-    return np.concatenate([array, rest], axis=1)
+def _place(arrays: Sequence[NDArray[Any]], places: Ints, name: str) -> NDArray[Any]:
+    """Return the rows of all arrays at their places; each is copied once, since the arrays of scans are large."""
+    first, kind = arrays[0], np.result_type(*arrays)
+    tail = (max(array.shape[1] for array in arrays), *first.shape[2:]) if first.ndim > 1 else ()
+    filler = -1 if name == "ids" else np.nan if kind.kind == "f" else 0
+    same = all(array.shape[1:] == tail for array in arrays)
+    found = np.empty((len(places), *tail), dtype=kind) if same else np.full((len(places), *tail), filler, dtype=kind)
+    begin = 0
+    for array in arrays:
+        here = places[begin : begin + len(array)]
+        if same:
+            found[here] = array
+        else:
+            found[here, : array.shape[1]] = array
+        begin += len(array)
+    return found

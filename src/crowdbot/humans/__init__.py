@@ -3,7 +3,7 @@
 from .activities import ACTIVITIES
 from .asset import LEVELS, shapes
 from .body_pose import BodyPose
-from .body_reach import reach_poses
+from .body_reach import eye_offsets, reach_poses
 from .effective_mass import limb_chain, striking_mass
 from .feet import Gaits
 from .gait import Gait, posing_and_skinning
@@ -40,6 +40,7 @@ __all__ = [
     "RestSkeleton",
     "Seat",
     "ankle_positions",
+    "eye_offsets",
     "limb_chain",
     "mass_shares",
     "names",

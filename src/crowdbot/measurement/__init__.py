@@ -6,7 +6,13 @@ table. ``episode.tracks()`` of a simulation is a recording too.
 
 from .density import CutOff, compute_classic_density, compute_individual_voronoi_polygons, compute_voronoi_density
 from .diagram import StartsMean, compute_fundamental_diagram, mean_over_starts
-from .encounters import compute_encounters, compute_time_to_collision_distribution, distribution
+from .encounters import (
+    compute_encounters,
+    compute_time_to_collision_distribution,
+    distribution,
+    expected_times,
+    time_edges,
+)
 from .flow import (
     compute_crossing_frames,
     compute_flow,
@@ -98,6 +104,7 @@ __all__ = [
     "crossing_times",
     "detect_steady_state",
     "distribution",
+    "expected_times",
     "fit_interaction_energy",
     "lane_order",
     "mean_flow",
@@ -108,6 +115,7 @@ __all__ = [
     "pool_interaction_energy",
     "select_rows",
     "steady_threshold",
+    "time_edges",
     "walking_direction",
     "wave_speed",
 ]

@@ -38,6 +38,8 @@ ON_LINE = 1e-5
 def compute_crossing_frames(tracks: Trajectories, line: MeasurementLine, count_on_line: bool = False) -> pd.DataFrame:
     """Return all crossings of a line in either direction: columns id, frame, the first frame behind the line.
 
+    A step that ends within 0.01 mm of the line has not crossed it yet: the step that leaves the line counts.
+
     Args:
         tracks: the recording; a gap in a track is bridged by no movement.
         line: the line; it ends at its ends.
@@ -53,10 +55,27 @@ def compute_crossing_frames(tracks: Trajectories, line: MeasurementLine, count_o
     start, end = tracks.position[before[after]], tracks.position[after]
     across = _intersects(start, end, line)
     if not count_on_line:
-        across &= ~(_distance(end, line) < ON_LINE)
+        near = _distance(end, line) < ON_LINE
+        step = np.full(len(tracks.frame), -1)  # step that ends at each row
+        step[after] = np.arange(len(after))
+        # a step may end just behind the line: the next one does not meet it any more, and still has to count
+        for k in np.flatnonzero(across & near):
+            later = _next_step(tracks, after, step, int(k))
+            while later >= 0 and near[later]:
+                later = _next_step(tracks, after, step, later)
+            if later >= 0:
+                across[later] = True
+        across &= ~near
     kept = after[across]
     order = np.lexsort((tracks.frame[kept], tracks.id[kept]))
     return table(id=tracks.id[kept][order], frame=tracks.frame[kept][order])
+
+
+def _next_step(tracks: Trajectories, after: NDArray[np.int64], step: NDArray[np.int64], k: int) -> int:
+    """Return the step of the same person that begins where step ``k`` ends, -1 if the track ends there."""
+    row = after[k]
+    found = rows_at(tracks, tracks.frame[row : row + 1] + tracks.frame_step, tracks.id[row : row + 1])[0]
+    return int(step[found]) if found >= 0 else -1
 
 
 def compute_n_t(tracks: Trajectories, line: MeasurementLine) -> tuple[pd.DataFrame, pd.DataFrame]:

@@ -143,16 +143,25 @@ def _energy_of(middle: Floats, found: Floats, expected: Floats, seed: int) -> In
     return InteractionEnergy(rows, exponent, float(ends[0]), float(ends[1]), strength)
 
 
-def fit_interaction_energy(ttc: ArrayLike, g: ArrayLike, count: ArrayLike) -> tuple[float, float, float]:
+def fit_interaction_energy(
+    ttc: ArrayLike,
+    g: ArrayLike,
+    count: ArrayLike,
+    ends: tuple[float, float] = FIT_RANGE,
+    offset: float | None = None,
+) -> tuple[float, float, float]:
     """Return n, k and c of ``ln(1 / g) = k tau^-n + c``, by least squares weighted with the counts.
 
-    The constant c takes the normalisation of g. Bins from 0.2 to 3 s with at least 5 pairs count. n is NaN and k is 0
-    if there are fewer than 5 such bins, or the energy does not rise towards small tau.
+    The constant c takes the normalisation of g, unless it is given. Bins in a range of times with at least 5 pairs
+    count. n is NaN and k is 0 if there are fewer than 5 such bins, or the energy does not rise towards small tau. The
+    exponent depends on the range and on c: give both.
 
     Args:
         ttc: ``[N]`` times to collision [s].
         g: ``[N]`` frequency over that without interaction.
         count: ``[N]`` number of pairs.
+        ends: range of times to collision of the fit [s] (default: 0.2 to 3 s).
+        offset: the constant c, such as 0 for a g that is 1 at long times (default: part of the fit).
 
     Raises:
         InputError: the arrays differ in length.
@@ -165,11 +174,13 @@ def fit_interaction_energy(ttc: ArrayLike, g: ArrayLike, count: ArrayLike) -> tu
     tau, ratio, number = (np.asarray(one, dtype=np.float64) for one in (ttc, g, count))
     if not tau.shape == ratio.shape == number.shape or tau.ndim != 1:
         raise InputError("times to collision, g and counts must be columns of equal length")
-    used = (tau >= FIT_RANGE[0]) & (tau <= FIT_RANGE[1]) & (number >= FEWEST) & (ratio > 0.0)
+    used = (tau >= ends[0]) & (tau <= ends[1]) & (number >= FEWEST) & (ratio > 0.0)
     if np.sum(used) < FEWEST:
         return float("nan"), 0.0, 0.0
     x, y, w = tau[used] ** -EXPONENTS[:, None], -np.log(ratio[used]), number[used] / number[used].sum()
     mean_x, mean_y = (x * w).sum(axis=1), float(np.sum(y * w))
+    if offset is not None:
+        mean_x, mean_y = np.zeros(len(x)), offset
     away = x - mean_x[:, None]
     k = (away * (y - mean_y) * w).sum(axis=1) / np.maximum((away**2 * w).sum(axis=1), 1e-300)
     rest = (((y - mean_y) - k[:, None] * away) ** 2 * w).sum(axis=1)

@@ -1,4 +1,4 @@
-"""ROS 2 messages: types, CDR encoding, and codecs of sensor readings."""
+"""ROS 2 messages: types, CDR encoding, their form in ROS 1, and codecs of sensor readings."""
 
 from .cdr import MAP, Shape, marker_bytes, people_bytes
 from .codec import Codec, MeasuredReading, mount_pose, unpack_arrays
@@ -18,6 +18,7 @@ from .message_store import Messages
 from .point_clouds import points_in
 from .reading_codecs import CODECS, KIND, REST, codec_of, decode_reading, encode_reading, unencoded_fields
 from .reading_topics import reading_topics
+from .ros1 import Ros1Messages
 
 __all__ = [
     "CODECS",
@@ -32,6 +33,7 @@ __all__ = [
     "ContactForceRecord",
     "MeasuredReading",
     "Messages",
+    "Ros1Messages",
     "Shape",
     "codec_of",
     "contact_messages",

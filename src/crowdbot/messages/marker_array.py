@@ -46,7 +46,8 @@ def _shapes(scene: Scene, ids: NDArray[np.int64], goals: Sequence[Goal]) -> Iter
     for number, (x, y, tolerance) in enumerate(goals):
         yield _disc("goals", number, x, y, tolerance, GOAL_HEIGHT, GREEN)
     ends = scene.walls.segments().reshape(-1, 2).tolist()
-    yield Shape("walls", 0, LINE_LIST, size=(0.05, 0.0, 0.0), points=tuple((x, y) for x, y in ends))
+    if ends:  # RViz takes a list of lines without points for an error
+        yield Shape("walls", 0, LINE_LIST, size=(0.05, 0.0, 0.0), points=tuple((x, y) for x, y in ends))
 
 
 def _disc(

@@ -19,6 +19,7 @@ key                                value
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -63,24 +64,54 @@ class NavigationOutcome(NamedTuple):
     sample: int
 
 
-class _Sample(NamedTuple):
-    """Values of the robot at one record."""
+class _Samples:
+    """Values of the robot at each record, 11 numbers of 8 bytes: no record with all people is kept alive by a view."""
 
-    time: float
-    position: Floats
-    velocity: Floats
-    heading: float
-    swept: float
-    nearest: float
-    density: float
-    ttc: float
-    wall: float
+    WIDTH = 11
+
+    def __init__(self) -> None:
+        self._numbers = array("d")
+
+    def __len__(self) -> int:
+        return len(self._numbers) // self.WIDTH
+
+    def add(self, *row: float) -> None:
+        """Add time, position, velocity, heading, swept and nearest clearance, density, ttc and wall clearance."""
+        self._numbers.extend(row)
+
+    def extend(self, *columns: Floats) -> None:
+        """Add columns ``[N]`` of many records."""
+        self._numbers.frombytes(np.stack(columns, axis=1).astype(np.float64).tobytes())
+
+    def time(self, number: int) -> float:
+        """Return the time of a record."""
+        return self._numbers[(number % len(self)) * self.WIDTH]
+
+    def columns(self, *numbers: int) -> Floats:
+        """Return some values of all records ``[N, len(numbers)]``."""
+        table = np.array(self._numbers, dtype=np.float64).reshape(-1, self.WIDTH)
+        return np.ascontiguousarray(table[:, numbers])
+
+    @property
+    def times(self) -> Floats:
+        """Times ``[N]`` [s]."""
+        return self.columns(0).ravel()
+
+    @property
+    def headings(self) -> Floats:
+        """Headings ``[N]`` [rad]; NaN at rest if unknown."""
+        return self.columns(5).ravel()
+
+    @property
+    def collision_times(self) -> Floats:
+        """Smallest times to collision ``[N]`` [s]."""
+        return self.columns(9).ravel()
 
 
 class NavigationMetrics:
     """Navigation metrics of one robot, updated record by record; see :data:`crowdbot.metrics.NAVIGATION_METRICS`.
 
-    Memory grows by a few numbers per record.
+    Memory grows by 100 bytes per record, however many people there are.
 
     Args:
         robot: id of the robot.
@@ -116,12 +147,12 @@ class NavigationMetrics:
         ignored: Sequence[int] = (),
         footprint: Floats | None = None,
     ) -> None:
-        self.footprint, self._outline = footprint, list[float]()
+        self.footprint, self._outline = footprint, array("d")
         self.ghost, self.ignored = ghost, np.asarray(ignored, dtype=np.int64)
         self.robot, self.radius = robot, radius
         self.goal, self.tolerance, self.time_limit = np.asarray(goal, dtype=np.float64), tolerance, time_limit
         self.walls = np.zeros((0, 4)) if walls is None else walls
-        self._samples: list[_Sample] = []
+        self._samples = _Samples()
         self._contacts = ContactTracker(robot, radius)
         self._before: AgentStates | None = None
         self._decided: NavigationOutcome | None = None
@@ -144,11 +175,11 @@ class NavigationMetrics:
         """
         if self._finished:
             return
-        if self._samples and not states.time > self._samples[-1].time:
+        if self._samples and not states.time > self._samples.time(-1):
             raise InputError(
-                f"navigation metrics: {states.time} s follows {self._samples[-1].time} s; time must increase"
+                f"navigation metrics: {states.time} s follows {self._samples.time(-1)} s; time must increase"
             )
-        if self._samples and states.time - self._samples[0].time > self.time_limit:
+        if self._samples and states.time - self._samples.time(0) > self.time_limit:
             self._finished = True
             return
         if len(self.ignored):
@@ -156,14 +187,14 @@ class NavigationMetrics:
         own = int(np.searchsorted(states.ids, self.robot))
         if own == len(states.ids) or states.ids[own] != self.robot:
             raise InputError(f"navigation metrics: robot {self.robot} is absent at {states.time} s")
-        sample = self._measure(states, own)
-        self._samples.append(sample)
+        swept, wall = self._measure(states, own)
+        place = states.position[own]
         if self.footprint is not None:
             self._outline.append(footprint_clearance(states, own, self.footprint))
         self._before = states
-        away = sample.position - self.goal
+        away = place - self.goal
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
-        touched = not self.ghost and (contact or min(sample.swept, sample.wall) < 0.0)
+        touched = not self.ghost and (contact or min(swept, wall) < 0.0)
         if self._decided is None and (touched or arrived):
             self._decided = NavigationOutcome("collision" if touched else "success", len(self._samples) - 1)
         self._finished = arrived
@@ -194,11 +225,8 @@ class NavigationMetrics:
             first = int(np.argmax(touched | arrived))
             self._decided = NavigationOutcome("collision" if touched[first] else "success", first)
         place, velocity = log.position[:, self.robot], log.velocity[:, self.robot]
-        heading = map(_heading, log.heading[:, self.robot].tolist(), velocity)
-        columns = (part.tolist() for part in found[1:])
-        self._samples = [
-            _Sample(*row) for row in zip(log.times.tolist(), place, velocity, heading, *columns, strict=True)
-        ]
+        heading = np.array(list(map(_heading, log.heading[:, self.robot].tolist(), velocity)), dtype=np.float64)
+        self._samples.extend(log.times, *place.T, *velocity.T, heading, *found[1:])
         if self.footprint is not None:
             for states in log.states():
                 own = int(np.searchsorted(states.ids, self.robot))
@@ -246,10 +274,8 @@ class NavigationMetrics:
         if not self._samples:
             raise InputError("navigation metrics: there is no record yet")
         ended = self.outcome.name if outcome is None else outcome
-        times = np.array([sample.time for sample in self._samples])
-        position = np.array([sample.position for sample in self._samples])
-        velocity = np.array([sample.velocity for sample in self._samples])
-        heading = np.array([sample.heading for sample in self._samples])
+        times, heading = self._samples.times, self._samples.headings
+        position, velocity = self._samples.columns(1, 2), self._samples.columns(3, 4)
         duration = float(times[-1] - times[0])
         first, last = (math.dist(position[k], self.goal) for k in (0, -1))
         jerks = jerk(times, velocity)
@@ -271,16 +297,18 @@ class NavigationMetrics:
             **self._outline_metrics(),
         }
 
-    def _measure(self, states: AgentStates, own: int) -> _Sample:
+    def _measure(self, states: AgentStates, own: int) -> tuple[float, float]:
+        """Keep the values of a record; return the swept clearance to people and that to walls."""
         found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
         if not self.ghost:
             self._contacts.update(states, found.near)
         place, velocity = states.position[own], states.velocity[own]
-        return _Sample(states.time, place, velocity, _heading(float(states.heading[own]), velocity), *found[1:])
+        heading = _heading(float(states.heading[own]), velocity)
+        self._samples.add(states.time, *place.tolist(), *velocity.tolist(), heading, *found[1:])
+        return found.swept, found.wall
 
     def _nearness(self, times: Floats) -> dict[str, float]:
-        rows = [(one.swept, one.nearest, one.wall, one.density) for one in self._samples]
-        swept, nearest, wall, density = np.array(rows).T
+        swept, nearest, wall, density = self._samples.columns(6, 7, 10, 8).T
         someone = np.isfinite(nearest)
         return {
             "min_clearance": float(np.min(swept)),
@@ -314,7 +342,7 @@ class NavigationMetrics:
         return dict(zip(FOOTPRINT_METRICS, values, strict=True))
 
     def _time_to_collision(self) -> dict[str, float]:
-        ttc = np.array([sample.ttc for sample in self._samples])
+        ttc = self._samples.collision_times
         return {
             "min_ttc": float(np.min(ttc)),
             "ttc_below_1s": float(np.mean(ttc < 1.0)),

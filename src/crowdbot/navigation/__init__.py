@@ -6,6 +6,8 @@ from .decision_thread import HungNavigatorError, call_within
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .external import ExternalNavigator
+from .external_stack import Ros2Navigator, RosbridgeNavigator
+from .follower import FollowerNavigator
 from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -22,6 +24,7 @@ from .planners.potential_field import PotentialFieldNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
 from .process.process_navigator import ProcessNavigator
+from .sinusoid import SinusoidNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
@@ -38,6 +41,7 @@ __all__ = [
     "DriveLimits",
     "DynamicWindowNavigator",
     "ExternalNavigator",
+    "FollowerNavigator",
     "HungNavigatorError",
     "MPCNavigator",
     "Navigator",
@@ -51,9 +55,12 @@ __all__ = [
     "PotentialFieldNavigator",
     "ProcessNavigator",
     "RDSNavigator",
+    "Ros2Navigator",
+    "RosbridgeNavigator",
     "SafetyLayer",
     "SafetyState",
     "ScanMapNavigator",
+    "SinusoidNavigator",
     "SocialForceNavigator",
     "Straight",
     "TimeElasticBandNavigator",

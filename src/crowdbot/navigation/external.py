@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,9 @@ class ExternalNavigator(Navigator):
     >>> ExternalNavigator(timeout=0.2).is_stale(np.array([0, 3, 4]), step_ns=50_000_000).tolist()
     [False, False, True]
     """
+
+    source: ClassVar[str] = ""
+    """Address ``module:function`` of what opens the source of its orders in a run; empty: the caller gives one."""
 
     timeout: float = 0.5
 

@@ -58,6 +58,7 @@ class RecordedEpisode:
         orders: time [s] and content of the orders from outside.
         reactions: ``[T, A]`` codes of reactions to robots, see :class:`Episode`; None if nobody can react.
         digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
+        joints: positions ``[T]`` [rad] or [m] of the joints by robot and name, NaN while the robot is absent.
     """
 
     path: Path
@@ -82,6 +83,7 @@ class RecordedEpisode:
     collisions: tuple[ContactEventRecord, ...] = ()
     orders: tuple[tuple[float, Order], ...] = ()
     reactions: NDArray[np.int8] | None = None
+    joints: Mapping[str, Mapping[str, Floats]] = field(default_factory=dict)
 
     @property
     def xml(self) -> str:
@@ -332,7 +334,19 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         tuple(collision for moment in found for collision in moment.collisions),
         tuple((moment.time, read_order(text)) for moment in found for text in moment.orders),
         _reactions([moment for moment, _ in due], count),
+        _joints([moment for moment, _ in due]),
     )
+
+
+def _joints(found: Sequence[RecordedStep]) -> dict[str, dict[str, Floats]]:
+    """Return the positions of the joints by robot and name."""
+    rows: dict[str, dict[str, Floats]] = {}
+    for k, moment in enumerate(found):
+        for robot, joints in moment.joints.items():
+            columns = rows.setdefault(robot, {})
+            for name, (position, _) in joints.items():
+                columns.setdefault(name, np.full(len(found), np.nan))[k] = position
+    return rows
 
 
 def _reactions(found: Sequence[RecordedStep], count: int) -> NDArray[np.int8] | None:

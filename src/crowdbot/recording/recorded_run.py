@@ -19,6 +19,7 @@ from crowdbot.simulation import (
     SimulationRun,
     Sink,
     catch_interrupt,
+    decision_times,
     run_to_end,
     simulate,
     warn_of_failure,
@@ -71,7 +72,7 @@ def run(
         return simulate(trial, seed, progress, clock)
     log, outcome, simulation = _record(EpisodeLog, trial, seed, out, progress, clock, force)
     warn_of_failure(simulation)
-    return log.episode(outcome, simulation.tick, simulation.failures[0])
+    return log.episode(outcome, simulation.tick, simulation.failures[0], decision_times(simulation.robots))
 
 
 def record(

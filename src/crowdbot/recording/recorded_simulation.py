@@ -104,6 +104,15 @@ class RecordedSimulation:
         assert self._course is not None
         return SimulationRun(simulation, (), (OrderReplay(self._course.parts[-1].orders),))
 
+    def trial_simulation(self) -> Simulation:
+        """Return a new simulation of the trial at the end of the episode, at its own start: shapes, bodies, sensors."""
+        return self._fresh(max(self._wanted, default=0) // int(self._known["step_ns"]))
+
+    def changes(self) -> int:
+        """Return the number of orders that have changed the trial."""
+        assert self._course is not None
+        return self._course.changes_until(2**62)
+
     def _fresh(self, tick: int) -> Simulation:
         """Return a new simulation of the trial with its changes up to a step, built once for each set of changes."""
         assert self._course is not None

@@ -59,7 +59,18 @@ class VideoWriter(ABC):
 
 
 def reel(path: Path, rate: float) -> VideoWriter:
-    """Return a writer for this file extension, with ``rate`` images per second."""
+    """Return a writer for this file extension, with ``rate`` images per second.
+
+    Args:
+        path: file that ends with .mp4, .gif or .webp.
+        rate: images per second.
+
+    >>> import tempfile
+    >>> writer = reel(Path(tempfile.mkdtemp()) / "white.gif", 10.0)
+    >>> writer.add(np.full((4, 4, 3), 255, dtype=np.uint8))
+    >>> writer.finish().read_bytes()[:6]
+    b'GIF89a'
+    """
     kinds: dict[str, type[VideoWriter]] = {".mp4": _Mp4, ".gif": _Gif, ".webp": _WebP}
     return kinds[path.suffix.lower()](path, rate)
 

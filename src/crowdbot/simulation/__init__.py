@@ -1,11 +1,12 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
+from .decision_timer import decision_times
 from .door_orders import DoorOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .external_robots import UncommandedRobotWarning
-from .failure import RunFailure, RunFailureWarning
+from .failure import RunEnd, RunFailure, RunFailureWarning
 from .faults.fault_order import FaultOrder
 from .orders.avatar_order import AvatarOrder
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
@@ -25,7 +26,6 @@ from .simulation_run import (
     KEYFRAMES,
     BatchSink,
     OrderSource,
-    RunEnd,
     RunSnapshot,
     SimulationRun,
     Sink,
@@ -92,6 +92,7 @@ __all__ = [
     "VelocityOrder",
     "apply_overrides",
     "catch_interrupt",
+    "decision_times",
     "decode_state",
     "encode_state",
     "log_of",

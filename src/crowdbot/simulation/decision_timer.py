@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +17,7 @@ from crowdbot.navigation import (
     HungNavigatorError,
     Navigator,
     ObservationBatch,
+    ProcessNavigator,
     call_within,
     copy_memory,
 )
@@ -25,7 +26,7 @@ from crowdbot.trials import RobotSpec
 from .failure import RunFailure
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
 
-__all__ = ["DecisionTimer"]
+__all__ = ["DecisionTimer", "decision_times"]
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -45,19 +46,22 @@ class DecisionTimer:
         missed: ``[E]`` tick of the latest decision that took longer than the deadline, -1 for none.
         hung: ``[E]`` tick of the decision that did not return, -1 for none.
         recorded: recorded decisions of each environment that is replayed, otherwise None.
-        clock: clock of the compute times [s], used only with a deadline.
+        clock: clock of the compute times [s], used only with a deadline or for a process.
+        spent: compute times [s] of the measured decisions of each environment.
     """
 
     missed: Ints
     hung: Ints
     recorded: list[RecordedDecisions | None]
     clock: Callable[[], float] = time.perf_counter
+    spent: list[list[float]] = field(default_factory=list)
     _warm: bool = field(default=False, init=False)
 
     @classmethod
     def of(cls, count: int) -> DecisionTimer:
         """Return the state before the first decision."""
-        return cls(np.full(count, NEVER, dtype=np.int64), np.full(count, NEVER, dtype=np.int64), [None] * count)
+        missed, hung = (np.full(count, NEVER, dtype=np.int64) for _ in range(2))
+        return cls(missed, hung, [None] * count, spent=[[] for _ in range(count)])
 
     def first_memories(
         self, robot: RobotSpec, batch: ObservationBatch, environments: Ints
@@ -69,8 +73,13 @@ class DecisionTimer:
         """Let the navigator decide, with compute times if they matter."""
         navigator, name = robot.controller, robot.name
         decide = functools.partial(_decide, navigator, batch, name, self._limit(robot, environments))
-        if robot.deadline is None or self._is_replay(environments):
+        if self._is_replay(environments):
             return decide(memories, None)
+        if (
+            robot.deadline is None
+        ):  # the times of a process are only told; it starts at the first one, which is left out
+            timed, self._warm = self._warm and isinstance(navigator, ProcessNavigator), True
+            return decide(memories, self.clock if timed else None)
         if not self._warm:  # code is compiled and loaded at the first call, which says nothing about the others
             decide([copy_memory(memory, name) for memory in memories], None)
             self._warm = True
@@ -86,11 +95,21 @@ class DecisionTimer:
             else:
                 late[k] = decisions.seconds[k] > (robot.deadline or math.inf)
         late[list(decisions.failures)] = False
+        for k in np.flatnonzero(decisions.seconds > 0.0).tolist():
+            if k not in decisions.failures:
+                self.spent[environments[k]].append(float(decisions.seconds[k]))
         self.missed[environments[late]] = ticks[late]
         for k, error in decisions.failures.items():
             if isinstance(error, HungNavigatorError):
                 self.hung[environments[k]] = ticks[k]
         return late
+
+    def repeat_misses(self, environments: Ints, ticks: Ints) -> None:
+        """Keep the recorded misses of a robot whose commands come from outside, at ticks ``[N]``."""
+        for e, tick in zip(environments.tolist(), ticks.tolist(), strict=True):
+            recorded = self.recorded[e]
+            if recorded is not None and tick in recorded.missed:
+                self.missed[e] = tick
 
     def recorded_hangs(self, robot: RobotSpec, environments: Ints, ticks: Ints) -> dict[int, Exception]:
         """Return the errors of the replayed environments whose decision at their tick ``[N]`` did not return."""
@@ -133,7 +152,8 @@ class DecisionTimer:
     def select(self, environments: Ints) -> DecisionTimer:
         """Return an independent state of some environments."""
         recorded = [self.recorded[e] for e in environments]
-        other = DecisionTimer(self.missed[environments], self.hung[environments], recorded, self.clock)
+        spent = [list(self.spent[e]) for e in environments]
+        other = DecisionTimer(self.missed[environments], self.hung[environments], recorded, self.clock, spent)
         other._warm = self._warm
         return other
 
@@ -141,7 +161,7 @@ class DecisionTimer:
         """Replace the state of some environments."""
         self.missed[environments], self.hung[environments] = other.missed, other.hung
         for k, e in enumerate(environments.tolist()):
-            self.recorded[e] = other.recorded[k]
+            self.recorded[e], self.spent[e] = other.recorded[k], list(other.spent[k])
 
     def _is_replay(self, environments: Ints) -> bool:
         return all(self.recorded[e] is not None for e in environments)
@@ -151,6 +171,17 @@ class DecisionTimer:
         if _is_own(type(robot.navigator)) and robot.predictor is None:
             return None
         return None if self._is_replay(environments) else robot.decision_limit
+
+
+def decision_times(controls: Iterable[Any], environment: int = 0) -> dict[str, tuple[float, ...]]:
+    """Return the compute times [s] of the measured decisions of an environment by robot; others have no entry.
+
+    Args:
+        controls: the robots, each with its ``timer``.
+        environment: index of the environment.
+    """
+    found = {one.robot.name: tuple(one.timer.spent[environment]) for one in controls}
+    return {name: times for name, times in found.items() if times}
 
 
 def _is_own(kind: type) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,8 @@ class Episode:
         collisions: contact events of the physics world, ordered by end.
         reactions: ``[T, A]`` code of the reaction of each person to a robot, an index in
             :data:`crowdbot.world.REACTIONS`, 0 for none; None if nobody can react.
+        decision_times: compute times [s] of the decisions by robot, of those with a deadline or with a navigator in
+            another process, without the first one; not recorded.
     """
 
     trial: Trial
@@ -101,6 +103,7 @@ class Episode:
     forces: tuple[tuple[float, ContactForce], ...] = ()
     collisions: tuple[BodyContactEvent, ...] = ()
     reactions: NDArray[np.int8] | None = None
+    decision_times: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def walls(self) -> tuple[Floats, ...]:

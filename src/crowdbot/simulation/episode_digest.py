@@ -153,7 +153,9 @@ def _add_scenes(own: Sequence[EpisodeDigest], times: Sequence[int], batch: StepB
 def _rows_of_reading(told: SensorReadings) -> list[bytes | Bytes] | None:
     """Return the bytes of each field of readings: common to all rows, or ``[N, B]``; None if they need single rows."""
     reading, count = told.reading, len(told.environments)
-    if isinstance(reading, TrackedPeople) or count < 2 or type(reading).environment is not Reading.environment:
+    if count < 2 or type(reading).environment is not Reading.environment:
+        return None
+    if isinstance(reading, TrackedPeople) and not _in_order(told, reading.present.shape[1]):
         return None
     if isinstance(reading.time, np.ndarray) and reading.time.dtype != np.float64:
         return None
@@ -167,6 +169,12 @@ def _rows_of_reading(told: SensorReadings) -> list[bytes | Bytes] | None:
             return None
         found.append(part)
     return found
+
+
+def _in_order(told: SensorReadings, agents: int) -> bool:
+    """Return whether all rows have the same number of agents, and their ids are their indices."""
+    plain = bool(np.all(told.slots == agents))
+    return plain and bool(np.all(told.ids[:, :agents] == np.arange(agents)))
 
 
 def _named_hits(hit: Any, ids: NDArray[np.int64]) -> NDArray[np.int64] | None:

@@ -125,7 +125,13 @@ class EpisodeLog(EpisodeStatistics):
                     travel.tolerance = float(order.tolerance)
             travel.update(states, contact)
 
-    def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
+    def episode(
+        self,
+        outcome: str,
+        steps: int,
+        failure: RunFailure | None = None,
+        decision_times: Mapping[str, tuple[float, ...]] | None = None,
+    ) -> Episode:
         """Return the episode."""
         arrays = self._arrays()
         robots = tuple(dict.fromkeys(robot for frame in self._frames for robot in frame.robots))
@@ -156,6 +162,7 @@ class EpisodeLog(EpisodeStatistics):
             tuple(self.forces),
             tuple(self.collisions),
             self._reactions(),
+            dict(decision_times or {}),
         )
 
     def _reactions(self) -> NDArray[np.int8] | None:

@@ -1,14 +1,62 @@
-"""Robots commanded from outside: warning about runs in which nobody commands them."""
+"""Robots commanded from outside: sources of their orders, and a warning about runs in which nobody commands them."""
 
 from __future__ import annotations
 
+import importlib
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
+from crowdbot.core import InputError
 from crowdbot.navigation import ExternalNavigator
 from crowdbot.trials import Trial
 
-__all__ = ["UncommandedRobotWarning", "warn_of_missing_source"]
+if TYPE_CHECKING:
+    from .orders.order import Order
+
+__all__ = ["OwnSource", "UncommandedRobotWarning", "has_own_source", "open_own_sources", "warn_of_missing_source"]
+
+
+class OwnSource(Protocol):
+    """A source of orders that a navigator of a trial opens itself, such as a connection to a robot software."""
+
+    def orders(self, simulation: Any) -> Iterable[Order]:
+        """Return the orders for this step."""
+
+    def close(self) -> None:
+        """End the connection; without effect the second time."""
+
+
+def has_own_source(trial: Trial) -> bool:
+    """Return whether a navigator of the trial opens the source of its orders itself."""
+    return any(isinstance(one.navigator, ExternalNavigator) and one.navigator.source for one in trial.robots)
+
+
+def open_own_sources(simulation: Any) -> tuple[OwnSource, ...]:
+    """Open the sources of orders of the navigators of a simulation, one for all robots with equal navigators.
+
+    The navigator names a function in a higher room by its address, so that this room imports none of them.
+
+    Raises:
+        InputError: the simulation has several environments, or a source cannot be opened.
+    """
+    groups: dict[ExternalNavigator, list[str]] = {}
+    for control in simulation.robots:
+        navigator = control.robot.navigator
+        if isinstance(navigator, ExternalNavigator) and navigator.source:
+            groups.setdefault(navigator, []).append(control.robot.name)
+    if groups and simulation.count > 1:
+        raise InputError(f"navigator {next(iter(groups)).title()} drives one environment, not {simulation.count}")
+    opened: list[OwnSource] = []
+    try:
+        for navigator, names in groups.items():
+            module, _, function = navigator.source.partition(":")
+            opened.append(getattr(importlib.import_module(module), function)(navigator, tuple(names), simulation))
+    except BaseException:
+        for one in opened:
+            one.close()
+        raise
+    return tuple(opened)
 
 
 class UncommandedRobotWarning(UserWarning):
@@ -20,7 +68,9 @@ def warn_of_missing_source(trial: Trial, sources: Sequence[object], levels: int 
     names = [
         repr(robot.name)
         for robot in trial.robots
-        if isinstance(robot.navigator, ExternalNavigator) and (robot.pose is None or robot.pose.source == "external")
+        if isinstance(robot.navigator, ExternalNavigator)
+        and not robot.navigator.source
+        and (robot.pose is None or robot.pose.source == "external")
     ]
     if names and not sources:
         robots, verb = ("robot", "stands") if len(names) == 1 else ("robots", "stand")

@@ -1,13 +1,15 @@
-"""RunFailure: an exception that ended a run, as data."""
+"""RunEnd: how a run ended, and RunFailure: an exception that ended it, as data."""
 
 from __future__ import annotations
 
 import sysconfig
 import traceback
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
-__all__ = ["RunFailure", "RunFailureWarning"]
+__all__ = ["RunEnd", "RunFailure", "RunFailureWarning"]
 
 PACKAGE = Path(__file__).resolve().parents[1]
 INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib")]
@@ -50,6 +52,22 @@ class RunFailure:
     def __str__(self) -> str:
         """Return a sentence without full stop."""
         return f"{self.message} ({self.place}) at {self.time:g} s"
+
+
+class RunEnd(NamedTuple):
+    """The end of a run.
+
+    Fields:
+        outcome: outcome of the episode.
+        steps: number of steps.
+        failure: the exception that ended it, or None.
+        decision_times: compute times [s] of the measured decisions by robot, see :class:`Episode`.
+    """
+
+    outcome: str
+    steps: int
+    failure: RunFailure | None = None
+    decision_times: Mapping[str, tuple[float, ...]] = {}
 
 
 def _place(error: Exception, folder: Path | None) -> str:

@@ -306,6 +306,7 @@ class RobotControl:
         stale = (ordered == NEVER) | navigator.is_stale(ticks - ordered, world.clock.step_ns)
         self.command[environments[stale]] = 0.0
         self.begun[environments] = True
+        self.timer.repeat_misses(environments, ticks)
         if self.planner is None and self.robot.tracks is None:
             return
         due = environments[world.clock.schedule(self.robot.control_period).is_due(ticks)]

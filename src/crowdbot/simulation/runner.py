@@ -12,9 +12,10 @@ from types import FrameType
 from crowdbot.core import Clock, TrialError
 from crowdbot.trials import Trial, check_trial
 
+from .decision_timer import decision_times
 from .episode import Episode
 from .episode_log import EpisodeLog, EpisodeLogs
-from .external_robots import warn_of_missing_source
+from .external_robots import has_own_source, warn_of_missing_source
 from .failure import RunFailure, RunFailureWarning
 from .simulation import Simulation
 from .simulation_run import OrderSource, SimulationRun, Sink, StopRequest
@@ -47,7 +48,7 @@ def simulate(
     with catch_interrupt() as stop:
         outcome = run_to_end(simulation, [log], stop, progress)
     warn_of_failure(simulation)
-    return log.episode(outcome, simulation.tick, simulation.failures[0])
+    return log.episode(outcome, simulation.tick, simulation.failures[0], decision_times(simulation.robots))
 
 
 def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None = None) -> tuple[Episode, ...]:
@@ -71,8 +72,20 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
     True
     """
     warn_of_missing_source(trial, ())
+    if has_own_source(trial) and len(seeds) > 1:  # a program outside drives one run at a time
+        return _one_by_one([trial] * len(seeds), seeds)
     simulation = _checked_simulation(trial, [int(seed) for seed in seeds])
     return _episodes(simulation, [EpisodeLog(trial, int(seed)) for seed in seeds], progress)
+
+
+def _one_by_one(trials: Sequence[Trial], seeds: Sequence[int]) -> tuple[Episode, ...]:
+    """Run each trial alone, one after the other."""
+    found: list[Episode] = []
+    for trial, seed in zip(trials, seeds, strict=True):
+        found += [simulate(trial, int(seed))]
+        if found[-1].outcome == "interrupted":
+            raise KeyboardInterrupt
+    return tuple(found)
 
 
 def _episodes(
@@ -116,6 +129,8 @@ def simulate_variants(trials: Sequence[Trial], seeds: Sequence[int]) -> tuple[Ep
     >>> [one.digest for one in simulate_variants(variants, [1, 1])] == [simulate(one, 1).digest for one in variants]
     True
     """
+    if any(map(has_own_source, trials)) and len(trials) > 1:
+        return _one_by_one(trials, seeds)
     for trial, seed in zip(trials, seeds, strict=False):
         check_trial(trial, int(seed))
         warn_of_missing_source(trial, ())

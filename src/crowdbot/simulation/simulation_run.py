@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
 
-from .failure import RunFailure
+from .decision_timer import decision_times
+from .external_robots import open_own_sources
+from .failure import RunEnd, RunFailure
 from .orders.order import Order
 from .simulation import Simulation
 from .step_batch import StepBatch
 from .step_record import StepRecord
 
-__all__ = ["KEYFRAMES", "BatchSink", "OrderSource", "RunEnd", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
+__all__ = ["KEYFRAMES", "BatchSink", "OrderSource", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
@@ -56,14 +59,6 @@ class StopRequest:
     """A request to stop the run."""
 
     asked: bool = False
-
-
-class RunEnd(NamedTuple):
-    """The end of a run: its outcome, the number of steps, and the exception that ended it, or None."""
-
-    outcome: str
-    steps: int
-    failure: RunFailure | None = None
 
 
 @dataclass(frozen=True)
@@ -114,7 +109,10 @@ class SimulationRun:
         stop: StopRequest | None = None,
         keyframes: bool = False,
     ) -> None:
-        self.simulation, self.sinks, self.sources = simulation, sinks, sources
+        self.simulation, self.sinks = simulation, sinks
+        own = () if sources else open_own_sources(simulation)
+        self.sources: Sequence[OrderSource] = sources or own
+        self._closing = [weakref.finalize(self, one.close) for one in own]
         self._ticks, self._stop = ticks, stop or StopRequest()
         self._schedule = simulation.world.clock.schedule(simulation.trial.recording.period)
         self._numbers = list(range(simulation.count))
@@ -320,6 +318,8 @@ class SimulationRun:
         if ended.any():
             self._apply()
             self._write(np.flatnonzero(ended & self._pending), last=True)
+        for close in self._closing if self.outcome is not None else ():
+            close()
 
     def _note_misses(self) -> None:
         """Keep the decisions of this step that missed their deadline or did not return for the records."""
@@ -339,7 +339,9 @@ class SimulationRun:
             if self.ends[self._numbers[e]] is None:
                 outcome = simulation.outcome(e) or ("interrupted" if stops[e] else None)
                 if outcome is not None:
-                    self.ends[self._numbers[e]] = RunEnd(outcome, int(simulation.ticks[e]), simulation.failures[e])
+                    times = decision_times(simulation.robots, e)
+                    end = RunEnd(outcome, int(simulation.ticks[e]), simulation.failures[e], times)
+                    self.ends[self._numbers[e]] = end
                     ended[e] = True
         return ended
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .faults.slipping_wheel import SlippingWheel
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_digest, code_references, is_code
+    from .files.layout_file import load_layout
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
     from .ground.door import Door
@@ -87,6 +88,7 @@ __getattr__, __dir__ = lazy_exports(
         "distribution": ["Distribution"],
         "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
         "files.code_references": ["code_digest", "code_references", "is_code"],
+        "files.layout_file": ["load_layout"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
         "ground.door": ["Door"],
@@ -254,6 +256,7 @@ __all__ = [
     "is_code",
     "joint_positions",
     "kind_of",
+    "load_layout",
     "load_trial",
     "map_files",
     "model_range",

@@ -228,7 +228,7 @@ class RobotSpec:
                 'has holonomic="true" but its drive cannot move sideways; take <drive type="omnidirectional"/>, or'
                 " leave it out"
             )
-        if isinstance(self.navigator, ExternalNavigator) and self.deadline is not None:
+        if isinstance(self.navigator, ExternalNavigator) and self.deadline is not None and not self.navigator.source:
             raise InputError(
                 'has a deadline in addition to <navigator type="external"/>, which decides nothing; set its timeout'
             )

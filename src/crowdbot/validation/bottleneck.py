@@ -12,7 +12,8 @@ from crowdbot.core import Scene
 from crowdbot.measurement import MeasurementLine, crossing_times, mean_flow
 from crowdbot.models import CrowdModel
 
-from .crowd_motion import deepest_overlap, one_start, simulate_open
+from .crowd_motion import deepest_overlap, each_start, simulate_open
+from .layouts import bottleneck_solids, inside_solids, rings
 from .literature import SPECIFIC_FLOW
 from .scenario import (
     RADIUS,
@@ -21,17 +22,15 @@ from .scenario import (
     Floats,
     Report,
     Row,
-    Solid,
     Verdict,
     crowds,
-    inside_solids,
     opening,
-    rings,
+    portion,
     share,
     stream_of,
     tracks_of,
 )
-from .statistics import summarize_starts, text_of
+from .statistics import mean_of, text_of
 
 __all__ = ["BOTTLENECK", "bottleneck_flow", "crossings", "steady_flow"]
 
@@ -56,17 +55,14 @@ def run(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) 
         for _ in numbers
     ]
     for k, width in enumerate(widths):
+        solids = bottleneck_solids(ROOM, HALF, width, LENGTH)
 
-        def report_part(part: float, done: int = k) -> None:
-            report((done + part) / len(widths))
-
-        walk = _leave(model, width, people, numbers, seconds, report_part)
-        for e, row in enumerate(rows):
-            own = one_start(walk, e)
+        walk = _leave(model, width, people, numbers, seconds, portion(report, k, len(widths)))
+        for own, row in zip(each_start(walk), rows, strict=True):
             flow, passed = _flow(crossings(own, 0.5 * LENGTH), people, seconds)
             row["flow"].append(flow)
             row["passed"].append(passed)
-            row["outside"] = max(row["outside"], inside_solids(own, _solids(width)))
+            row["outside"] = max(row["outside"], inside_solids(own, solids))
             row["overlap"] = max(row["overlap"], deepest_overlap(own))
     return rows
 
@@ -132,8 +128,8 @@ def bottleneck_flow(model: CrowdModel, width: float, people: int, numbers: Seque
 def _specific_interval(flows: Sequence[Sequence[float]], widths: Sequence[float]) -> tuple[float, float]:
     """Return the interval of the specific flow [1/(m s)], mean over widths, over the starts."""
     specific = np.mean(np.asarray(flows) / np.asarray(widths)[:, None], axis=0)
-    found = summarize_starts([specific])
-    return found["low"][0], found["high"][0]
+    low, high = mean_of(specific)[1]
+    return low, high
 
 
 def steady_flow(times: Floats) -> float:
@@ -163,7 +159,9 @@ def _leave(
     step: float | None = None,
 ) -> CrowdTracks:
     place, speed = crowds("bottleneck", people, numbers, (-ROOM + 0.3, -HALF + 0.3), (-1.0, HALF - 0.3))
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_solids(width)))
+    crowd = Scene.of(
+        place, radius=RADIUS, preferred_speed=speed, walls=rings(bottleneck_solids(ROOM, HALF, width, LENGTH))
+    )
 
     def goals(now: Floats) -> Floats:
         ahead = opening(now, 0.3, 0.0, width)
@@ -175,14 +173,3 @@ def _leave(
 
     rng = stream_of("bottleneck", "model", width, numbers[0])
     return simulate_open(model, crowd, goals, left, seconds, rng, report, step)
-
-
-def _solids(width: float) -> list[Solid]:
-    half = 0.5 * width
-    return [
-        (0.0, half, LENGTH, HALF + 0.5),
-        (0.0, -HALF - 0.5, LENGTH, -half),
-        (-ROOM - 0.5, HALF, 0.0, HALF + 0.5),
-        (-ROOM - 0.5, -HALF - 0.5, 0.0, -HALF),
-        (-ROOM - 0.5, -HALF, -ROOM, HALF),
-    ]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
-from .crowd_motion import deepest_overlap, one_start, simulate_open
+from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
+from .layouts import cabin_solids, inside_solids, rings, two_rooms, waiting_room
 from .scenario import (
     RADIUS,
     STEP,
@@ -20,17 +21,17 @@ from .scenario import (
     Floats,
     Report,
     Row,
-    Solid,
     Verdict,
     crowds,
     free_speeds,
-    inside_solids,
     opening,
-    rings,
+    portion,
     share,
     stream_of,
+    stuck_part,
+    stuck_start,
 )
-from .statistics import summarize_starts
+from .statistics import ends_of, mean_of, summarize_starts, worst_of
 
 __all__ = ["ASSIGNED_EXITS", "COUNTER_FLOW", "PREMOVEMENT", "SLOW_MEMBER"]
 
@@ -44,11 +45,9 @@ DRIFT, DELAY = 0.5, 2.0
 def run_premovement(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
     """Simulate ten people in a room of 8 x 5 m with different premovement times."""
     scale = 0.1 if quick else 1.0
-    room: list[Solid] = [(-0.5, -0.5, 8.5, 0.0), (-0.5, 5.0, 8.5, 5.5), (-0.5, 0.0, 0.0, 5.0), (8.0, 0.0, 8.5, 2.0),
-                         (8.0, 3.0, 8.5, 5.0)]  # fmt: skip
     place, speed = crowds("premovement", WAITING, numbers, (0.5, 0.5), (6.5, 4.5))
     begin = scale * np.stack([stream_of("premovement times", n).uniform(EARLIEST, LATEST, WAITING) for n in numbers])
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(room))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(waiting_room()))
 
     def goals(now: Floats) -> Floats:
         door = opening(now, 8.3, 2.5, 1.0)
@@ -59,7 +58,7 @@ def run_premovement(model: CrowdModel, numbers: Sequence[int], quick: bool, repo
 
     rng = stream_of("premovement", "model", numbers[0])
     walk = simulate_open(model, crowd, goals, left, scale * LATEST + 30.0, rng, report, begin=begin)
-    return [_waits(one_start(walk, e), begin[e]) for e in range(len(numbers))]
+    return [_waits(own, own_begin) for own, own_begin in zip(each_start(walk), begin, strict=True)]
 
 
 def _waits(walk: CrowdTracks, begin: Floats) -> Row:
@@ -122,7 +121,7 @@ def run_exits(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     place = np.stack([corner + seat + rng.uniform(-0.3, 0.3, seat.shape) for rng in rngs])
     speed = np.stack([free_speeds((len(cabin),), rng) for rng in rngs])
     right = np.isin(column, SECOND_EXIT)
-    solids = _cabin_walls()
+    solids = cabin_solids(CABINS, CABIN, DEEP, WAY)
     crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(solids))
     end = CABINS * CABIN
     door = np.stack([(column + 0.5) * CABIN, np.zeros(len(cabin))], axis=-1)
@@ -141,8 +140,7 @@ def run_exits(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     rng = stream_of("exits", "model", numbers[0])
     walk = simulate_open(model, crowd, goals, left, 20.0 if quick else 90.0, rng, report)
     rows: list[Row] = []
-    for e in range(len(numbers)):
-        own = one_start(walk, e)
+    for own in each_start(walk):
         x = own.position[:, 0, :, 0]
         here = own.present[:, 0]
         by_left, by_right = np.any((x < -1.0) & here, axis=0), np.any((x > end + 1.0) & here, axis=0)
@@ -152,8 +150,7 @@ def run_exits(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
                 "right": int(np.sum(np.where(right, by_right & ~by_left, by_left & ~by_right))),
                 "wrong": int(np.sum(np.where(right, by_left, by_right))),
                 "seconds": float(own.times[-1]),
-                "outside": inside_solids(own, solids),
-                "overlap": deepest_overlap(own),
+                **safety_of(own, solids),
             }
         )
     return rows
@@ -161,15 +158,14 @@ def run_exits(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
 
 def summarize_exits(rows: Sequence[Row]) -> dict[str, Any]:
     """Return the smallest number of people at the right exit, and the mean time with its interval."""
-    found = summarize_starts([[row["seconds"] for row in rows]])
+    seconds, ends = mean_of([row["seconds"] for row in rows])
     return {
         "people": rows[0]["people"],
         "right": min(row["right"] for row in rows),
         "wrong": max(row["wrong"] for row in rows),
-        "seconds": found["mean"][0],
-        "interval": [found["low"][0], found["high"][0]],
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        "seconds": seconds,
+        "interval": ends,
+        **worst_of(rows),
     }
 
 
@@ -209,20 +205,16 @@ def run_counter(model: CrowdModel, numbers: Sequence[int], quick: bool, report: 
     limit = 40.0 if quick else COUNTER_SECONDS
     rows: list[Row] = [{"seconds": [], "out": [], "people": first, "against": list(against), "outside": 0.0}
                        for _ in numbers]  # fmt: skip
+    solids = two_rooms(10.0, 2.0, leave=False)
     for k, count in enumerate(against):
-
-        def report_part(part: float, done: int = k) -> None:
-            report((done + part) / len(against))
-
-        walk = _exchange(model, first, count, numbers, limit, report_part)
-        for e, row in enumerate(rows):
-            own = one_start(walk, e)
+        walk = _exchange(model, first, count, numbers, limit, portion(report, k, len(against)))
+        for own, row in zip(each_start(walk), rows, strict=True):
             entered = (own.position[:, 0, :first, 0] > 20.0) & own.present[:, 0, :first]
             out = np.any(entered, axis=0)
             last = float(own.times[np.argmax(entered, axis=0)].max()) if np.all(out) else limit
             row["seconds"].append(last)
             row["out"].append(int(out.sum()))
-            row["outside"] = max(row["outside"], inside_solids(own, ROOM_SOLIDS))
+            row["outside"] = max(row["outside"], inside_solids(own, solids))
     return rows
 
 
@@ -233,10 +225,10 @@ def summarize_counter(rows: Sequence[Row]) -> dict[str, Any]:
         "against": rows[0]["against"],
         "people": rows[0]["people"],
         "seconds": found["mean"],
-        "interval": list(zip(found["low"], found["high"], strict=True)),
+        "interval": ends_of(found),
         "stuck": sum(min(row["out"]) < row["people"] for row in rows),
         "starts": len(rows),
-        "outside": float(np.mean([row["outside"] for row in rows])),
+        **worst_of(rows, overlap=False),
     }
 
 
@@ -244,16 +236,13 @@ def judge_counter(result: dict[str, Any]) -> Verdict:
     """Check that more people against take more time, and that all arrive."""
     words, seconds = [], result["seconds"]
     if result["stuck"]:
-        words.append(
-            f"in {result['stuck']} of {result['starts']} starts, two crowds block each other in a corridor 2 m wide"
-        )
+        words.append(f"{stuck_start(result)} two crowds block each other in a corridor 2 m wide")
     if np.any(np.diff(seconds) < -STEP):
         words.append("a crowd gets through a corridor faster if more people come against it")
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of two crowds in a corridor are pushed through its walls")
     text = " < ".join(f"{one:.0f}" for one in seconds)
-    stuck = f", {result['stuck']} of {result['starts']} stuck" if result["stuck"] else ""
-    return Verdict(f"{text} s{stuck}", not words, "; ".join(words))
+    return Verdict(f"{text} s{stuck_part(result)}", not words, "; ".join(words))
 
 
 COUNTER_FLOW = Check(
@@ -289,8 +278,7 @@ def run_group(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     rng = stream_of("group", "model", numbers[0])
     walk = simulate_open(model, crowd, lambda now: now + np.array([50.0, 0.0]), left, 4.0 * way, rng, report)
     rows: list[Row] = []
-    for e in range(len(numbers)):
-        own = one_start(walk, e)
+    for own in each_start(walk):
         past = (own.position[:, 0, :, 0] > way) & own.present[:, 0]
         there = np.any(past, axis=0)
         times = own.times[np.argmax(past, axis=0)]
@@ -303,8 +291,8 @@ def summarize_group(rows: Sequence[Row]) -> dict[str, Any]:
     gaps = [row["gap"] for row in rows]
     if None in gaps:
         return {"gap": None, "interval": None}
-    found = summarize_starts([gaps])
-    return {"gap": found["mean"][0], "interval": [found["low"][0], found["high"][0]]}
+    gap, ends = mean_of(gaps)
+    return {"gap": gap, "interval": ends}
 
 
 def judge_group(result: dict[str, Any]) -> Verdict:
@@ -330,35 +318,23 @@ SLOW_MEMBER = Check(
     judge_group,
 )
 
-ROOM_SOLIDS: list[Solid] = [
-    (-0.5, -5.5, 10.0, -5.0),
-    (-0.5, 5.0, 10.0, 5.5),
-    (-0.5, -5.0, 0.0, 5.0),
-    (10.0, 1.0, 20.0, 5.5),
-    (10.0, -5.5, 20.0, -1.0),
-    (20.0, -5.5, 30.5, -5.0),
-    (20.0, 5.0, 30.5, 5.5),
-    (30.0, -5.0, 30.5, 5.0),
-]
-"""Two rooms of 10 x 10 m and a corridor of 10 x 2 m between them."""
-
 
 def _exchange(
     model: CrowdModel, first: int, against: int, numbers: Sequence[int], limit: float, report: Report
 ) -> CrowdTracks:
     """Simulate the exchange; people vanish 3 m inside the other room, so that they do not fill its door."""
-    place, speed = crowds("counter-flow", first, numbers, (0.3, -4.7), (8.5, 4.7))
+    place, speed = crowds("counter-flow", first, numbers, (0.3, 0.3), (8.5, 9.7))
     if against:
-        other, other_speed = crowds("counter-flow against", against, numbers, (0.3, -4.7), (8.5, 4.7))
+        other, other_speed = crowds("counter-flow against", against, numbers, (0.3, 0.3), (8.5, 9.7))
         other = np.stack([30.0 - other[..., 0], other[..., 1]], axis=-1)
         place, speed = np.concatenate([place, other], axis=1), np.concatenate([speed, other_speed], axis=1)
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(ROOM_SOLIDS))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(two_rooms(10.0, 2.0, leave=False)))
     side = np.where(np.arange(place.shape[1]) < first, 1.0, -1.0)
 
     def goals(now: Floats) -> Floats:
-        entry = opening(now, 0.0, 0.0, 2.0)
+        entry = opening(now, 0.0, 5.0, 2.0)
         entry[..., 0] = np.where(side > 0.0, 10.3, 19.7)
-        ahead = np.stack([now[..., 0] + 3.0 * side, np.clip(now[..., 1], -0.75, 0.75)], axis=-1)
+        ahead = np.stack([now[..., 0] + 3.0 * side, np.clip(now[..., 1], 4.25, 5.75)], axis=-1)
         reached = np.where(side > 0.0, now[..., 0] > 10.0, now[..., 0] < 20.0)
         return np.where(reached[..., None], ahead, entry)
 
@@ -367,20 +343,3 @@ def _exchange(
 
     rng = stream_of("counter-flow", "model", against, numbers[0])
     return simulate_open(model, crowd, goals, left, limit, rng, report)
-
-
-def _cabin_walls() -> list[Solid]:
-    """Return walls 0.1 m thick around twelve cabins with doors of 1 m in the middle."""
-    half, end = 0.5 * WAY, CABINS * CABIN
-    solids: list[Solid] = []
-    for sign in (1.0, -1.0):
-        near, far = (half, half + DEEP) if sign > 0.0 else (-half - DEEP, -half)
-        edge = half if sign > 0.0 else -half - 0.1
-        back = far if sign > 0.0 else near - 0.1
-        solids.append((-0.1, back, end + 0.1, back + 0.1))
-        for k in range(CABINS + 1):
-            solids.append((k * CABIN - 0.05, near, k * CABIN + 0.05, far))
-        for k in range(CABINS):
-            middle = (k + 0.5) * CABIN
-            solids += [(k * CABIN, edge, middle - 0.5, edge + 0.1), (middle + 0.5, edge, (k + 1) * CABIN, edge + 0.1)]
-    return solids

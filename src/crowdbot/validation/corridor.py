@@ -11,6 +11,7 @@ from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
 from .crowd_motion import deepest_overlap, one_start, simulate_periodic
+from .layouts import corridor_walls
 from .literature import weidmann_speed
 from .scenario import (
     FREE_SPEED,
@@ -20,14 +21,13 @@ from .scenario import (
     Report,
     Row,
     Verdict,
-    corridor_walls,
     free_speeds,
     share,
     starts,
     stream_of,
 )
 from .section import section_of, section_values
-from .statistics import bin_values, find_steady_window, pool_bins
+from .statistics import bin_values, find_steady_window, pool_bins, worst_of
 
 __all__ = ["CORRIDOR", "LENGTH", "SPREAD", "WIDTH", "corridor_crowd"]
 
@@ -92,8 +92,7 @@ def summarize(rows: Sequence[Row]) -> dict[str, Any]:
         **pool_bins([row["bins"] for row in rows], BIN, LEAST if len(rows) > 1 else 1),
         "initial_density": rows[0]["initial_density"],
         "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        **worst_of(rows),
     }
 
 

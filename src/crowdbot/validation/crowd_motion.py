@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ import numpy as np
 from crowdbot.core import InputError, Scene
 from crowdbot.models import CrowdModel
 
-from .scenario import RADIUS, SEEN, STEP, Bools, CrowdTracks, Floats, Report, substeps
+from .layouts import inside_solids
+from .scenario import RADIUS, SEEN, STEP, Bools, CrowdTracks, Floats, Report, Solid, substeps
 
-__all__ = ["deepest_overlap", "one_start", "simulate_open", "simulate_periodic"]
+__all__ = ["deepest_overlap", "each_start", "one_start", "safety_of", "simulate_open", "simulate_periodic"]
 
 PATIENCE = 60.0
 """A crowd of which nobody has left for this time [s] is jammed."""
@@ -130,6 +131,17 @@ def one_start(walk: CrowdTracks, e: int) -> CrowdTracks:
     present = walk.present[:, e : e + 1]
     last = int(np.flatnonzero(np.any(present, axis=(1, 2)))[-1]) + 1
     return CrowdTracks(walk.times[:last], walk.position[:last, e : e + 1], present[:last])
+
+
+def each_start(walk: CrowdTracks) -> Iterator[CrowdTracks]:
+    """Yield the tracks of each environment, until its last person has left."""
+    for e in range(walk.present.shape[1]):
+        yield one_start(walk, e)
+
+
+def safety_of(walk: CrowdTracks, solids: Sequence[Solid]) -> dict[str, float]:
+    """Return the share of people in solids and the largest overlap [m] of a start, for its row."""
+    return {"outside": inside_solids(walk, solids), "overlap": deepest_overlap(walk)}
 
 
 def deepest_overlap(walk: CrowdTracks, length: float | None = None) -> float:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
-from .crowd_motion import deepest_overlap, one_start, simulate_open
+from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
+from .layouts import hall_solids, inside_solids, long_corner_solids, rings, two_rooms
 from .scenario import (
     RADIUS,
     STEP,
@@ -20,17 +21,17 @@ from .scenario import (
     Floats,
     Report,
     Row,
-    Solid,
     Verdict,
     crowds,
     gate,
-    inside_solids,
     opening,
-    rings,
+    portion,
     share,
     stream_of,
+    stuck_part,
+    stuck_start,
 )
-from .statistics import summarize_starts, text_of
+from .statistics import ends_of, mean_of, summarize_starts, text_of, worst_of
 
 __all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS", "corner_times", "hall_departures"]
 
@@ -51,18 +52,14 @@ def run_doors(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     rows: list[Row] = [
         {"seconds": [], "out": [], "people": people, "limit": limit, "outside": 0.0, "overlap": 0.0} for _ in numbers
     ]
+    solids = hall_solids(HALL, DEPTH, DOOR)
     for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
-
-        def report_part(part: float, done: int = k) -> None:
-            report(0.5 * (done + part))
-
-        walk = _hall(model, people, sides, numbers, limit, report_part)
-        for e, row in enumerate(rows):
-            own = one_start(walk, e)
+        walk = _hall(model, people, sides, numbers, limit, portion(report, k, 2))
+        for own, row in zip(each_start(walk), rows, strict=True):
             y = own.position[..., 1]
             row["seconds"].append(float(own.times[-1]))
             row["out"].append(int(np.any(((y < -0.5) | (y > DEPTH + 0.5)) & own.present, axis=0).sum()))
-            row["outside"] = max(row["outside"], inside_solids(own, _hall_solids()))
+            row["outside"] = max(row["outside"], inside_solids(own, solids))
             row["overlap"] = max(row["overlap"], deepest_overlap(own))
     return rows
 
@@ -70,18 +67,17 @@ def run_doors(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
 def summarize_doors(rows: Sequence[Row]) -> dict[str, Any]:
     """Return the ratio of the times with its interval, over the starts in which all people leave."""
     done = [row for row in rows if min(row["out"]) == row["people"]]
-    ratio = summarize_starts([[row["seconds"][1] / row["seconds"][0] for row in done]]) if done else None
+    ratio, ends = mean_of([row["seconds"][1] / row["seconds"][0] for row in done]) if done else (None, None)
     return {
-        "ratio": ratio["mean"][0] if ratio else None,
-        "interval": [ratio["low"][0], ratio["high"][0]] if ratio else None,
+        "ratio": ratio,
+        "interval": ends,
         "seconds": np.mean([row["seconds"] for row in rows], axis=0).tolist(),
         "limit": rows[0]["limit"],
         "out": min(min(row["out"]) for row in rows),
         "people": rows[0]["people"],
         "stuck": len(rows) - len(done),
         "starts": len(rows),
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        **worst_of(rows),
     }
 
 
@@ -90,26 +86,18 @@ def judge_doors(result: dict[str, Any]) -> Verdict:
     words, ratio = [], result["ratio"]
     if result["stuck"]:
         words.append(
-            f"{_often(result)} not all of {result['people']} people leave a hall within {result['limit']:g} s"
+            f"{stuck_start(result)} not all of {result['people']} people leave a hall within {result['limit']:g} s"
             f" (at least {result['out']} do)"
         )
     if ratio is None:
         value = f"{result['stuck']} of {result['starts']} stuck"
     else:
-        value = f"{text_of(ratio, result['interval'])}{_stuck(result)}"
+        value = f"{text_of(ratio, result['interval'])}{stuck_part(result)}"
         if not LEAST <= ratio <= MOST:
             words.append(f"a hall takes {ratio:.1f} times as long to empty with half of its doors")
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of people leave a hall through its walls")
     return Verdict(value, not words, "; ".join(words))
-
-
-def _often(result: dict[str, Any]) -> str:
-    return f"in {result['stuck']} of {result['starts']} starts,"
-
-
-def _stuck(result: dict[str, Any]) -> str:
-    return f", {result['stuck']} of {result['starts']} stuck" if result["stuck"] else ""
 
 
 DOORS = Check(
@@ -133,7 +121,7 @@ QUEUE = 5.0
 def run_rooms(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
     """Simulate a crowd that walks from a room through a corridor into a second room and leaves it."""
     people, limit = (30, 25.0) if quick else (ROOM_PEOPLE, LIMIT)
-    solids = _room_solids()
+    solids = two_rooms(5.0, DOOR, leave=True)
     place, speed = crowds("rimea-12", people, numbers, (0.3, 0.3), (8.5, 9.7))
     crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(solids))
 
@@ -151,16 +139,14 @@ def run_rooms(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     rng = stream_of("rimea-12", "model", numbers[0])
     walk = simulate_open(model, crowd, goals, left, limit, rng, report)
     rows: list[Row] = []
-    for e in range(len(numbers)):
-        own = one_start(walk, e)
+    for own in each_start(walk):
         rows.append(
             {
                 "out": int(np.any((own.position[..., 0] > 25.3) & own.present, axis=0).sum()),
                 "people": people,
                 "seconds": float(own.times[-1]),
                 "queues": [_queue(own, 10.0), _queue(own, 25.0)],
-                "outside": inside_solids(own, solids),
-                "overlap": deepest_overlap(own),
+                **safety_of(own, solids),
             }
         )
     return rows
@@ -175,9 +161,8 @@ def summarize_rooms(rows: Sequence[Row]) -> dict[str, Any]:
         "stuck": sum(row["out"] < row["people"] for row in rows),
         "starts": len(rows),
         "queues": queues["mean"],
-        "interval": list(zip(queues["low"], queues["high"], strict=True)),
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        "interval": ends_of(queues),
+        **worst_of(rows),
     }
 
 
@@ -186,14 +171,14 @@ def judge_rooms(result: dict[str, Any]) -> Verdict:
     first, second = result["queues"]
     words = []
     if result["stuck"]:
-        words.append(f"{_often(result)} not all of {result['people']} people get through two rooms in time")
+        words.append(f"{stuck_start(result)} not all of {result['people']} people get through two rooms in time")
     if first < QUEUE:
         words.append("no queue forms in front of a corridor 1 m wide")
     if second >= QUEUE:
         words.append(f"a queue of {second:.0f} forms at an exit, although the corridor before it has the same width")
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of people walk through the walls between two rooms")
-    return Verdict(f"{first:.0f} | {second:.0f}{_stuck(result)}", not words, "; ".join(words))
+    return Verdict(f"{first:.0f} | {second:.0f}{stuck_part(result)}", not words, "; ".join(words))
 
 
 TWO_ROOMS = Check(
@@ -210,23 +195,20 @@ TWO_ROOMS = Check(
 
 CORNER_CROWD = 125
 LONG, SHORT = 40.5, 25.0
+WAYS = {"short": SHORT, "corner": None, "long": LONG}
+"""Length of each corridor [m], None for the one with the corner."""
 
 
 def run_long_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
     """Simulate a crowd in a wide corridor with a corner, and in straight ones as long as its outer and inner walls."""
     people, limit = (30, 50.0) if quick else (CORNER_CROWD, 120.0)
     rows: list[Row] = [{"seconds": [], "out": [], "people": people, "outside": 0.0} for _ in numbers]
-    for k, name in enumerate(("short", "corner", "long")):
-
-        def report_part(part: float, done: int = k) -> None:
-            report((done + part) / 3.0)
-
-        walk, arrived = _corner(model, name, people, numbers, limit, report_part)
-        for e, row in enumerate(rows):
-            own = one_start(walk, e)
+    for k, name in enumerate(WAYS):
+        walk, arrived = _corner(model, name, people, numbers, limit, portion(report, k, len(WAYS)))
+        for own, row in zip(each_start(walk), rows, strict=True):
             row["seconds"].append(float(own.times[-1]))
             row["out"].append(int(np.any(arrived(own.position) & own.present, axis=0).sum()))
-            row["outside"] = max(row["outside"], inside_solids(own, _corner_solids(name)))
+            row["outside"] = max(row["outside"], inside_solids(own, long_corner_solids(WAYS[name])))
     return rows
 
 
@@ -235,11 +217,11 @@ def summarize_long_corner(rows: Sequence[Row]) -> dict[str, Any]:
     found = summarize_starts(np.asarray([row["seconds"] for row in rows]).T)
     return {
         "seconds": found["mean"],
-        "interval": list(zip(found["low"], found["high"], strict=True)),
+        "interval": ends_of(found),
         "people": rows[0]["people"],
         "stuck": sum(min(row["out"]) < row["people"] for row in rows),
         "starts": len(rows),
-        "outside": float(np.mean([row["outside"] for row in rows])),
+        **worst_of(rows, overlap=False),
     }
 
 
@@ -248,7 +230,7 @@ def judge_long_corner(result: dict[str, Any]) -> Verdict:
     short, corner, long = result["seconds"]
     words = []
     if result["stuck"]:
-        words.append(f"{_often(result)} not everyone gets through a wide corridor with a corner in time")
+        words.append(f"{stuck_start(result)} not everyone gets through a wide corridor with a corner in time")
     elif not short <= corner <= long:
         words.append(
             f"a crowd needs {corner:.0f} s around a wide corner, but {short:.0f} s and {long:.0f} s in straight"
@@ -256,7 +238,7 @@ def judge_long_corner(result: dict[str, Any]) -> Verdict:
         )
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of people walk through the walls of a wide corner")
-    return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s{_stuck(result)}", not words, "; ".join(words))
+    return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s{stuck_part(result)}", not words, "; ".join(words))
 
 
 LONG_CORNER = Check(
@@ -282,23 +264,14 @@ def hall_departures(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
 def corner_times(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
     """Return the times [s] of a crowd around a wide corner, for each start."""
     walk, _ = _corner(model, "corner", CORNER_CROWD, numbers, 120.0, lambda part: None)
-    return [float(one_start(walk, e).times[-1]) for e in range(len(numbers))]
-
-
-def _hall_solids() -> list[Solid]:
-    solids: list[Solid] = [(-0.5, -0.5, 0.0, DEPTH + 0.5), (HALL, -0.5, HALL + 0.5, DEPTH + 0.5)]
-    half = 0.5 * DOOR
-    for y0, y1 in ((-0.5, 0.0), (DEPTH, DEPTH + 0.5)):
-        ends = [0.0, 0.25 * HALL - half, 0.25 * HALL + half, 0.75 * HALL - half, 0.75 * HALL + half, HALL]
-        solids += [(a, y0, b, y1) for a, b in zip(ends[::2], ends[1::2], strict=True)]
-    return solids
+    return [float(own.times[-1]) for own in each_start(walk)]
 
 
 def _hall(
     model: CrowdModel, people: int, sides: tuple[float, ...], numbers: Sequence[int], limit: float, report: Report
 ) -> CrowdTracks:
     place, speed = crowds("rimea-9", people, numbers, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3))
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_hall_solids()))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(hall_solids(HALL, DEPTH, DOOR)))
 
     def goals(now: Floats) -> Floats:
         x, y = now[..., 0], now[..., 1]
@@ -318,15 +291,6 @@ def _hall(
     return simulate_open(model, crowd, goals, left, limit, rng, report)
 
 
-def _room_solids() -> list[Solid]:
-    walls: list[Solid] = [(-0.5, -0.5, 0.0, 10.5)]
-    for x0, x1 in ((0.0, 10.0), (15.0, 25.0)):
-        walls += [(x0, -0.5, x1, 0.0), (x0, 10.0, x1, 10.5)]
-    for x0, x1 in ((10.0, 15.0), (25.0, 25.5)):
-        walls += [(x0, -0.5, x1, 4.5), (x0, 5.5, x1, 10.5)]
-    return walls
-
-
 def _queue(walk: CrowdTracks, x: float) -> float:
     """Return the 95th percentile over time of slow people within 2 m before the opening at ``x``, y = 5 m."""
     second = round(1.0 / STEP)
@@ -339,28 +303,15 @@ def _queue(walk: CrowdTracks, x: float) -> float:
     return float(np.percentile(waiting[busy], 95.0)) if np.any(busy) else 0.0
 
 
-def _corner_solids(name: str) -> list[Solid]:
-    """Return the walls; people start at the top, walk down, and turn right at the corner."""
-    if name == "corner":
-        return [
-            (-0.5, -0.5, 0.0, 30.5),
-            (0.0, 30.0, 10.0, 30.5),
-            (10.0, 10.0, 18.0, 30.5),
-            (0.0, -0.5, 18.0, 0.0),
-        ]
-    top = LONG if name == "long" else SHORT
-    return [(-0.5, -4.0, 0.0, top + 0.5), (10.0, -4.0, 10.5, top + 0.5), (0.0, top, 10.0, top + 0.5)]
-
-
 def _corner(
     model: CrowdModel, name: str, people: int, numbers: Sequence[int], limit: float, report: Report
 ) -> tuple[CrowdTracks, Callable[[Floats], NDArray[np.bool_]]]:
     """Return the tracks, and the function of positions that says who has arrived."""
-    top = {"corner": 30.0, "long": LONG, "short": SHORT}[name]
+    top = WAYS[name] or 30.0
     # same people at the same positions in all three
     place, speed = crowds("rimea-15", people, numbers, (0.3, -3.0), (9.7, -0.3))
     place = place + np.array([0.0, top])
-    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_corner_solids(name)))
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(long_corner_solids(WAYS[name])))
     arrived: Callable[[Floats], NDArray[np.bool_]]
 
     if name == "corner":

@@ -23,7 +23,7 @@ from .scenario import (
     share,
     stream_of,
 )
-from .statistics import find_steady_window, summarize_starts, text_of
+from .statistics import ends_of, find_steady_window, summarize_starts, text_of, worst_of
 
 __all__ = ["LANES", "NARROW"]
 
@@ -76,7 +76,7 @@ def summarize_lanes(rows: Sequence[Row]) -> dict[str, Any]:
         "order": np.mean([row["order"] for row in rows], axis=0).tolist(),
         "last_order": float(np.mean(values["last_order"])),
         "speed": float(np.mean(values["speed"])),
-        "interval": _ends(summarize_starts([values["last_order"], values["speed"]])),
+        "interval": ends_of(summarize_starts([values["last_order"], values["speed"]])),
         "steady_from": [row["steady_from"] for row in rows],
         "outside": float(np.mean(values["outside"])),
         "overlap": max(values["overlap"]),
@@ -137,9 +137,8 @@ def summarize_narrow(rows: Sequence[Row]) -> dict[str, Any]:
     return {
         "density": rows[0]["density"],
         "speeds": speed.tolist(),
-        "interval": _ends(summarize_starts(speed)),
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        "interval": ends_of(summarize_starts(speed)),
+        **worst_of(rows),
     }
 
 
@@ -169,10 +168,6 @@ NARROW = Check(
     summarize_narrow,
     judge_narrow,
 )
-
-
-def _ends(summary: dict[str, Any]) -> list[tuple[float, float]]:
-    return list(zip(summary["low"], summary["high"], strict=True))
 
 
 def _forward(times: Floats, x: Floats, side: NDArray[np.float64], last: float) -> Floats:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
-from .crowd_motion import deepest_overlap, one_start, simulate_open
+from .crowd_motion import each_start, safety_of, simulate_open
+from .layouts import CORNER_SOLIDS, rings
 from .scenario import (
     RADIUS,
     STEP,
@@ -24,12 +25,10 @@ from .scenario import (
     crowds,
     free_speeds,
     gate,
-    inside_solids,
-    rings,
     share,
     stream_of,
 )
-from .statistics import summarize_starts
+from .statistics import mean_of, worst_of
 
 __all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "summarize_one"]
 
@@ -82,12 +81,6 @@ CORRIDOR_TIME = Check(
 
 CORNER_PEOPLE = 20
 CORNER_SECONDS = 60.0
-CORNER_SOLIDS: list[Solid] = [
-    (-2.0, -0.5, 12.5, 0.0),
-    (12.0, 0.0, 12.5, 18.0),
-    (-2.0, 2.0, 10.0, 18.0),
-]
-"""The corner of the guideline: a corridor 2 m wide with arms of 12 m along the outer walls."""
 
 
 def run_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Report) -> list[Row]:
@@ -106,15 +99,13 @@ def run_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, report: R
     rng = stream_of("rimea-6", "model", numbers[0])
     walk = simulate_open(model, crowd, goals, left, CORNER_SECONDS, rng, report)
     rows: list[Row] = []
-    for e in range(len(numbers)):
-        own = one_start(walk, e)
+    for own in each_start(walk):
         out = np.any((own.position[..., 1] > 12.0) & own.present, axis=0)
         rows.append(
             {
                 "out": int(out.sum()),
                 "seconds": float(own.times[-1]),
-                "outside": inside_solids(own, CORNER_SOLIDS),
-                "overlap": deepest_overlap(own),
+                **safety_of(own, CORNER_SOLIDS),
             }
         )
     return rows
@@ -122,13 +113,12 @@ def run_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, report: R
 
 def summarize_corner(rows: Sequence[Row]) -> dict[str, Any]:
     """Return the smallest number of arrivals, and the mean time with its interval."""
-    found = summarize_starts([[row["seconds"] for row in rows]])
+    seconds, ends = mean_of([row["seconds"] for row in rows])
     return {
         "out": min(row["out"] for row in rows),
-        "seconds": found["mean"][0],
-        "interval": [found["low"][0], found["high"][0]],
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        "seconds": seconds,
+        "interval": ends,
+        **worst_of(rows),
     }
 
 

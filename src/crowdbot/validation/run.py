@@ -172,7 +172,7 @@ def validate(
     if data is not None:
         report("recordings", 0.0)
         people = measure_recordings(data, lambda share: report("recordings", share))
-        write_json(out / "people.json", people)
+        write_json(out / "recordings.json", people)
     files = {name: ResultFile(out / f"{name}.json", model, quick) for name, model in models.items()}
     wanted = 1 if quick else starts
     for done in range(0, wanted, BATCH) if compute else ():  # all models get their first starts before any gets more

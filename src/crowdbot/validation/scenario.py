@@ -17,23 +17,25 @@ from crowdbot.trials import model_range
 __all__ = [
     "FREE_SPEED",
     "RADIUS",
+    "SEEN",
     "STEP",
     "Check",
     "CrowdTracks",
     "Floats",
     "Report",
     "Row",
+    "Solid",
     "Verdict",
-    "corridor_walls",
     "crowds",
     "free_speeds",
     "gate",
-    "inside_solids",
     "opening",
-    "rings",
+    "portion",
     "share",
     "starts",
     "stream_of",
+    "stuck_part",
+    "stuck_start",
     "substeps",
     "tracks_of",
 ]
@@ -141,6 +143,33 @@ def free_speeds(shape: tuple[int, ...], rng: np.random.Generator, spread: float 
     return FREE_SPEED + spread * np.clip(rng.standard_normal(shape), -2.0, 2.0)
 
 
+def stuck_start(result: dict[str, Any]) -> str:
+    """Return in how many starts people are stuck, as the begin of a sentence.
+
+    >>> stuck_start({"stuck": 2, "starts": 5})
+    'in 2 of 5 starts,'
+    """
+    return f"in {result['stuck']} of {result['starts']} starts,"
+
+
+def stuck_part(result: dict[str, Any]) -> str:
+    """Return in how many starts people are stuck, as the end of a value; empty if there is none.
+
+    >>> stuck_part({"stuck": 2, "starts": 5})
+    ', 2 of 5 stuck'
+    """
+    return f", {result['stuck']} of {result['starts']} stuck" if result["stuck"] else ""
+
+
+def portion(report: Report, k: int, count: int) -> Report:
+    """Return the progress callback of part ``k`` of ``count`` equal parts.
+
+    >>> portion(print, 1, 4)(0.5)
+    0.375
+    """
+    return lambda part: report((k + part) / count)
+
+
 def share(part: float) -> str:
     """Return a share as text.
 
@@ -148,26 +177,6 @@ def share(part: float) -> str:
     ('13 %', 'less than 1 %')
     """
     return "less than 1 %" if 0.0 < part < 0.01 else f"{100.0 * part:.0f} %"
-
-
-def rings(solids: Sequence[Solid]) -> list[list[tuple[float, float]]]:
-    """Return solid rectangles as rings for :class:`crowdbot.core.Walls`."""
-    return [[(x0, y0), (x1, y0), (x1, y1), (x0, y1)] for x0, y0, x1, y1 in solids]
-
-
-def corridor_walls(length: float, width: float) -> list[list[tuple[float, float]]]:
-    """Return the two walls of a corridor along x, ``0 < y < width``, extended at both ends of the track."""
-    x0, x1 = -2.0 * SEEN, length + 2.0 * SEEN
-    return rings([(x0, -0.5, x1, 0.0), (x0, width, x1, width + 0.5)])
-
-
-def inside_solids(walk: CrowdTracks, solids: Sequence[Solid]) -> float:
-    """Return the share of people whose centre is inside a solid at any time."""
-    x, y = walk.position[..., 0], walk.position[..., 1]
-    wrong = np.zeros(walk.present.shape, dtype=np.bool_)
-    for x0, y0, x1, y1 in solids:
-        wrong |= (x > x0) & (x < x1) & (y > y0) & (y < y1)
-    return float(np.any(wrong & walk.present, axis=0)[walk.present[0]].mean())
 
 
 def opening(place: Floats, x: float, middle: float, width: float) -> Floats:

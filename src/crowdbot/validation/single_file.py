@@ -11,6 +11,7 @@ from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
 from .crowd_motion import deepest_overlap, one_start, simulate_periodic
+from .layouts import corridor_walls
 from .literature import line_speed
 from .scenario import (
     FREE_SPEED,
@@ -21,11 +22,10 @@ from .scenario import (
     Report,
     Row,
     Verdict,
-    corridor_walls,
     share,
     stream_of,
 )
-from .statistics import find_steady_window, summarize_starts
+from .statistics import find_steady_window, summarize_starts, worst_of
 
 __all__ = ["SINGLE_FILE", "file_crowd"]
 
@@ -89,8 +89,7 @@ def summarize(rows: Sequence[Row]) -> dict[str, Any]:
         "high": found["high"],
         "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
         "overtakings": sum(row["overtakings"] for row in rows),
-        "outside": float(np.mean([row["outside"] for row in rows])),
-        "overlap": max(row["overlap"] for row in rows),
+        **worst_of(rows),
     }
 
 

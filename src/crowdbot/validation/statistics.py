@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,18 @@ from crowdbot.measurement import detect_steady_state, mean_over_starts
 
 from .scenario import Floats
 
-__all__ = ["STARTS", "SteadyWindow", "bin_values", "find_steady_window", "pool_bins", "summarize_starts", "text_of"]
+__all__ = [
+    "STARTS",
+    "SteadyWindow",
+    "bin_values",
+    "ends_of",
+    "find_steady_window",
+    "mean_of",
+    "pool_bins",
+    "summarize_starts",
+    "text_of",
+    "worst_of",
+]
 
 STARTS = 20
 """Independent starts of each point."""
@@ -86,6 +97,35 @@ def summarize_starts(rows: Sequence[Sequence[float]] | Floats) -> dict[str, Any]
         "high": [one.mean if alone else one.high for one, alone in zip(found, single, strict=True)],
         "starts": found[0].starts,
     }
+
+
+def ends_of(summary: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """Return the intervals of a result of :func:`summarize_starts`, one for each row.
+
+    >>> ends_of({"mean": [1.1], "low": [1.0], "high": [1.2]})
+    [(1.0, 1.2)]
+    """
+    return list(zip(summary["low"], summary["high"], strict=True))
+
+
+def mean_of(values: Sequence[float]) -> tuple[float, list[float]]:
+    """Return the mean of a value over starts and its interval.
+
+    >>> mean_of([1.5])
+    (1.5, [1.5, 1.5])
+    """
+    found = summarize_starts([values])
+    return found["mean"][0], [found["low"][0], found["high"][0]]
+
+
+def worst_of(rows: Sequence[Mapping[str, Any]], overlap: bool = True) -> dict[str, float]:
+    """Return the mean share of people in walls, and the largest overlap [m] of all starts.
+
+    >>> worst_of([{"outside": 0.0, "overlap": 0.1}, {"outside": 0.5, "overlap": 0.3}])
+    {'outside': 0.25, 'overlap': 0.3}
+    """
+    found = {"outside": float(np.mean([row["outside"] for row in rows]))}
+    return found | ({"overlap": max(row["overlap"] for row in rows)} if overlap else {})
 
 
 def bin_values(density: Floats, speed: Floats, width: float) -> dict[str, list[float]]:

@@ -1,20 +1,62 @@
 """The app in the browser: server, sessions, and a desk for each tab.
 
-A desk has no logic of its own: each of its commands is a call or an order that the command line has, too.
+A desk has no logic of its own: each of its commands is a call or an order that the command line has, too. Names are
+loaded on first use, so that the worker processes of jobs start fast.
 """
 
-from .access import AccessPolicy, is_loopback
-from .app_server import AppServer
-from .app_session import AppSession, Viewer
-from .command import call_command, command, command_names
-from .desk import Desk, DeskWindows, Resource
-from .scene import PlayerFile, scene_description, scene_frame, scene_resource, write_player
-from .state_frame import StateFrame
-from .tabs import DESKS, opened_first
-from .window import CREDIT, Window
-from .workspace import Workspace
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
+
+if TYPE_CHECKING:
+    from .access import AccessPolicy, is_loopback
+    from .app_server import AppServer
+    from .app_session import AppSession, Viewer
+    from .command import call_command, command, command_names
+    from .desk import Desk, DeskWindows, Resource
+    from .experiments import ExperimentDesk
+    from .jobs import JobBoard
+    from .scene import PlayerFile, app_measurements, scene_description, scene_frame, scene_resource, write_player
+    from .session_limits import CLASSROOM, SessionLimits
+    from .simulator import LiveRun, SimulatorDesk, navigator_orders
+    from .state_frame import StateFrame
+    from .tabs import DESKS, opened_first
+    from .window import CREDIT, Window
+    from .workspace import Workspace
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "access": ["AccessPolicy", "is_loopback"],
+        "app_server": ["AppServer"],
+        "app_session": ["AppSession", "Viewer"],
+        "command": ["call_command", "command_names"],
+        "desk": ["Desk", "DeskWindows", "Resource"],
+        "jobs": ["JobBoard"],
+        "scene": [
+            "PlayerFile",
+            "app_measurements",
+            "scene_description",
+            "scene_frame",
+            "scene_resource",
+            "write_player",
+        ],
+        "session_limits": ["CLASSROOM", "SessionLimits"],
+        "experiments": ["ExperimentDesk"],
+        "simulator": ["LiveRun", "SimulatorDesk", "navigator_orders"],
+        "state_frame": ["StateFrame"],
+        "tabs": ["DESKS", "opened_first"],
+        "window": ["CREDIT", "Window"],
+        "workspace": ["Workspace"],
+    },
+)
+# A submodule has the name of this function and would hide it.
+from .command import command  # noqa: E402
 
 __all__ = [
+    "CLASSROOM",
     "CREDIT",
     "DESKS",
     "AccessPolicy",
@@ -22,16 +64,23 @@ __all__ = [
     "AppSession",
     "Desk",
     "DeskWindows",
+    "ExperimentDesk",
+    "JobBoard",
+    "LiveRun",
     "PlayerFile",
     "Resource",
+    "SessionLimits",
+    "SimulatorDesk",
     "StateFrame",
     "Viewer",
     "Window",
     "Workspace",
+    "app_measurements",
     "call_command",
     "command",
     "command_names",
     "is_loopback",
+    "navigator_orders",
     "opened_first",
     "scene_description",
     "scene_frame",

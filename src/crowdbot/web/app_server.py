@@ -6,9 +6,10 @@ import asyncio
 import contextlib
 import re
 import ssl
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
+from typing import ClassVar
 
 from aiohttp import WSCloseCode, web
 
@@ -18,8 +19,9 @@ from .access import COOKIE, AccessPolicy
 from .app_session import AppSession
 from .desk import Desk
 from .desk_thread import DeskThread
+from .session_limits import CLASSROOM, SessionLimits
 from .window import Window
-from .workspace import Workspace
+from .workspace import SESSIONS, Workspace
 
 __all__ = ["AppServer"]
 
@@ -39,14 +41,12 @@ HEADERS = {
 }
 MESSAGE = 4 << 20
 """Largest message of a window [B]."""
-UPLOAD = 512 << 20
-"""Largest file that a window may send [B]."""
-SESSIONS = 40
-"""Sessions at the same time."""
 CLOSING = 5.0
 """Time for the desks to stop their runs at the end [s]."""
-WINDOWS = 100
+WINDOWS = 400
 """Windows of all sessions."""
+SWEEP = 5.0
+"""Longest time between two looks for sessions that nobody uses [s]."""
 CODE = frozenset((".py", ".pyc", ".pyd", ".so"))
 """Files that a server for other machines does not take."""
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}\Z")
@@ -70,6 +70,8 @@ class AppServer:
         access: who may use the server (default: loopback without a token, elsewhere a random token).
         readable: more folders whose files may be read.
         tls: certificate of the server for HTTPS.
+        limits: limits of each session (default: those of a class beyond the loopback address, else few).
+        most_sessions: sessions at the same time.
 
     Attributes:
         url: address of the page, with the token if one is needed; set while the server runs.
@@ -82,6 +84,9 @@ class AppServer:
     True
     """
 
+    pages: ClassVar[Mapping[str, tuple[str, str]]] = STATIC
+    """File and media type of each page, by its name in the address."""
+
     def __init__(
         self,
         desks: Sequence[type[Desk]],
@@ -91,10 +96,14 @@ class AppServer:
         access: AccessPolicy | None = None,
         readable: tuple[Path, ...] = (),
         tls: ssl.SSLContext | None = None,
+        limits: SessionLimits | None = None,
+        most_sessions: int = 40,
     ) -> None:
         self.desks, self.folder, self.host, self.port = tuple(desks), folder, host, port
         self.access = access or AccessPolicy(host)
         self.readable, self.tls = readable, tls
+        self.limits = limits or (CLASSROOM if self.access.needs_token else SessionLimits())
+        self.most_sessions = most_sessions
         self.sessions: dict[str, AppSession] = {}
         self.url = ""
         self._sockets: set[web.WebSocketResponse] = set()
@@ -121,7 +130,11 @@ class AppServer:
             shown = f"[{host}]" if ":" in host else host
             token = f"?token={self.access.token}" if self.access.needs_token else ""
             self.url = f"{'https' if self.tls else 'http'}://{shown}:{port}/{token}"
-            yield self
+            sweeper = asyncio.create_task(self._end_idle_sessions())
+            try:
+                yield self
+            finally:
+                sweeper.cancel()
         finally:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
@@ -141,12 +154,19 @@ class AppServer:
         app.router.add_get("/{name:[^/]*}", self._static)
         return app
 
+    async def _end_idle_sessions(self) -> None:
+        """End sessions that nobody uses; their files stay, and the next window of that name begins anew."""
+        while True:
+            await asyncio.sleep(min(SWEEP, self.limits.idle / 2))
+            for name in [name for name, one in self.sessions.items() if one.idle > self.limits.idle]:
+                session = self.sessions.pop(name)
+                await asyncio.wrap_future(DeskThread("closing").call(session.close))
+
     @web.middleware
     async def _guard(
         self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
-        given = request.query.get("token")
-        refusal = self.access.refusal(request.host, request.headers.get("Origin"), given or request.cookies.get(COOKIE))
+        refusal = self._refusal(request)
         response: web.StreamResponse
         if refusal is not None:
             response = web.Response(status=403, text=refusal + "\n")
@@ -157,34 +177,55 @@ class AppServer:
                 response = web.Response(status=error.status, text=(error.text or error.reason) + "\n")
             except CrowdbotError as error:
                 response = web.Response(status=400, text=f"{error}\n")
+            except ConnectionError:  # cut before the answer; nobody reads this one
+                response = web.Response(status=400, text="the connection was cut\n")
         if not response.prepared:
             for header, value in HEADERS.items():
                 response.headers.setdefault(header, value)
-            if given is not None and refusal is None and self.access.needs_token:
-                response.set_cookie(COOKIE, given, httponly=True, samesite="Strict", secure=self.tls is not None)
+            if refusal is None and self.access.needs_token and "token" in request.query:
+                name = self._cookie(request)
+                secure = self.tls is not None
+                response.set_cookie(name, request.query["token"], httponly=True, samesite="Strict", secure=secure)
         return response
+
+    def _refusal(self, request: web.Request) -> str | None:
+        """Return why a request is refused, or None if it is allowed."""
+        token = request.query.get("token") or request.cookies.get(COOKIE)
+        return self.access.refusal(request.host, request.headers.get("Origin"), token)
+
+    def _cookie(self, request: web.Request) -> str:
+        """Return the name of the cookie for the token in the address of an allowed request."""
+        return COOKIE
 
     async def _static(self, request: web.Request) -> web.StreamResponse:
         name = request.match_info["name"]
-        if name not in STATIC:
+        if name not in self.pages:
             raise web.HTTPNotFound(text=f"page {name!r:.80} does not exist")
-        file, kind = STATIC[name]
+        file, kind = self.pages[name]
         data = resources.files("crowdbot").joinpath("assets", "web", file).read_bytes()
         response = web.Response(body=data, content_type=kind, charset="utf-8", headers={"Cache-Control": "no-cache"})
         response.enable_compression()
         return response
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
+        return await self._serve_window(request, Window)
+
+    async def _serve_window(self, request: web.Request, kind: type[Window]) -> web.StreamResponse:
+        """Serve a window of a kind until it is closed."""
         session = self._session(request)
         if len(self._sockets) >= WINDOWS:
             raise web.HTTPServiceUnavailable(text=f"more than {WINDOWS} windows are open")
+        if len(session.windows) >= self.limits.windows:
+            raise web.HTTPServiceUnavailable(
+                text=f"session {session.name} has {self.limits.windows} windows, its limit; close one of them"
+            )
         if request.headers.get("Origin") is None and self.access.needs_token and "token" not in request.query:
             raise web.HTTPForbidden(text="the request has no origin and no token")
         socket = web.WebSocketResponse(max_msg_size=MESSAGE, heartbeat=20.0, compress=False)
         await socket.prepare(request)
         self._sockets.add(socket)
         try:
-            await Window(session, socket).serve()
+            await kind(session, socket).serve()
         finally:
             self._sockets.discard(socket)
         return socket
@@ -209,13 +250,16 @@ class AppServer:
         path = session.workspace.writable(name)
         if self.access.needs_token and path.suffix.casefold() in CODE:
             raise web.HTTPForbidden(text=f"{name!r:.80} is code; a server for other machines takes data only")
-        draft = path.with_name(f".{name}.part")
+        draft, most = path.with_name(f".{name}.part"), self.limits.upload
+        session.workspace.check_space(min(request.content_length or 0, most))
         try:
             with draft.open("wb") as file:
                 async for block in request.content.iter_chunked(1 << 20):
-                    if file.tell() + len(block) > UPLOAD:
-                        raise web.HTTPRequestEntityTooLarge(UPLOAD, file.tell() + len(block))
+                    if file.tell() + len(block) > most:
+                        sentence = f"{name:.80} is larger than {most / 1e6:g} MB, the largest file that is taken"
+                        raise web.HTTPRequestEntityTooLarge(int(most), file.tell() + len(block), text=sentence)
                     file.write(block)
+            session.workspace.check_space()
             draft.replace(path)
         finally:
             draft.unlink(missing_ok=True)
@@ -226,9 +270,12 @@ class AppServer:
         if not NAME.match(name):
             raise web.HTTPBadRequest(text="the name of a session has 1 to 40 letters, digits, - or _")
         if name not in self.sessions:
-            if len(self.sessions) >= SESSIONS:
-                raise web.HTTPServiceUnavailable(text=f"more than {SESSIONS} sessions are open")
-            folder = self.folder if name == "main" else self.folder / "sessions" / name
-            space = Workspace(folder, self.readable)
-            self.sessions[name] = AppSession(name, space, self.desks, asyncio.get_running_loop())
+            if len(self.sessions) >= self.most_sessions:
+                raise web.HTTPServiceUnavailable(
+                    text=f"{self.most_sessions} sessions are open, the limit of this server; try again later"
+                )
+            folder = self.folder if name == "main" else self.folder / SESSIONS / name
+            space = Workspace(folder, self.readable, self.limits.disk)
+            loop = asyncio.get_running_loop()
+            self.sessions[name] = AppSession(name, space, self.desks, loop, self.limits)
         return self.sessions[name]

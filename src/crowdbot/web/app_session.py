@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
@@ -12,6 +13,8 @@ from crowdbot.core import InputError, did_you_mean
 from .command import call_command
 from .desk import Desk, Resource
 from .desk_thread import DeskThread
+from .jobs.job_board import JobBoard
+from .session_limits import SessionLimits
 from .state_frame import StateFrame
 from .workspace import Workspace
 
@@ -27,6 +30,9 @@ class Viewer(Protocol):
     def show(self, frame: StateFrame) -> None:
         """Send a state frame."""
 
+    def is_ready(self) -> bool:
+        """Return whether the window has drawn what was sent."""
+
 
 class AppSession:
     """The desks of one user and the browser windows that show them.
@@ -38,13 +44,26 @@ class AppSession:
         workspace: the folders that the session may read and write.
         desks: a class for each tab.
         loop: event loop of the server.
+        limits: limits of the session.
+
+    Attributes:
+        jobs: long work in worker processes.
+        windows: the windows that are open.
     """
 
     def __init__(
-        self, name: str, workspace: Workspace, desks: Iterable[type[Desk]], loop: asyncio.AbstractEventLoop
+        self,
+        name: str,
+        workspace: Workspace,
+        desks: Iterable[type[Desk]],
+        loop: asyncio.AbstractEventLoop,
+        limits: SessionLimits | None = None,
     ) -> None:
         self.name, self.workspace, self._loop = name, workspace, loop
+        self.limits = limits or SessionLimits()
         self.windows: set[Viewer] = set()
+        self.used = time.monotonic()
+        self.jobs = JobBoard(workspace, self.limits, self.tell)
         self.desks = {desk.name: desk(self) for desk in desks}
         self._threads = {name: DeskThread(f"crowdbot-{name}") for name in self.desks}
         self._latest: dict[str, StateFrame] = {}
@@ -72,6 +91,13 @@ class AppSession:
         found: Resource = await asyncio.wrap_future(self._threads[name].call(desk.resource, path, query))
         return found
 
+    @property
+    def idle(self) -> float:
+        """Time since the session had a window or a job [s]."""
+        if self.windows or self.jobs.active:
+            self.used = time.monotonic()
+        return time.monotonic() - self.used
+
     def greet(self) -> dict[str, Any]:
         """Return the state of all desks for a new window."""
         return {name: desk.greet() for name, desk in self.desks.items()}
@@ -91,6 +117,10 @@ class AppSession:
         if not waits:
             self._do(self._send_latest)
 
+    def is_ready(self) -> bool:
+        """Return whether a window could take a frame now, from any thread."""
+        return any(window.is_ready() for window in tuple(self.windows))
+
     def _tell_windows(self, event: str, data: Any) -> None:
         for window in self.windows:
             window.tell(event, data)
@@ -107,8 +137,9 @@ class AppSession:
             self._loop.call_soon_threadsafe(action)
 
     def close(self) -> None:
-        """Stop all desks."""
+        """Stop all desks and jobs."""
         for desk in self.desks.values():
             desk.close()
+        self.jobs.close()
         for thread in self._threads.values():
             thread.close()

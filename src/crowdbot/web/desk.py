@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Protocol
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
+from .jobs.job_board import JobBoard
 from .state_frame import StateFrame
 from .workspace import Workspace
+
+if TYPE_CHECKING:
+    from crowdbot.simulation import OrderSource
+    from crowdbot.trials import Trial
 
 __all__ = ["Desk", "DeskWindows", "Resource"]
 
@@ -17,12 +24,17 @@ class DeskWindows(Protocol):
     """Name of the session."""
     workspace: Workspace
     """Files of the session."""
+    jobs: JobBoard
+    """Long work of the session."""
 
     def tell(self, event: str, data: Any) -> None:
         """Send an event ``desk.name`` with JSON data to all windows, from any thread."""
 
     def show(self, frame: StateFrame) -> None:
         """Send a state frame to all windows, from any thread; a slow window gets the newest of each channel."""
+
+    def is_ready(self) -> bool:
+        """Return whether a window could take a frame now; otherwise computing one is of no use. From any thread."""
 
 
 class Resource:
@@ -69,6 +81,24 @@ class Desk:
             KeyError: there is no such file.
         """
         raise KeyError(path)
+
+    def join_trial(self, trial: Trial, folder: Path) -> tuple[Trial, Sequence[OrderSource]]:
+        """Take part in a trial that another desk is about to run.
+
+        Args:
+            trial: the trial.
+            folder: folder for files about this run.
+
+        Returns:
+            The trial to run, perhaps with changes, and programs that steer it.
+
+        Raises:
+            InputError: the desk cannot take part, so the trial must not run.
+        """
+        return trial, ()
+
+    def leave_trial(self) -> None:
+        """Finish with the trial of :meth:`join_trial`, which has ended."""
 
     def close(self) -> None:
         """Stop runs, threads and processes of the desk."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -86,6 +87,7 @@ class StateFrame:
         return StateFrame(_text(channel), time, arrays, sequence)
 
 
+@functools.lru_cache(maxsize=1024)
 def _name(text: str) -> bytes:
     data = text.encode("ascii", "replace")
     if not 0 < len(data) <= 8 or not text.isascii():
@@ -98,9 +100,17 @@ def _text(data: bytes) -> str:
 
 
 def _code(name: str, array: NDArray[Any]) -> int:
-    if array.ndim not in (1, 2) or array.dtype.newbyteorder("<") not in TYPES:
+    code = _code_of(array.dtype) if array.ndim in (1, 2) else None
+    if code is None:
         raise InputError(
             f"array {name} in a state frame has type {array.dtype} and shape {array.shape}: expected one or two "
             "axes of " + ", ".join(one.name for one in TYPES)
         )
-    return TYPES.index(array.dtype.newbyteorder("<"))
+    return code
+
+
+@functools.cache
+def _code_of(dtype: np.dtype[Any]) -> int | None:
+    """Return the code of a type, None if there is none; comparing types takes longer than copying a small array."""
+    little = dtype.newbyteorder("<")
+    return TYPES.index(little) if little in TYPES else None

@@ -11,12 +11,13 @@ from .desk import Desk
 from .editor import EditorDesk
 from .evaluation import EvaluationDesk
 from .experiments import ExperimentDesk
+from .jobs.job_desk import JobDesk
 from .prediction import PredictionDesk
 from .simulator import SimulatorDesk
 
 __all__ = ["DESKS", "opened_first"]
 
-DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk)
+DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk, JobDesk)
 
 
 def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[Desk], ...], tuple[Path, ...]]:

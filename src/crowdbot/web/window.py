@@ -54,6 +54,10 @@ class Window:
         self._frames[frame.channel] = frame
         self._wake.set()
 
+    def is_ready(self) -> bool:
+        """Return whether a frame would be sent at once."""
+        return self._sent - self._drawn < CREDIT and not self._frames
+
     async def serve(self) -> None:
         """Exchange messages until the window is closed."""
         writer = asyncio.create_task(self._write())

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
+import os
 from pathlib import Path
+from xml.parsers import expat  # expat loads no external entity; declarations of entities are refused below
 
 from crowdbot.core import InputError
 
-__all__ = ["Workspace"]
+__all__ = ["SESSIONS", "Workspace"]
+
+SESSIONS = "sessions"
+"""Folder of the other sessions, which lie inside the folder of the first one."""
+BEGINNING = 65_536
+"""Bytes of an XML file in which its first element is looked for."""
 
 
 class Workspace:
@@ -18,6 +27,7 @@ class Workspace:
     Args:
         folder: files are read and written here; made if it does not exist.
         readable: more folders whose files may be read.
+        limit: size of the folder above which nothing is written [B].
 
     >>> import tempfile
     >>> space = Workspace(Path(tempfile.mkdtemp()))
@@ -26,9 +36,10 @@ class Workspace:
     crowdbot.core.errors.InputError: file '../outside.xml' is outside the folder of the app
     """
 
-    def __init__(self, folder: Path, readable: tuple[Path, ...] = ()) -> None:
+    def __init__(self, folder: Path, readable: tuple[Path, ...] = (), limit: float = math.inf) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder.resolve()
+        self.limit = limit
         self.readable_folders = (self.folder, *(one.resolve() for one in readable))
 
     def readable(self, name: str) -> Path:
@@ -38,7 +49,7 @@ class Workspace:
             InputError: the file is outside the folders or does not exist.
         """
         path = self._resolve(name)
-        if not any(path.is_relative_to(one) for one in self.readable_folders):
+        if not any(path.is_relative_to(one) for one in self.readable_folders) or self._is_of_others(path):
             raise InputError(f"file {name!r} is outside the folder of the app")
         if not path.is_file():
             raise InputError(f"file {name!r} does not exist in {self.folder.name}")
@@ -48,20 +59,77 @@ class Workspace:
         """Return the path of a file that may be written; its folder is made.
 
         Raises:
-            InputError: the file is outside the folder of the app.
+            InputError: the file is outside the folder of the app, or the folder is full.
         """
         path = self._resolve(name)
-        if not path.is_relative_to(self.folder) or path == self.folder:
+        if not path.is_relative_to(self.folder) or path == self.folder or self._is_of_others(path):
             raise InputError(f"file {name!r} is outside the folder of the app")
+        self.check_space()
         path.parent.mkdir(parents=True, exist_ok=True)
         return path
 
     def files(self, pattern: str = "*") -> list[str]:
         """Return the names of the files of the folder that match, relative to it, at most 1 000."""
-        found = (one for one in sorted(self.folder.rglob(pattern)) if one.is_file() and not one.name.startswith("."))
-        return [one.relative_to(self.folder).as_posix() for _, one in zip(range(1000), found, strict=False)]
+        found = (one.relative_to(self.folder) for one in sorted(self.folder.rglob(pattern)) if one.is_file())
+        shown = (
+            one.as_posix()
+            for one in found
+            if one.parts[0] != SESSIONS and not any(part.startswith(".") for part in one.parts)
+        )
+        return [one for _, one in zip(range(1000), shown, strict=False)]
+
+    def trials(self) -> list[str]:
+        """Return the names of the trial files, and of those that are no XML, which a user can mend."""
+        return [name for name in self.files("*.xml") if _root(self.folder / name) in ("trial", "")]
+
+    def size(self) -> int:
+        """Return the size of all files of the folder, without those of other sessions [B]."""
+        total, folders = 0, [self.folder]
+        while folders:
+            with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
+                for one in entries:
+                    if one.is_dir(follow_symlinks=False):
+                        if one.path != str(self.folder / SESSIONS):
+                            folders.append(Path(one.path))
+                    else:
+                        with contextlib.suppress(OSError):
+                            total += one.stat(follow_symlinks=False).st_size
+        return total
+
+    def check_space(self, more: float = 0.0) -> None:
+        """Check that there is space for more bytes.
+
+        Raises:
+            InputError: the folder would be larger than its limit.
+        """
+        if math.isinf(self.limit):
+            return
+        used = self.size()
+        if used + more > self.limit:
+            raise InputError(
+                f"your folder is full: {used / 1e6:.0f} of {self.limit / 1e6:.0f} MB are used;"
+                " remove jobs with their results, or ask the person who runs the server for more"
+            )
+
+    def _is_of_others(self, path: Path) -> bool:
+        return path.is_relative_to(self.folder / SESSIONS)
 
     def _resolve(self, name: str) -> Path:
         if not name or "\0" in name or len(name) > 1000:
             raise InputError(f"name of a file = {name!r:.60}: expected 1 to 1000 characters")
         return (self.folder / name).resolve()
+
+
+def _root(path: Path) -> str:
+    """Return the tag of the first element of an XML file, an empty text if there is none in its beginning."""
+    tags = list[str]()
+
+    def stop(*declaration: object) -> None:
+        raise ValueError("entities are not expanded")
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda tag, attributes: tags.append(tag)
+    parser.EntityDeclHandler = stop
+    with contextlib.suppress(OSError, ValueError, expat.ExpatError), path.open("rb") as file:
+        parser.Parse(file.read(BEGINNING), False)
+    return tags[0] if tags else ""

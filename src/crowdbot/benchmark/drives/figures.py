@@ -34,9 +34,11 @@ class DriveFigures:
     """Figures of one manoeuvre, or the largest of several.
 
     Fields:
-        overshoot: largest excess over the speed asked for, a share of it.
+        overshoot: largest excess over the speed asked for, or over the planar one if that is larger, a share of the
+            speed asked for.
         steady_error: error of the mean speed in the last second, a share.
-        acceleration: largest acceleration over 0.04 s by the declared one.
+        acceleration: largest acceleration over 0.04 s by the declared one, or by the planar one if that is larger: a
+            skid-steer base slides sideways in a curve, in the plane as well.
         turn_acceleration: the same of the turn rate.
         path_error: largest distance from the planar position by the distance driven (at least 1 m).
         heading_error: largest difference from the planar heading [rad], by the angle turned (at least 1 rad).
@@ -129,7 +131,8 @@ def _speed_errors(drive: Drive, moved: Floats, planar: Floats, sideways: bool) -
     goal = planar[-1]
     scale = np.maximum(np.abs(goal), SMALL * _limits(drive))
     sign = np.where(goal < 0.0, -1.0, 1.0)
-    excess = np.where(goal != 0.0, (moved * sign).max(axis=0) - np.abs(goal), np.abs(moved).max(axis=0))
+    known = np.where(goal != 0.0, np.maximum((planar * sign).max(axis=0), np.abs(goal)), np.abs(planar).max(axis=0))
+    excess = np.where(goal != 0.0, (moved * sign).max(axis=0), np.abs(moved).max(axis=0)) - known
     mean = moved[-round(STEADY / SAMPLE) :].mean(axis=0)
     asked = [0, 1, 2] if sideways else [0, 2]
     over, steady = np.maximum(excess, 0.0) / scale, np.abs(mean - goal) / scale
@@ -140,7 +143,7 @@ def _accelerations(drive: Drive, physics: DriveTrace, plane: DriveTrace) -> tupl
     """Return the largest linear and angular acceleration by those declared, or by those in the plane."""
     found = []
     for name, part in (("max_acceleration", slice(0, 2)), ("max_turn_acceleration", slice(2, 3))):
-        most = float(getattr(drive, name, 0.0)) or _slope(plane, part)
+        most = max(float(getattr(drive, name, 0.0)), _slope(plane, part))
         found.append(_slope(physics, part) / max(most, NOISE))
     return found[0], found[1]
 

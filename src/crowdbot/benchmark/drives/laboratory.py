@@ -13,7 +13,8 @@ from crowdbot.world import Robot, builtin_robots
 from .figures import DriveFigures, compare_traces
 from .maker_robots import maker_robot
 from .manoeuvre import Manoeuvre, manoeuvres
-from .traces import DriveTrace, trace_physics, trace_planar
+from .trace_store import Run, TraceStore
+from .traces import DriveTrace
 
 __all__ = ["DRIVE_BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]
 
@@ -96,6 +97,7 @@ def measure_drives(
     steps: Sequence[float] | None = None,
     quick: bool = False,
     makers: Sequence[Path] = (),
+    keep: Path | None = None,
     report: Callable[[str, float], None] | None = None,
 ) -> DriveReport:
     """Drive robots alone in an empty hall, in the plane and in the physics world, and compare the motions.
@@ -107,12 +109,14 @@ def measure_drives(
         quick: three speeds and short manoeuvres.
         makers: robot files of other makers, imported as by ``crowdbot new robot FILE --yes``, and driven over the
             quick grid at the steps for which the bars hold.
+        keep: folder of the motions by robot and time step; those that it has are not measured again (default: none).
         report: called with the robot and the share that is done.
 
     Raises:
         RobotError: a robot does not exist or has errors.
         InputError: a time step does not divide 20 ms.
         MissingExtra: mujoco is not installed.
+        OutputError: a file in ``keep`` cannot be written.
 
     >>> row = measure_drives(["differential"], quick=True).rows[0]
     >>> row.failures, row.grid.overshoot < 0.05
@@ -121,26 +125,25 @@ def measure_drives(
     steps = tuple(steps) if steps else (0.005,) if quick else STEPS
     loaded = [Robot.load(name) for name in (robots or builtin_robots())]
     shown = min(steps, key=lambda step: abs(step - 0.005))
-    found = tuple(_measure_makers(makers, [step for step in steps if step in BARRED] or list(steps), report))
+    store = TraceStore(keep)
+    found = tuple(_measure_makers(store, makers, [step for step in steps if step in BARRED] or list(steps), report))
     rows, traces = [], {}
     for number, robot in enumerate(loaded):
         for k, step in enumerate(steps):
             if report is not None:
                 report("drives", (number + k / len(steps)) / len(loaded))
-            runs = [
-                (one, trace_physics(robot, one.commands, step, one.friction), trace_planar(robot, one.commands, step))
-                for one in manoeuvres(robot, quick or all(abs(step - one) > 1e-9 for one in BARRED))
-            ]
+            few = quick or all(abs(step - one) > 1e-9 for one in BARRED)
+            runs = store.runs(robot, step, manoeuvres(robot, few))
             rows.append(_row(robot, step, runs))
             if step == shown:
-                traces[robot.name] = tuple(runs)
+                traces[robot.name] = runs
     if report is not None:
         report("drives", 1.0)
     return DriveReport(environment(), tuple(rows), traces, found)
 
 
 def _measure_makers(
-    files: Sequence[Path], steps: Sequence[float], report: Callable[[str, float], None] | None
+    store: TraceStore, files: Sequence[Path], steps: Sequence[float], report: Callable[[str, float], None] | None
 ) -> Iterator[DriveRow]:
     for number, file in enumerate(files):
         with maker_robot(Path(file)) as (robot, kind):
@@ -148,12 +151,10 @@ def _measure_makers(
                 if report is not None:
                     report(f"drives of {robot.name}", number / len(files))
                 grid = [one for one in manoeuvres(robot, quick=True) if one.name in REGULAR]
-                runs = [(one, trace_physics(robot, one.commands, step), trace_planar(robot, one.commands, step))
-                        for one in grid]  # fmt: skip
-                yield replace(_row(robot, step, runs), base=kind)
+                yield replace(_row(robot, step, store.runs(robot, step, grid)), base=kind)
 
 
-def _row(robot: Robot, step: float, runs: Sequence[tuple[Manoeuvre, DriveTrace, DriveTrace]]) -> DriveRow:
+def _row(robot: Robot, step: float, runs: Sequence[Run]) -> DriveRow:
     grid, others = DriveFigures(), {}
     for one, physics, plane in runs:
         found = compare_traces(robot.drive, one, physics, plane)

@@ -33,10 +33,11 @@ exactly as its drive says. Made by
 Grid: speeds and turn rates of -100, -50, 0, 50 and 100 % of the limits of the drive in all combinations, for
 omnidirectional robots also sideways. Each is a step from rest, held for 2 s, and a stop. The tables have the largest
 figure over the grid. *Overshoot* and *steady* error are shares of the speed asked for (at least of a tenth of the
-limit); *acc.* and *turn acc.* the largest accelerations over 0.04 s by those declared; *path* the largest distance from
-the planar position by the distance driven; *heading* the largest difference by the angle turned; *stop* the difference
-of the stop distances; *tilt* the largest angle from the vertical. At 1 and 20 ms, only full speed, full turn rate and
-both are driven.
+limit); *acc.* and *turn acc.* the largest accelerations over 0.04 s by those declared, or by the planar one if that is
+larger (a skid-steer base slides outwards); overshoot is measured in the same way; *path* the largest distance from the
+planar position by the distance driven; *heading* the largest difference by the angle turned; *stop* the difference of
+the stop distances; *tilt* the largest angle from the vertical. At 1 and 20 ms, only full speed, full turn rate and both
+are driven.
 
 Bars at 2, 5 and 10 ms: overshoot {overshoot:.0f} %, steady error {steady:.0f} %, accelerations {acc:.0f} % of the
 declared ones, path {path:.0f} %, heading {heading:g} rad per rad, at most {straight:g} rad of heading change beside the
@@ -56,7 +57,7 @@ def write_drives_page(report: DriveReport, file: Path, command: str = "crowdbot 
     """
     folder = file.with_suffix("")
     with explain_write_errors(file):
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         plots = plot_drives(report, folder)
         file.write_text(_page(report, folder.name, command), encoding="utf-8")
     return [file, *plots]
@@ -108,6 +109,7 @@ HOW = """* A driven wheel is a servo within the torque of its motor. The solver 
   forces of the tyres together, so servos are stable at all time steps and with wheels in the air.
 * Tyres touch the floor in one point and are firm; a tyre bears friction times load in any direction. The friction is
   that of the tyre times that of the floor. Castors glide without friction. Their own turning is not simulated.
+* Tyres of skid-steer bases slide by Coulomb's law, against their slip at the end of each step.
 * A planar base is moved by forces at its centre of mass: those of the commanded acceleration, and a correction of the
   velocity error with the same time constant as wheels. They are limited to 4 N and 1.5 N m for each kg.
 * Robots feel contacts with mass and motor torque only: nothing else holds them on their paths.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,8 @@ PEOPLE, TRUTH, ORACLE = "#9a9a9a", "#000000", "#f0c987"
 MOST_LINES = len(COLORS)
 """Maximum number of predictors drawn as lines."""
 SHOWN_ROWS = 80
+ANIMATIONS = (".gif", ".mp4", ".webp")
+"""Endings of animations."""
 FRAMES_A_ROW = 3
 """Images per row of the recording in an animation."""
 
@@ -87,11 +89,17 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
 def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
     """Write an animation of one window: observed and true tracks, and the forecasts of each predictor.
 
-    Raises:
-        InputError: no window of the recordings ends at this frame, or there are more than eight predictors.
-    """
-    from matplotlib.animation import FuncAnimation, PillowWriter
+    Args:
+        evaluation: recordings and predictors.
+        frame: last observed frame of the window.
+        file: GIF, MP4 or WebP file, by its ending; MP4 requires PyAV.
 
+    Raises:
+        InputError: no window of the recordings ends at this frame, there are more than eight predictors, or the ending
+            is not known.
+    """
+    if file.suffix not in ANIMATIONS:
+        raise InputError(f"{file.name}: an animation ends with {', '.join(ANIMATIONS)}")
     if len(evaluation.specs) > MOST_LINES:
         raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(evaluation.specs)}")
     recording, window = evaluation.window_at(frame)
@@ -118,9 +126,29 @@ def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
         for line, tracks in zip(lines, paths.values(), strict=True):
             line.set_data(*_until(tracks, reach))
 
-    animation = FuncAnimation(figure, draw, frames=steps * FRAMES_A_ROW + 1)
-    animation.save(file, PillowWriter(fps=max(1, round(FRAMES_A_ROW / past.dt))))
+    _animate(figure, draw, steps * FRAMES_A_ROW + 1, max(1, round(FRAMES_A_ROW / past.dt)), file)
     return file
+
+
+def _animate(figure: Any, draw: Callable[[int], None], images: int, fps: int, file: Path) -> None:
+    """Draw the images of an animation and write them."""
+    if file.suffix == ".gif":
+        from matplotlib.animation import FuncAnimation, PillowWriter
+
+        FuncAnimation(figure, draw, frames=images).save(file, PillowWriter(fps=fps))
+        return
+    from crowdbot.rendering import reel
+
+    writer = reel(file, fps)
+    try:
+        for number in range(images):
+            draw(number)
+            figure.canvas.draw()
+            writer.add(np.asarray(figure.canvas.buffer_rgba())[..., :3])
+        writer.finish()
+    except BaseException:
+        writer.abandon()
+        raise
 
 
 def _paths(

@@ -11,7 +11,7 @@ import os
 import platform
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ import numpy as np
 
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
+from .bridge_loads import bridge_measurements
 from .calibrated_frames import scheme_frames
 from .learning import learning_measurements
 from .measurement import Gauge, Measurement
@@ -49,8 +50,11 @@ def measure(
     repeats: int = 7,
     progress: Callable[[str, float], None] | None = None,
     recording: Path | None = None,
+    more: Mapping[str, Callable[[], Measurement | Gauge]] | None = None,
 ) -> list[SpeedRow]:
     """Time the named measurements (default: all); calibrated frames are taken from ``recording``, if given.
+
+    ``more`` are further measurements, of rooms above this one.
 
     Raises:
         UnknownName: a name is not among :func:`crowdbot.benchmark.measurements`.
@@ -62,7 +66,9 @@ def measure(
     known = (
         measurements()
         | learning_measurements()
+        | bridge_measurements()
         | {f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)}
+        | dict(more or {})
     )
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:

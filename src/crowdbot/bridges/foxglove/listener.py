@@ -14,7 +14,7 @@ from .decoding import decode_fields
 
 __all__ = ["ClientListener"]
 
-STATE = "/crowdbot/set_simulation_state"
+STATE, RESET, STEPS = (f"/crowdbot/{name}" for name in ("set_simulation_state", "reset_simulation", "step_simulation"))
 MOST_CHANNELS = 256
 """Largest number of channels that a client may advertise."""
 
@@ -47,6 +47,7 @@ class ClientListener:
     def __init__(self, server: ServerPart, inbox: Inbox, websocket: Any) -> None:
         self.server, self.inbox, self.websocket = server, inbox, websocket
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
+        self._speed = 1.0
         self._lock = threading.Lock()
 
     def on_subscribe(self, client: Any, channel: Any) -> None:
@@ -84,16 +85,41 @@ class ClientListener:
             self.server.report("error", str(error))
 
     def on_playback_control_request(self, request: Any) -> Any:
-        """Pause or play; the time cannot be set, and the speed is that of the run."""
-        wanted = PLAYING if request.playback_command == self.websocket.PlaybackCommand.Play else PAUSED
+        """Pause, play, set the speed, or go to a time: later by hurrying, 0 by a new beginning, earlier not at all."""
+        playing = request.playback_command == self.websocket.PlaybackCommand.Play
+        sought, wanted = False, {"state": {"state": PLAYING if playing else PAUSED}}
         try:
             if not self.server.allows(STATE):
                 raise InputError(f"{STATE!r} is not among the services that clients may use")
-            self.inbox.call(STATE, {"state": {"state": wanted}}, lambda response: None, self.server.name)
+            self.inbox.call(STATE, wanted, _ignore, self.server.name)
+            if request.playback_speed != self._speed:  # the app sends the speed that it shows with every request
+                self.inbox.asked_pace.set_rate(request.playback_speed)
+                self._speed = request.playback_speed
+            if request.seek_time is not None:
+                self._seek(request.seek_time, playing)
+                sought = True
         except InputError as error:
             self.server.report("error", str(error))
-        status = self.websocket.PlaybackStatus.Playing if wanted == PLAYING else self.websocket.PlaybackStatus.Paused
+        status = self.websocket.PlaybackStatus.Playing if playing else self.websocket.PlaybackStatus.Paused
         return self.websocket.PlaybackState(
-            status=status, current_time=self.server.now, playback_speed=1.0, did_seek=False,
-            request_id=request.request_id,
+            status=status, current_time=request.seek_time if sought else self.server.now, playback_speed=self._speed,
+            did_seek=sought, request_id=request.request_id,
         )  # fmt: skip
+
+    def _seek(self, nanoseconds: int, playing: bool) -> None:
+        """Go to a time.
+
+        Raises:
+            InputError: the run cannot go there.
+        """
+        now, step = self.server.now, round(self.inbox.interface.trial.step * 1e9)
+        if nanoseconds < step <= now:
+            self.inbox.call(RESET, {}, _ignore, self.server.name)
+        elif playing or nanoseconds < now:
+            self.inbox.asked_pace.hurry_to(nanoseconds, now)
+        elif steps := (nanoseconds - now) // step:
+            self.inbox.call(STEPS, {"steps": steps}, _ignore, self.server.name)
+
+
+def _ignore(response: object) -> None:
+    """Take a response that nobody waits for."""

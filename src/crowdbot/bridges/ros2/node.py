@@ -17,6 +17,7 @@ from crowdbot.core import InputError, import_optional
 from crowdbot.recording import StepMessage
 
 from .participant import Participant
+from .services import CALLS, add_services
 
 __all__ = ["Ros2Node"]
 
@@ -29,8 +30,9 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 class Ros2Node:
     """A ROS 2 node that publishes the outputs of a trial and takes its commands, with the messages of the recorder.
 
-    Topics whose message packages are not installed are left out; :attr:`missing` lists their types, and the node says
-    so in its log. The wheels of PyPI, for instance, have no ``tf2_msgs``.
+    Topics and services whose packages are not installed are left out; :attr:`missing` and :attr:`missing_services` list
+    their types, and the node says so in its log. The wheels of PyPI, for instance, have no ``tf2_msgs`` and no
+    ``simulation_interfaces``.
 
     Nodes on other computers are not seen unless a host is given or ``ROS_AUTOMATIC_DISCOVERY_RANGE`` is set.
 
@@ -52,6 +54,9 @@ class Ros2Node:
         self.domain, self.everywhere = domain, everywhere
         self.missing: tuple[str, ...] = ()
         """Message types that are not installed."""
+        self.missing_services: tuple[str, ...] = ()
+        """Service types that are not installed."""
+        self._services: Participant | None = None
         self._participants: list[Participant] = []
         self._publishers: dict[str, tuple[str, Any]] = {}
         self._subscriptions: dict[tuple[str, str], Any] = {}
@@ -81,6 +86,10 @@ class Ros2Node:
         missing: dict[str, None] = {}
         self._announce(interface, missing)
         self._listen(interface, inbox, missing)
+        if self._services is None:
+            self._services = Participant(self._ros, f"{NODE}_services", self.domain, CALLS)
+            self.missing_services = add_services(self._services.node, inbox, self.name)
+            self._services.start()
         self.missing = tuple(missing)
         if missing:
             self.report("warning", f"not installed, so topics are left out: {', '.join(missing)}")
@@ -150,7 +159,12 @@ class Ros2Node:
     def report(self, level: str, text: str) -> None:
         """Write a problem to the log of the node, which others receive on ``/rosout``."""
         log = self._participants[0].node.get_logger()
-        {"info": log.info, "warning": log.warning}.get(level, log.error)(text)
+        if level == "info":  # rclpy allows one severity for each line of code
+            log.info(text)
+        elif level == "warning":
+            log.warning(text)
+        else:
+            log.error(text)
 
     def wants(self, topic: str) -> bool:
         """Return whether a node subscribes a topic, or with a final slash one that starts with it."""
@@ -161,9 +175,9 @@ class Ros2Node:
 
     def stop(self) -> None:
         """Stop the node."""
-        for one in self._participants:
+        for one in (*self._participants, *([self._services] if self._services else [])):
             one.stop()
-        self._participants = []
+        self._participants, self._services = [], None
 
 
 def message_class(kind: str) -> Any:

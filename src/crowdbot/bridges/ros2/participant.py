@@ -22,13 +22,14 @@ class Participant:
         ros: the module rclpy.
         name: name of the node.
         domain: ROS domain; None: that of the environment.
+        threads: number of callbacks that can run at the same time.
 
     Raises:
         MissingExtra: a part of ROS is not installed.
         InputError: the node cannot be started.
     """
 
-    def __init__(self, ros: Any, name: str, domain: int | None) -> None:
+    def __init__(self, ros: Any, name: str, domain: int | None, threads: int = 1) -> None:
         signals = importlib.import_module("rclpy.signals").SignalHandlerOptions
         try:
             with warnings.catch_warnings():
@@ -40,7 +41,11 @@ class Participant:
             raise MissingExtra(f"the bridge ros2 ({error})", "ros2-wheels") from None
         except RuntimeError as error:
             raise InputError(f"ros2 cannot start a node: {str(error).splitlines()[0]}") from None
-        self._executor = importlib.import_module("rclpy.executors").SingleThreadedExecutor(context=self.context)
+        executors = importlib.import_module("rclpy.executors")
+        if threads == 1:
+            self._executor = executors.SingleThreadedExecutor(context=self.context)
+        else:
+            self._executor = executors.MultiThreadedExecutor(threads, context=self.context)
         self._executor.add_node(self.node)
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._spin, name=name, daemon=True)

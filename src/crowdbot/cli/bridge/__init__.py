@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from crowdbot.cli.output import note, print_warnings
 
 if TYPE_CHECKING:
+    from crowdbot.bridges import Transport
     from crowdbot.simulation import OrderSource, RunSummary
     from crowdbot.trials import Trial
 
-__all__ = ["add_bridge", "check_bridge_options", "run_with_bridge"]
+__all__ = ["add_bridge", "check_bridge_options", "open_bridges", "run_with_bridge"]
 
 CLOCKS = ("paced", "free", "step", "follow", "commands")
 
@@ -25,8 +26,9 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
         "--bridge",
         action="append",
         metavar="NAME[:ADDRESS]",
-        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT, ros2[:DOMAIN],"
-        " foxglove[:PORT]; several are possible",
+        help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT,"
+        " ros1[:http://HOST:PORT], ros2[:DOMAIN], rosless[:DOMAIN], naoqi:HOST, foxglove[:PORT], tcp[:PORT]; several"
+        " are possible",
     )
     group.add_argument(
         "--clock",
@@ -51,17 +53,13 @@ def run_with_bridge(
     Raises:
         InputError: a bridge does not exist or cannot start, or an option does not fit.
     """
-    from crowdbot.bridges import BridgeClock, open_transport, run_bridge
+    from crowdbot.bridges import BridgeClock, run_bridge
     from crowdbot.core import InputError
 
     mode = options.clock or "paced"
     if mode != "paced" and options.pace is not None:
         raise InputError(f"--pace needs the clock paced, not --clock {mode}")
-    given = {"host": options.bridge_host, "token": options.bridge_token, "topics": options.bridge_topics}
-    values = {key: value for key, value in given.items() if value is not None}
-    if "topics" in values:
-        values["topics"] = [one.strip() for one in values["topics"].split(",") if one.strip()]
-    transports = [open_transport(text, values) for text in options.bridge]
+    transports = open_bridges(options)
     begin = time.perf_counter()
     out = None if options.out is None else options.out / "episode.mcap"
     with print_warnings():
@@ -76,6 +74,21 @@ def run_with_bridge(
             sources=sources,
         )
     return done, time.perf_counter() - begin
+
+
+def open_bridges(options: argparse.Namespace) -> list[Transport]:
+    """Return the transports of the command line.
+
+    Raises:
+        InputError: a bridge does not exist, or an option does not fit.
+    """
+    from crowdbot.bridges import open_transport
+
+    given = {"host": options.bridge_host, "token": options.bridge_token, "topics": options.bridge_topics}
+    values = {key: value for key, value in given.items() if value is not None}
+    if "topics" in values:
+        values["topics"] = [one.strip() for one in values["topics"].split(",") if one.strip()]
+    return [open_transport(text, values) for text in options.bridge]
 
 
 def check_bridge_options(options: argparse.Namespace) -> None:

@@ -91,6 +91,13 @@ def main(options: argparse.Namespace) -> int:
     return _present(options, plan, result, requirements, names, time.perf_counter() - begin)
 
 
+def _occasional_names(result: EvaluationResult) -> list[str]:
+    """Return the columns of what only some results have: failed runs, measured decisions, deadlines."""
+    decisions = ("decision-time", "missed-deadlines")
+    measured = [one for one in decisions if any(cell.estimate(one).runs for cell in result.cells)]
+    return ["error-rate"] * bool(result.failures) + measured
+
+
 def _present(
     options: argparse.Namespace,
     plan: EvaluationPlan,
@@ -101,8 +108,8 @@ def _present(
 ) -> int:
     from crowdbot.evaluation import parse_requirement, parse_statistic
 
-    if options.metrics is None and result.failures:
-        names = [*names, "error-rate"]
+    if options.metrics is None:
+        names = [*names, *_occasional_names(result)]
     statistics = [parse_statistic(name, result.metrics) for name in names]
     requirements = [parse_requirement(one.text, result.metrics) for one in requirements]
     verdicts = [

@@ -29,7 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--format", default="npz", metavar="NAME", help="npz, parquet, webdataset or mcap (default: npz)")
     add("--coco", action="store_true", help="write colour images as PNG with boxes and masks in coco.json")
     add("--compress", action="store_true", help="compress the files: smaller and slower")
-    add("--shard-size", type=float, default=128.0, metavar="MB", help="approximate size of a shard (default: 128)")
+    add("--shard-size", type=float, default=400.0, metavar="MB", help="approximate size of a shard (default: 400)")
     add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
     add("--cluster", metavar="ADDRESS", help="address of a Ray cluster with a shared file system, auto, or local")
     add("--trust", action="store_true", help="allow code outside the folders of the trials")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.cli.output import add_json, note, number, print_json, print_table
+from crowdbot.cli.output import add_json, note, number, print_json, print_table, progress
 from crowdbot.cli.recordings import add_recordings, print_notes, recordings
 from crowdbot.cli.schemes import assignments
 
@@ -118,8 +118,20 @@ def main(options: argparse.Namespace) -> int:
             f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(training_set)}"
             " recordings"
         )
-    with torch_threads(options.threads), explain_write_errors(options.out), _events(options) as events:
-        done = train(model, schedule, options.out, options.resume, _log_callback(options.json, events))
+    with (
+        torch_threads(options.threads),
+        explain_write_errors(options.out),
+        _events(options) as events,
+        progress(options.json) as report,
+    ):
+        done = train(
+            model,
+            schedule,
+            options.out,
+            options.resume,
+            _log_callback(options.json, events),
+            lambda update, total: report(f"train {options.what}", update / total),
+        )
     _print_result(options, done, options.out / BEST, excluded)
     return 0
 

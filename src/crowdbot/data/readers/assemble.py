@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,11 @@ from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
 
 from .reader import ReadOptions
-from .time_base import check_speeds, row_rate_of
+from .time_base import check_walkers, row_rate_of
 
 __all__ = ["PER_METRE", "assemble", "check_units"]
 
-PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "px": 1.0}
+PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "px": 1.0}
 """Units per metre; pixels are not converted."""
 
 
@@ -44,7 +43,7 @@ def assemble(
         id, frame, x, y: columns ``[N]`` of the file.
         fps: frames per second of the frame counter [1/s], if the file or its format defines it.
         row_rate: rows per second of a track [1/s], if the file defines that instead.
-        units: default units: ``m``, ``cm``, ``mm`` or ``px``.
+        units: default units: ``m``, ``cm``, ``mm``, ``ft`` or ``px``.
         note: remarks on the data.
         line: ``[N]`` line of each row in the file, for messages.
         rest: other fields of :class:`Trajectories`.
@@ -76,8 +75,7 @@ def assemble(
         note="; ".join(part for part in (note, assumed) if part),
         **rest,
     )
-    warning = check_speeds(tracks, options)
-    return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, warning)))) if warning else tracks
+    return check_walkers(tracks, options)
 
 
 def check_units(units: str | None) -> None:

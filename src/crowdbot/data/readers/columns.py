@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import DataError
-from crowdbot.data.rows import frame_step, integers, where
+from crowdbot.core import DataError, InputError, did_you_mean
+from crowdbot.data.rows import integers, where
 
 __all__ = [
     "Columns",
     "Lines",
     "check_columns",
+    "check_quantities",
     "find_columns",
-    "frames_of_times",
     "ids",
     "labels",
     "numbers",
-    "row_rate_of_times",
 ]
 
 Columns = dict[str, NDArray[Any]]
@@ -38,38 +38,69 @@ _NAMES = {
 NAMES = {meaning: names.split() for meaning, names in _NAMES.items()}
 """Known names of each column, in lower case; x and y may have a unit, as in ``x_cm``, ``x/m`` or ``y [m]``."""
 
-WITH_UNIT = re.compile(r"^(.*?[a-z])[\s_/]*[\[(/_\s]\s*(mm|cm|m|px)\s*[\])]?$")
-SLOWEST, FASTEST = 1000.0, 1e-4
-"""Range of the time step [s]; other values are not times in seconds."""
+DECIMAL_COMMA = re.compile(r"^[+-]?\d*(,\d*)?([eE][+-]?\d+)?$")
+"""A number with a decimal comma; a table with such numbers has another delimiter."""
+WITH_UNIT = re.compile(r"^(.*?[a-z])[\s_/]*[\[(/_\s]\s*(mm|cm|m|ft|px)\s*[\])]?$")
 
 
-def find_columns(names: list[str]) -> tuple[dict[str, str], str]:
+def find_columns(names: list[str], given: Mapping[str, str] | None = None) -> tuple[dict[str, str], str]:
     """Return the column of each known quantity, and the unit in the names of x and y.
+
+    Args:
+        names: the columns of the file.
+        given: columns that the user names, by quantity; the others are found by their usual names. If only the time
+            is named, frames are not looked for.
 
     >>> find_columns(["ID", "Frame", "x [cm]", "y [cm]"])
     ({'id': 'ID', 'frame': 'Frame', 'x': 'x [cm]', 'y': 'y [cm]'}, 'cm')
+    >>> find_columns(["who", "t", "x", "y"], {"id": "who"})
+    ({'id': 'who', 'time': 't', 'x': 'x', 'y': 'y'}, '')
     """
+    chosen = dict(given or {})
     found: dict[str, str] = {}
     units = ""
     plain = {name: name.strip().lower() for name in names}
     for meaning, known in NAMES.items():
+        if meaning == "frame" and "time" in chosen and "frame" not in chosen:
+            continue
         for name, small in plain.items():
+            wanted = name == chosen[meaning] if meaning in chosen else None
             unit = WITH_UNIT.match(small) if meaning in "xy" and small not in known else None
-            if meaning not in found and (unit.group(1) if unit else small) in known:
+            usual = (unit.group(1) if unit else small) in known and name not in chosen.values()
+            if meaning not in found and (usual if wanted is None else wanted):
                 found[meaning] = name
                 units = unit.group(2) if unit else units
     return found, units
 
 
-def check_columns(found: dict[str, str], names: list[str], name: str) -> None:
+def check_columns(
+    found: Mapping[str, str], names: list[str], name: str, given: Mapping[str, str] | None = None
+) -> None:
     """Raise :class:`DataError` with the missing columns, the existing ones, and the accepted names."""
+    held = ", ".join(names[:20]) or "none"
+    for meaning, column in (given or {}).items():
+        if column not in names:
+            raise DataError(
+                f"{name} has no column {column!r} for {meaning}{did_you_mean(column, names)}; it has {held}"
+            )
     missing = [meaning for meaning in ("id", "x", "y") if meaning not in found]
     if not {"frame", "time"} & set(found):
         missing.append("frame")
     if missing:
         known = "; ".join(f"{meaning} may be called {', '.join(NAMES[meaning])}" for meaning in missing)
-        held = ", ".join(names[:20]) or "none"
-        raise DataError(f"{name} has no column for {', '.join(missing)}; it has {held}; {known}")
+        raise DataError(
+            f"{name} has no column for {', '.join(missing)}; it has {held}; {known};"
+            " or name the columns (--columns id=NAME ...)"
+        )
+
+
+def check_quantities(given: Mapping[str, str]) -> None:
+    """Raise :class:`InputError` for columns of unknown quantities."""
+    for meaning in given:
+        if meaning not in NAMES:
+            raise InputError(
+                f"columns: unknown {meaning!r}{did_you_mean(meaning, NAMES)}; known are {', '.join(NAMES)}"
+            )
 
 
 def numbers(values: NDArray[Any], column: str, name: str, line: Lines) -> NDArray[np.float64]:
@@ -81,7 +112,7 @@ def numbers(values: NDArray[Any], column: str, name: str, line: Lines) -> NDArra
     try:
         return values.astype(np.float64)
     except (ValueError, TypeError):
-        read = [_number(value) for value in values.tolist()]
+        read = [_number(value) for value in _pointed(values.tolist())]
     wrong = next((index for index, value in enumerate(read) if value is None), None)
     if wrong is not None:
         raise DataError(f"{where(name, wrong, line)}: {column} is {str(values[wrong])[:40]!r}, it must be a number")
@@ -110,49 +141,12 @@ def labels(values: NDArray[Any], id: NDArray[np.int64]) -> dict[int, str]:
     return found
 
 
-def row_rate_of_times(id: NDArray[np.int64], frame: NDArray[np.int64], time: NDArray[np.float64]) -> float | None:
-    """Return rows per second of a track [1/s], from the first and the last frame and their times."""
-    known = np.flatnonzero(np.isfinite(time))
-    if len(known) == 0:
-        return None
-    first, last = known[np.argmin(frame[known])], known[np.argmax(frame[known])]
-    if not time[last] > time[first]:
-        return None
-    return _short(float((frame[last] - frame[first]) / (time[last] - time[first]) / frame_step(id, frame)))
-
-
-def frames_of_times(
-    id: NDArray[np.int64], time: NDArray[np.float64], fps: float | None, name: str, line: Lines
-) -> tuple[NDArray[np.int64], float]:
-    """Return frames numbered from 0, and frames per second [1/s], of rows that have times [s] only.
-
-    Raises:
-        DataError: a time is missing, or the times of a track are not regular.
-    """
-    if len(time) == 0:
-        raise DataError(f"{name} has no rows")
-    if not np.all(np.isfinite(time)):
-        raise DataError(f"{where(name, int(np.argmin(np.isfinite(time))), line)}: its time is missing")
-    order = np.lexsort((time, id))
-    steps = np.diff(time[order])[(np.diff(id[order]) == 0) & (np.diff(time[order]) > 0.0)]
-    if fps is None and len(steps) == 0:
-        raise DataError(f"{name}: no track has rows at two times, so its frame rate is unknown; give fps")
-    dt = float(np.median(steps)) if fps is None else 1.0 / fps
-    if not FASTEST <= dt <= SLOWEST:
-        raise DataError(f"{name}: the time step is {dt:.4g}; times must be in seconds")
-    since = time - time.min()
-    frame = np.rint(since / dt)
-    if fps is None:
-        dt = float(since.max() / frame.max())
-        frame = np.rint(since / dt)
-    off = np.abs(since - frame * dt)
-    if off.max() > 0.25 * dt:
-        index = int(np.argmax(off))
-        raise DataError(
-            f"{where(name, index, line)}: time {time[index]} is {off[index]:.3g} s off a regular step of {dt:.4g} s;"
-            " give fps, or resample the tracks to regular times"
-        )
-    return frame.astype(np.int64), _short(1.0 / dt)
+def _pointed(values: list[Any]) -> list[Any]:
+    """Return the cells with decimal points if all of them are numbers with at most one decimal comma."""
+    words = [value for value in values if isinstance(value, str) and value != ""]
+    if not any("," in word for word in words) or not all(DECIMAL_COMMA.match(word.strip()) for word in words):
+        return values
+    return [value.replace(",", ".") if isinstance(value, str) else value for value in values]
 
 
 def _number(value: Any) -> float | None:
@@ -162,9 +156,3 @@ def _number(value: Any) -> float | None:
         return float(value)
     except (ValueError, TypeError):
         return None
-
-
-def _short(rate: float) -> float:
-    """Return the rate without rounding errors: 2.5000000000000004 is 2.5."""
-    short = float(f"{rate:.12g}")
-    return short if abs(short - rate) < 1e-14 * rate else rate

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from crowdbot.data.source import Source
@@ -18,13 +18,15 @@ class ReadOptions:
 
     Fields:
         fps: frames per second of the frame counter [1/s]; of files without one, rows per second.
-        units: units of the coordinates in the file: ``m``, ``cm``, ``mm`` or ``px``.
+        units: units of the coordinates in the file: ``m``, ``cm``, ``mm``, ``ft`` or ``px``.
         time_base: ``true`` or ``published``.
+        columns: columns of a table by quantity, ``id``, ``frame``, ``time``, ``x``, ``y`` or ``label``.
     """
 
     fps: float | None = None
     units: str | None = None
     time_base: str = "true"
+    columns: Mapping[str, str] = field(default_factory=dict)
 
 
 class Reader(NamedTuple):

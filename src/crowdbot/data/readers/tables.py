@@ -17,16 +17,15 @@ from crowdbot.data.track_table import PrimaryScene
 from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
+from .clock import regular_rows, row_rate_of_times
 from .columns import (
     Columns,
     Lines,
     check_columns,
     find_columns,
-    frames_of_times,
     ids,
     labels,
     numbers,
-    row_rate_of_times,
 )
 from .reader import Reader, ReadOptions
 
@@ -105,26 +104,28 @@ def _words(line: str) -> list[str]:
 
 def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[str, Any], line: Lines) -> Trajectories:
     name = source.name
-    found, units = find_columns(list(columns))
-    check_columns(found, list(columns), name)
+    found, units = find_columns(list(columns), options.columns)
+    check_columns(found, list(columns), name, options.columns)
     known = [meaning for meaning in ("frame", "time", "x", "y") if meaning in found]
     values = {meaning: numbers(columns[found[meaning]], found[meaning], name, line) for meaning in known}
     id, renamed = ids(columns[found["id"]], found["id"], name, line)
-    if "frame" in found:
-        frame = integers(values["frame"], found["frame"], name, line)
-        rate = {"row_rate": row_rate_of_times(id, frame, values["time"]) if "time" in found else None}
-    else:
-        frame, fps = frames_of_times(id, values["time"], options.fps, name, line)
-        rate = {"fps": fps}
     named = labels(columns[found["label"]], id) if "label" in found else {}
     beside: dict[str, Any] = {
-        **rate,
         "units": units or "m",
-        "note": renamed,
         "labels": {key: label for key, label in named.items() if label != ROBOT},
         "robots": frozenset(key for key, label in named.items() if label == ROBOT),
     }
-    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **extra})
+    if "frame" in found:
+        frame = integers(values["frame"], found["frame"], name, line)
+        rate = row_rate_of_times(id, frame, values["time"]) if "time" in found else None
+        rows: dict[str, Any] = {"id": id, "frame": frame, "x": values["x"], "y": values["y"], "row_rate": rate}
+        notes = renamed
+    else:
+        regular = regular_rows(id, values["time"], values["x"], values["y"], options.fps, name, line)
+        rows = {"id": regular.id, "frame": regular.frame, "x": regular.x, "y": regular.y, "fps": regular.fps}
+        line = line if regular.id is id else None  # positions that are interpolated are on no line
+        notes = "; ".join(filter(None, (renamed, regular.note)))
+    return assemble(source, options, line=line, **{**rows, "note": notes, **beside, **extra})
 
 
 def _metadata_fields(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:

@@ -6,16 +6,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data.trajectories import Trajectories
 
 from .reader import ReadOptions
 
-__all__ = ["RowRateError", "check_fps", "check_speeds", "row_rate_of"]
+__all__ = ["RowRateError", "check_fps", "check_walkers", "row_rate_of"]
 
 CONVENTIONAL_FPS = {6: 15.0, 10: 25.0, 12: 30.0}
 """fps by frame step of files with rows of 0.4 s: ETH, UCY and the leave-one-out files, and SDD in the TrajNet cut."""
@@ -26,6 +28,8 @@ MIN_ROW_RATE, MAX_ROW_RATE = 0.5, 15.0
 """Range of row rates of recordings of people [1/s]; another ``fps`` is not taken for one."""
 SLOWEST, FASTEST = 0.02, 5.0
 """Range of the median speed of people [m/s]."""
+MOVING, SLOW_WALK, FAST_WALK = 0.2, 0.3, 2.5
+"""Speed above which people move, and range of the median speed of those who do [m/s]."""
 
 
 class RowRateError(DataError):
@@ -82,8 +86,8 @@ def row_rate_of(
     )
 
 
-def check_speeds(tracks: Trajectories, options: ReadOptions) -> str:
-    """Return a warning if the median speed is impossible for people, else an empty text.
+def check_walkers(tracks: Trajectories, options: ReadOptions) -> Trajectories:
+    """Return the tracks, with a warning in their note if their speeds are not those of people who walk.
 
     Raises:
         RowRateError: ``options.fps`` is 0.5 to 15 and makes the time step longer than 2 s, or longer than 1 s at a
@@ -102,20 +106,42 @@ def check_speeds(tracks: Trajectories, options: ReadOptions) -> str:
             )
     given = fps is not None or options.units is not None
     if speed > FASTEST or (given and speed < SLOWEST):
-        return f"warning: the median speed {speed:.2g} m/s is impossible for people, check fps and units"
-    return ""
+        warning = f"warning: the median speed {speed:.2g} m/s is impossible for people, check fps and units"
+    else:
+        warning = _walking_warning(tracks)
+    if not warning:
+        return tracks
+    return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, warning))))
+
+
+def _walking_warning(tracks: Trajectories) -> str:
+    """Return a warning if the people who move do not walk, else an empty text."""
+    speed = _speeds(tracks)
+    moving = speed[speed > MOVING]
+    usual = float(np.median(moving)) if len(moving) > 0.1 * len(speed) else math.nan
+    if SLOW_WALK <= usual <= FAST_WALK or math.isnan(usual):
+        return ""
+    return (
+        f"warning: people who move have a median speed of {usual:.2g} m/s, people who walk {SLOW_WALK:g} to"
+        f" {FAST_WALK:g} m/s; check fps and units"
+    )
 
 
 def _median_speed(tracks: Trajectories) -> float:
     """Return the median speed of people [m/s]; NaN if no one has two rows, or the units are pixels."""
+    known = _speeds(tracks)
+    return float(np.median(known)) if len(known) else math.nan
+
+
+def _speeds(tracks: Trajectories) -> NDArray[np.float64]:
+    """Return the speeds of people [m/s]; none if the units are pixels."""
     if tracks.units != "m":
-        return math.nan
+        return np.empty(0)
     people = ~np.isin(tracks.id, np.asarray(sorted(tracks.robots), dtype=np.int64))
     with np.errstate(over="ignore", invalid="ignore"):
         velocity = tracks.velocities()[people]
         speed = np.hypot(velocity[:, 0], velocity[:, 1])
-        known = speed[~np.isnan(speed)]
-        return float(np.median(known)) if len(known) else math.nan
+    return np.asarray(speed[~np.isnan(speed)])
 
 
 def _impossible(speed: float) -> bool:

@@ -125,4 +125,8 @@ Differences to other tools: personal space compliance uses 0.5 m here, 0.45 m in
 a robot stalls below 0.05 m/s here, below 0.001 m/s and 0.01 rad/s in HuNavSim; HuNavSim sets negative clearances to 0
 and has a collision tolerance of 0.02 m; time to collision is the time to contact here, the time to the closest
 approach in Arena 5; the goal tolerance is that of the trial (0.3 m by default), 1.2 m in SEAN 2.0.
+
+Not computed: the learned metric ALT of SocNavData2026 (<https://arxiv.org/abs/2509.01251>), a recurrent network that is
+trained on ratings by people. Its repository has no licence for the weights and ratings, so they cannot be part of this
+package. Two of its inputs, fear and panic, are metrics here.
 """

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Walls, check_parameters, parameter
-from crowdbot.data import Trajectories, Windows, fill_gaps, steady_velocity
+from crowdbot.data import PlaceLayout, Trajectories, Windows, fill_gaps, steady_velocity
 
 from .exits import hull, openings, track_ends
 from .goal import Choices, Goal
@@ -117,6 +117,11 @@ class EnvironmentLayout(Goal):
             raise InputError("environment-layout: there are neither walls nor an area; give exits")
         border = hull(solid.start) if area is None else _ring(area)
         return cls(openings(border, solid, width), solid, **values)
+
+    @classmethod
+    def at(cls, layout: PlaceLayout) -> Self:
+        """Return the goal for a place with its exits; without exits, they are the openings of the outermost walls."""
+        return cls(layout.exits, layout.rings) if layout.exits else cls.of(layout.rings)
 
     @classmethod
     def learn(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, kebab_case
-from crowdbot.data import Trajectories, Windows, steady_velocity
+from crowdbot.data import PlaceLayout, Trajectories, Windows, steady_velocity
 
 __all__ = ["Choices", "Goal"]
 
@@ -98,3 +98,13 @@ class Goal(abc.ABC):
         """
         name = kebab_case(cls.__name__)
         raise InputError(f"{name} does not learn from recordings; use {cls.__name__}(...)")
+
+    @classmethod
+    def at(cls, layout: PlaceLayout) -> Self:
+        """Return the goal for a place that is known by its walls and exits only.
+
+        Raises:
+            InputError: the estimator needs recordings of the place.
+        """
+        name = kebab_case(cls.__name__)
+        raise InputError(f"{name} learns from recorded tracks of {layout.name}; reserve a part of them, as --learn 0.5")

@@ -32,7 +32,7 @@ LAST = "readings"
 HOLDERS = {
     "crowdbot.simulation.simulation.Simulation": "trial people around _ways_out _template",
     "crowdbot.simulation.robot_control.RobotControl": "robot agent limits control wanted planner",
-    "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock _warm",
+    "crowdbot.simulation.decision_timer.DecisionTimer": "recorded clock spent _warm",
     "crowdbot.simulation.faults.fault_state.FaultState": "faults names",
     "crowdbot.simulation.mounted_sensor.MountedSensor": (
         "mount placed schedule space together wheels lateness keeps_people"

@@ -11,6 +11,7 @@ from crowdbot.core import InputError
 from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles, trial_xml
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows
+from crowdbot.web.draft_file import DraftFile
 
 from .agents_of_spawner import agents_of_spawner, spawner_of_agents
 from .edit_history import EditHistory
@@ -34,7 +35,8 @@ MOST_TEXT = 2_000_000
 class EditorDesk(Desk):
     """The editor tab: a trial as XML text, edited by elements or as text, with checks, undo and files.
 
-    Every edit names the revision that it changes. An edit of an older revision is refused, so that two windows never
+    The text is stored after each edit, so a server that is started again shows it. Every edit names the revision that
+    it changes. An edit of an older revision is refused, so that two windows never
     overwrite each other's changes without a word.
 
     >>> import asyncio, tempfile
@@ -53,8 +55,12 @@ class EditorDesk(Desk):
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
-        self._history, self._revision, self._file = EditHistory(EMPTY), 0, ""
-        self._document: XmlDocument | None = XmlDocument(EMPTY)
+        self._draft = DraftFile(session.workspace.folder, self.name)
+        found = self._draft.load()
+        text, file = found.get("text"), found.get("file")
+        text = text if isinstance(text, str) and len(text) <= MOST_TEXT else EMPTY
+        self._history, self._revision, self._file = EditHistory(text), 0, file if isinstance(file, str) else ""
+        self._document = _document(text)
         self._trial: Trial | None = None
         self._check()
 
@@ -201,10 +207,8 @@ class EditorDesk(Desk):
 
     def _show(self, text: str) -> dict[str, Any]:
         self._revision += 1
-        try:
-            self._document = XmlDocument(text)
-        except InputError:
-            self._document = None
+        self._document = _document(text)
+        self._draft.save({"text": text, "file": self._file})
         self._check()
         return self._tell()
 
@@ -235,6 +239,14 @@ class EditorDesk(Desk):
         if self._trial is None or not (self._trial.stage.map or self._trial.stage.area):
             return []
         return [np.round(ring, 3).tolist() for ring in self._trial.stage.rings]
+
+
+def _document(text: str) -> XmlDocument | None:
+    """Return the document, or None if the text is not well-formed."""
+    try:
+        return XmlDocument(text)
+    except InputError:
+        return None
 
 
 def _tree(node: XmlNode) -> dict[str, Any]:

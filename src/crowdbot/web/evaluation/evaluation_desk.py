@@ -13,9 +13,9 @@ from crowdbot.evaluation import CellResult, EvaluationResult, PairedComparison, 
 from crowdbot.trials import builtin_trials, trial_titles, trial_xml
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
+from crowdbot.web.jobs import Job, command_work
 
 from .evaluation_request import FILE, EvaluationRequest
-from .evaluation_run import EvaluationRun
 
 __all__ = ["EvaluationDesk"]
 
@@ -34,7 +34,7 @@ class EvaluationDesk(Desk):
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
-        self._run: EvaluationRun | None = None
+        self._job: Job | None = None
         self._problem = ""
         self._lock = threading.RLock()
 
@@ -50,7 +50,7 @@ class EvaluationDesk(Desk):
         titles = trial_titles()
         return {
             "trials": [{"name": name, "about": titles[name]} for name in builtin_trials()],
-            "files": [one for one in self.session.workspace.files("*.xml") if not one.startswith(FOLDER)],
+            "files": [one for one in self.session.workspace.trials() if not one.startswith(FOLDER)],
             "navigators": list(builtin_classes(room, room.Navigator)),
             "metrics": list(METRICS),
         }
@@ -70,20 +70,23 @@ class EvaluationDesk(Desk):
         request = EvaluationRequest(tuple(map(str, trials)), navigators, seeds, chosen, safety)
         request.plan(self.session.workspace.folder)
         with self._lock:
-            if self._run is not None:
-                raise InputError(f"the evaluation {self._run.out.name} is running; wait for its end or cancel it")
-            out = self._folder(name)
+            if self._job is not None:
+                raise InputError(f"the evaluation {self._job.record.title} is running; wait for its end or cancel it")
+            self.session.workspace.check_space()
+            out, folder = self._folder(name), self.session.workspace.folder
             request.save(out)
             self._problem = ""
-            self._run = EvaluationRun(request, self.session.workspace.folder, out, self._progress, self._ended)
+            results = f"{FOLDER}/{name}"
+            work = command_work(name, (*request.words, "--out", results), folder, results)
+            self._job = self.session.jobs.submit(work, ended=self._ended)
         return self._tell()
 
     @command
     def cancel(self) -> dict[str, Any]:
         """End the evaluation that runs; what is done is kept."""
-        run = self._run
-        if run is not None:
-            run.cancel()
+        job = self._job
+        if job is not None:
+            job.cancel()
         return self._tell()
 
     @command
@@ -126,8 +129,8 @@ class EvaluationDesk(Desk):
 
     def close(self) -> None:
         """Stop an evaluation that runs."""
-        if self._run is not None:
-            self._run.cancel()
+        if self._job is not None:
+            self._job.cancel()
 
     def _folder(self, name: str) -> Path:
         if not re.fullmatch(r"[\w-][\w. -]{0,60}", name):
@@ -138,12 +141,10 @@ class EvaluationDesk(Desk):
         folder = self._folder(name)
         return EvaluationRequest.load(folder) if (folder / FILE).is_file() else None
 
-    def _progress(self, share: float) -> None:
-        self.session.tell("evaluation.progress", share)
-
-    def _ended(self, problem: str) -> None:
+    def _ended(self, job: Job) -> None:
+        problem = "cancelled; run it again to continue" if job.cancelled else job.record.problem
         with self._lock:
-            self._run, self._problem = None, problem
+            self._job, self._problem = None, problem
         self._tell()
 
     def _tell(self) -> dict[str, Any]:
@@ -154,11 +155,11 @@ class EvaluationDesk(Desk):
     def _state(self) -> dict[str, Any]:
         root = self.session.workspace.folder / FOLDER
         folders = sorted(one for one in root.glob("*") if one.is_dir()) if root.is_dir() else []
-        run = self._run
+        job = self._job
         return {
             "evaluations": [{"name": one.name, "done": (one / "result.json").is_file()} for one in folders],
-            "running": run.out.name if run else "",
-            "share": run.share if run else 0.0,
+            "running": job.record.title if job else "",
+            "share": job.record.share if job else 0.0,
             "problem": self._problem,
         }
 

@@ -10,6 +10,7 @@ from crowdbot.core import InputError
 from crowdbot.evaluation import EvaluationPlan, families_of, parse_methods, parse_seeds, parse_statistic, with_safety
 from crowdbot.metrics import LOG_FAMILIES
 from crowdbot.trials import builtin_trials, load_trial
+from crowdbot.web.jobs.job_forms import check_text
 
 __all__ = ["FILE", "EvaluationRequest"]
 
@@ -44,6 +45,7 @@ class EvaluationRequest:
         Raises:
             InputError: a trial, navigator, seed or metric is wrong, or there are more than 100 000 runs.
         """
+        check_text(self.navigators, "navigators")
         if not self.trials:
             raise InputError("an evaluation needs a trial")
         found = [load_trial(one if one in builtin_trials() else str(_inside(folder, one))) for one in self.trials]
@@ -62,6 +64,15 @@ class EvaluationRequest:
         words = ["crowdbot evaluate", *self.trials, f'--navigators "{self.navigators}"', f"--seeds {self.seeds}"]
         words += [f'--metrics "{", ".join(self.metrics)}"', *(["--safety both"] if self.safety else [])]
         return " ".join(words)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words of the command line, without ``--out``."""
+        safety = ["--safety=both"] if self.safety else []
+        return (
+            "evaluate", *self.trials, f"--navigators={self.navigators}", f"--seeds={self.seeds}",
+            f"--metrics={','.join(self.metrics)}", *safety,
+        )  # fmt: skip
 
     def save(self, folder: Path) -> None:
         """Write the request into the folder of the results."""

@@ -6,6 +6,7 @@ import contextlib
 import re
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -19,6 +20,7 @@ from crowdbot.experiments import (
     Pause,
     Repeat,
     Resume,
+    Session,
     SessionRunner,
     Start,
     builtin_experiments,
@@ -26,6 +28,9 @@ from crowdbot.experiments import (
     load_experiment,
     summary,
 )
+from crowdbot.simulation import Episode, OrderSource
+from crowdbot.trials import Trial
+from crowdbot.web.app_session import AppSession
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 
@@ -51,6 +56,8 @@ class ExperimentDesk(Desk):
         self._rate = 1.0
         self._view: TrialView | None = None
         self._shown = ""
+        self._draft: tuple[int, dict[str, Any]] = (-1, {})
+        self._joined = list[Desk]()
         self._lock = threading.RLock()
 
     def greet(self) -> dict[str, Any]:
@@ -91,12 +98,34 @@ class ExperimentDesk(Desk):
             runner = self._opened()
             for name, value in answers.items():
                 runner.do(Answered(str(name), value))
+                if runner.session.over:  # an answer that ends the session, such as no consent
+                    break
             return self._tell()
 
     @command
     def next(self) -> dict[str, Any]:
         """Go on to the next screen or trial."""
         return self._do(Next())
+
+    @command
+    def draft(self, index: int, answers: dict) -> None:  # type: ignore[type-arg]
+        """Show choices that are not final in all windows; ``index`` is the step to which they belong.
+
+        Nothing is logged before :meth:`finish_screen` or :meth:`answer`.
+        """
+        with self._lock:
+            screen = self._screen(index).step.screen
+            known = [one.name for one in screen.questions] if screen else []
+            self._draft = (index, {str(name): value for name, value in answers.items() if name in known})
+            self._tell()
+
+    @command
+    def finish_screen(self, index: int, answers: dict) -> dict[str, Any]:  # type: ignore[type-arg]
+        """Answer the questions of the screen of a step and go on; a step that is over is refused."""
+        with self._lock:
+            self._screen(index)
+            state = self.answer(answers)
+            return state if self._opened().session.over else self.next()
 
     @command
     def pause(self, reason: str = "operator") -> dict[str, Any]:
@@ -159,6 +188,17 @@ class ExperimentDesk(Desk):
         with self._lock:
             return summary(self._opened().folder.parent)
 
+    @property
+    def session_open(self) -> bool:
+        """Whether a session of a participant is open and not over."""
+        return self._runner is not None and not self._runner.session.over
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """The trials of the session that is open."""
+        runner = self._runner
+        return () if runner is None else tuple(runner.trials.values())
+
     def close(self) -> None:
         """Stop a trial and close the log."""
         with self._lock:
@@ -180,9 +220,18 @@ class ExperimentDesk(Desk):
             self._opened().do(event)
             return self._moved()
 
+    def _screen(self, index: int) -> Session:
+        """Return the session if it is at the screen of a step."""
+        session = self._opened().session
+        if session.phase != "screen" or session.index != index:
+            raise InputError(f"the session is not at the screen of step {index} any more")
+        return session
+
     def _moved(self) -> dict[str, Any]:
         """Begin the trial or log the screen that the session has come to."""
         runner = self._opened()
+        if runner.session.phase not in ("screen", "pause"):
+            self._draft = (-1, {})
         if runner.session.phase == "trial":
             self._begin(runner)
         elif runner.session.phase == "screen" and runner.page is not None and runner.page.text != self._shown:
@@ -194,9 +243,29 @@ class ExperimentDesk(Desk):
     def _begin(self, runner: SessionRunner) -> None:
         trial, seed, folder = runner.begin()
         self._shown, self._view = "", TrialView(self.session)
-        clock = PacedClock(trial.step, rate=self._rate)
-        self._run = self._view.run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, [self._view])
+        try:
+            trial, sources = self._join(trial, folder)
+        except InputError as error:
+            runner.end(_failure(error), folder)
+            return
+        clock = PacedClock(trial.step, rate=1.0 if sources else self._rate)  # people move in real time
+        watchers = [self._view, *runner.sinks]
+        self._run = self._view.run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, watchers, sources)
         threading.Thread(target=self._watch, args=(self._run, folder), daemon=True).start()
+
+    def _join(self, trial: Trial, folder: Path) -> tuple[Trial, list[OrderSource]]:
+        """Let the other desks of the session take part in a trial."""
+        sources: list[OrderSource] = []
+        self._joined = list(self.session.desks.values()) if isinstance(self.session, AppSession) else []
+        for desk in self._joined:
+            trial, own = desk.join_trial(trial, folder)
+            sources += own
+        return trial, sources
+
+    def _leave_trial(self) -> None:
+        joined, self._joined = self._joined, []
+        for desk in joined:
+            desk.leave_trial()
 
     def _watch(self, run: BackgroundRun, folder: Path) -> None:
         """Tell the progress of a trial, and end it in the session."""
@@ -207,6 +276,7 @@ class ExperimentDesk(Desk):
                 if self._runner.session.phase == "pause":
                     self._runner.do(Resume())
                 self._run = None
+                self._leave_trial()
                 self._runner.end(run.result, folder)
                 self._moved()
 
@@ -215,6 +285,7 @@ class ExperimentDesk(Desk):
         if run is not None:
             run.give_up()
             run.wait(30.0)
+        self._leave_trial()
 
     def _tell(self) -> dict[str, Any]:
         state = self._state()
@@ -240,8 +311,18 @@ class ExperimentDesk(Desk):
             "steps": [{"name": one.name, "role": one.role, "number": one.number} for one in now.steps],
             "possible": list(now.possible_events),
             "html": page.html if page else "",
+            "text": page.text if page else "",
             "questions": [question_form(one) for one in screen.questions] if screen else [],  # type: ignore[arg-type]
-            "answers": dict(now.answers.get(now.index, {})),
+            "answers": {**now.answers.get(now.index, {}), **(self._draft[1] if self._draft[0] == now.index else {})},
             "outcomes": {str(index): one.outcome for index, one in now.results.items()},
             "rate": self._rate,
         }
+
+
+def _failure(error: InputError) -> Callable[[], Episode]:
+    """Return a result of a trial that could not begin."""
+
+    def result() -> Episode:
+        raise error
+
+    return result

@@ -1,6 +1,7 @@
 """The prediction tab: recordings, predictors, runs in worker processes, and their results."""
 
-from .prediction_desk import EXAMPLES, PredictionDesk
+from .example_recordings import EXAMPLES
+from .prediction_desk import PredictionDesk
 from .prediction_run import PredictionRun
 from .predictor_choice import PredictorChoice
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["BackgroundPicture", "read_homography"]
+__all__ = ["BackgroundPicture", "parse_homography"]
 
 MOST_PIXELS = 40_000_000
 """Largest picture that is read."""
@@ -71,13 +71,13 @@ class BackgroundPicture:
         return {"name": self.name, "bounds": [*self.bounds]}
 
 
-def read_homography(text: str) -> NDArray[np.float64]:
+def parse_homography(text: str) -> NDArray[np.float64]:
     """Return a homography from nine numbers, or from one: metres per pixel, with y upwards.
 
     Raises:
         InputError: there are not one or nine numbers, or the matrix cannot be inverted.
 
-    >>> read_homography("0.02").tolist()
+    >>> parse_homography("0.02").tolist()
     [[0.02, 0.0, 0.0], [0.0, -0.02, 0.0], [0.0, 0.0, 1.0]]
     """
     try:

@@ -99,6 +99,7 @@ def scheme_tables() -> dict[str, Any]:
     sampled = {name for name, one in builtin_kinds("predictors").items() if _draws(one)}
     for row in lists["predictors"]:
         row["samples"] = row["name"] in sampled
+        row["weights"] = row["name"] in prediction.WEIGHTS_FIELDS
         row["learned"] = row["name"] in ("anchor-net", "anchors", "social-ways")
     lists["predictors"] = [row for row in lists["predictors"] if row["name"] != "simulated"]
     for row in lists["models"]:

@@ -176,6 +176,16 @@ class PredictionBoard:
         for member in self.members:
             member.results.pop(DEGRADED, None)
 
+    def resume(self, seed: int, live: bool, degradation: Mapping[str, Any] | None) -> None:
+        """Set what the latest run had: seed, mode, and name and values of the degradation.
+
+        Raises:
+            InputError: the recording cannot be degraded so.
+        """
+        self.setup = dataclasses.replace(self._setup, seed=seed, live=live)
+        if degradation is not None:
+            self.degrade(DegradationChoice.of(degradation["name"], degradation["values"]))
+
     def windows(self, name: str = CLEAN) -> tuple[Windows, Windows]:
         """Return past and future of an input, ``clean`` or ``degraded``."""
         if name not in self._inputs:

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
-import shutil
 import tempfile
-from importlib import resources
 from pathlib import Path
 from typing import Any, ClassVar
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import InputError
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
+from crowdbot.web.draft_file import DraftFile
 
-from .background_picture import BackgroundPicture, read_homography
+from .background_picture import BackgroundPicture, parse_homography
+from .example_recordings import EXAMPLES, copy_example
 from .form_rows import scheme_tables
 from .prediction_board import CLEAN, DEGRADED, BoardMember, PredictionBoard
 from .prediction_results import clean_json
 from .prediction_run import PredictionRun
-from .prediction_setup import DegradationChoice, PredictionSetup
+from .prediction_setup import DegradationChoice, PredictionSetup, shown_path
 from .result_tables import frame_table, horizon_rows, person_table, score_table, variable_names, variable_rows
 from .scene_frame import window_frame
+from .stored_results import StoredResults
 
-__all__ = ["EXAMPLES", "PredictionDesk"]
+__all__ = ["PredictionDesk"]
 
-EXAMPLES = {
-    "bottleneck": "people leave a hall through a door, with walls and a robot (simulated)",
-    "crossing-flows": "a robot crosses a corridor with a two-way flow of 40 people (simulated)",
-}
-"""Recordings that ship, made by the built-in trials of the same names with seed 3."""
+ANIMATIONS = {"animation.gif": "image/gif", "animation.mp4": "video/mp4", "animation.webp": "image/webp"}
 RECENT = 30
 
 
@@ -48,10 +46,26 @@ class PredictionDesk(Desk):
         self._queue: list[Any] = []
         self._share = 0.0
         self._tables: dict[str, Any] | None = None
+        self._draft = DraftFile(session.workspace.folder, self.name)
+        self._stored = self._draft.load()
+        self._results = StoredResults(session.workspace)
 
     def greet(self) -> dict[str, Any]:
         """Return the state that a new window needs."""
-        return {**self.board.facts(), "run": self._run_facts()}
+        return {**self.board.facts(), "run": self._run_facts(), "stored": bool(self._stored)}
+
+    @command
+    def restore(self) -> dict[str, Any]:
+        """Open the recording and add the predictors that were there when the server ended, with their results."""
+        found, self._stored = self._stored, {}
+        if self.board.setup is None and not self.board.members:
+            with contextlib.suppress(InputError, TypeError, KeyError, OSError):  # the recording may be gone
+                for settings in found["predictors"]:
+                    self.board.add({name: value for name, value in settings.items() if value is not None})
+                self.board.open(self.session.workspace.readable(found["file"]), found["options"], found["file"])
+                self.board.resume(int(found.get("seed", 0)), bool(found.get("live")), found.get("degradation"))
+                self._results.load(self.board)
+        return self._changed()
 
     @command
     def tables(self) -> dict[str, Any]:
@@ -71,6 +85,11 @@ class PredictionDesk(Desk):
         return {"files": rows[:RECENT], "examples": [{"name": n, "about": a} for n, a in EXAMPLES.items()]}
 
     @command
+    def weights(self) -> list[str]:
+        """Return the weights that were trained in the folder of the session."""
+        return self.session.workspace.files("trainings/*/best.npz")
+
+    @command
     def open(self, file: str, options: dict | None = None) -> dict[str, Any]:  # type: ignore[type-arg]
         """Open a recording of the folder of the session."""
         self._must_rest()
@@ -85,12 +104,8 @@ class PredictionDesk(Desk):
     def example(self, name: str) -> dict[str, Any]:
         """Copy a recording that ships into the folder of the session and open it."""
         self._must_rest()
-        if name not in EXAMPLES:
-            raise InputError(f"example {name!r:.40} does not exist{did_you_mean(name, EXAMPLES)}")
-        path = self.session.workspace.writable(f"examples/{name}.parquet")
-        with resources.as_file(resources.files("crowdbot").joinpath("assets", "recordings", path.name)) as source:
-            shutil.copyfile(source, path)
-        self.board.open(path, {}, f"examples/{path.name}")
+        file = copy_example(self.session.workspace, name)
+        self.board.open(self.session.workspace.readable(file), {}, file)
         return self._changed()
 
     @command
@@ -98,7 +113,7 @@ class PredictionDesk(Desk):
         """Put a picture behind the scene; without a homography, that of the recording, else pixels are coordinates."""
         path = self.session.workspace.readable(file)
         tracks = self.board.recording.tracks
-        matrix = read_homography(homography) if homography.strip() else tracks.homography
+        matrix = parse_homography(homography) if homography.strip() else tracks.homography
         if matrix is None and tracks.units == "m":
             raise InputError("give nine numbers of a homography, or metres per pixel: the recording is in metres")
         self.board.background = BackgroundPicture(path, matrix)
@@ -108,6 +123,8 @@ class PredictionDesk(Desk):
     def add(self, settings: dict) -> str:  # type: ignore[type-arg]
         """Add a predictor and return its key."""
         self._must_rest()
+        if settings.get("weights"):
+            settings = {**settings, "weights": shown_path(self.session.workspace.readable(str(settings["weights"])))}
         key = self.board.add(settings).key
         self._changed()
         return key
@@ -139,7 +156,10 @@ class PredictionDesk(Desk):
         """Calibrate the crowd of a predictor on all windows, as `crowdbot calibrate`."""
         self._must_rest()
         self._share = 0.0
-        self._run = PredictionRun(self.board.task([self.board.member(key)]), {}, self._note, calibrates=True)
+        member = self.board.member(key)
+        task, title = self.board.task([member]), f"{self.board.recording.name}: {member.label}"
+        line = self.calibrate_line(key)
+        self._run = PredictionRun(self.session.jobs, task, {}, self._note, title, line, calibrates=True)
         self.session.tell("prediction.progress", {"share": 0.0, "active": True})
 
     @command
@@ -218,8 +238,8 @@ class PredictionDesk(Desk):
             buffer = io.BytesIO()
             frame_table(self.board).to_parquet(buffer, index=False)
             return Resource(buffer.getvalue(), name=path)
-        if path == "animation.gif":
-            return self._animation(query)
+        if path in ANIMATIONS:
+            return self._animation(path, query)
         raise KeyError(path)
 
     def close(self) -> None:
@@ -234,7 +254,7 @@ class PredictionDesk(Desk):
         near = self.board.windows(DEGRADED)[0] if name == DEGRADED else None
         return window_frame(index, self.board.windows(), 1.0 / self.board.tracks.fps, shown, near)
 
-    def _animation(self, query: dict[str, str]) -> Resource:
+    def _animation(self, path: str, query: dict[str, str]) -> Resource:
         from crowdbot.benchmark import Evaluation, animate_window
 
         setup, members = self._setup, self._members()
@@ -244,8 +264,8 @@ class PredictionDesk(Desk):
             (setup.recording,), tuple(one.spec for one in members), samples, setup.best_of, setup.seed
         )
         with tempfile.TemporaryDirectory() as folder:
-            data = animate_window(evaluation, frame, Path(folder) / "frame.gif").read_bytes()
-        return Resource(data, "image/gif", f"frame-{frame}.gif")
+            data = animate_window(evaluation, frame, Path(folder) / path).read_bytes()
+        return Resource(data, ANIMATIONS[path], f"frame-{frame}{Path(path).suffix}")
 
     @property
     def _setup(self) -> PredictionSetup:
@@ -265,7 +285,10 @@ class PredictionDesk(Desk):
     def _start(self) -> None:
         task, results = self._queue.pop(0)
         self._share = 0.0
-        self._run = PredictionRun(task, results, self._note)
+        names = ", ".join(one.label for one in self.board.members)
+        degraded = f" after {task.degradation}" if task.degradation is not None else ""
+        title = f"{self.board.recording.name}{degraded}: {names}"
+        self._run = PredictionRun(self.session.jobs, task, results, self._note, title)
         self.session.tell("prediction.progress", {"share": 0.0, "active": True})
 
     def _note(self, event: str, data: Any) -> None:
@@ -273,10 +296,15 @@ class PredictionDesk(Desk):
         if event == "fit":
             self.board.member(data["key"]).fit = data["fit"]
             self._changed()
-        elif event == "ended" and self._queue and not data["problem"] and not data["cancelled"]:
-            self._start()
         elif event == "ended":
+            if self._queue and not data["problem"] and not data["cancelled"]:
+                try:
+                    self._start()
+                    return
+                except InputError as error:  # a limit of the session
+                    data = {**data, "problem": str(error)}
             self._share = 1.0
+            self._results.save(self.board)
             self.session.tell("prediction.board", {**self.board.facts(), "run": self._run_facts(ended=True)})
             self.session.tell("prediction.ended", data)
         else:
@@ -287,6 +315,10 @@ class PredictionDesk(Desk):
 
     def _changed(self) -> dict[str, Any]:
         facts = {**self.board.facts(), "run": self._run_facts()}
+        if (recording := facts["recording"]) is not None:
+            own = {"file": recording["path"], "options": recording["options"]}
+            own |= {"seed": recording["seed"], "live": recording["live"], "degradation": facts["degradation"]}
+            self._draft.save({**own, "predictors": [one.choice.settings for one in self.board.members]})
         self.session.tell("prediction.board", facts)
         return facts
 

@@ -177,6 +177,22 @@ class PredictorResults:
         """Return the results by frame so far."""
         return FrameResults.concatenate([part.frames for part in self._parts]) if self._parts else None
 
+    def whole(self) -> WindowPart | None:
+        """Return all windows with a result as one part, None if there is none; windows come in order."""
+        parts = [one for one in list(self._parts) if one.ids]
+        if not parts:
+            return None
+        return WindowPart(
+            parts[0].first,
+            FrameResults.concatenate([one.frames for one in parts]),
+            PersonErrors.concatenate([one.errors for one in parts]),
+            [ids for one in parts for ids in one.ids],
+            [paths for one in parts for paths in one.paths],
+            [weight for one in parts for weight in one.weight],
+            [fit for one in parts for fit in one.fit],
+            self.parameter_names(),
+        )
+
     def horizon(self) -> list[float | None]:
         """Return the mean error at each predicted row [m]."""
         if self.score is not None:

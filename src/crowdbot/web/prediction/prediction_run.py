@@ -1,13 +1,13 @@
-"""PredictionRun: a run in a worker process, and the results that are kept."""
+"""PredictionRun: a run as a job, and the results that are kept."""
 
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import multiprocessing.connection
-import threading
 from collections.abc import Callable
 from typing import Any
+
+from crowdbot.web.jobs.job import Job, JobWork
+from crowdbot.web.jobs.job_board import JobBoard
 
 from .prediction_results import PredictorResults
 from .prediction_worker import PredictionTask, run_calibration, run_task
@@ -16,35 +16,36 @@ __all__ = ["PredictionRun"]
 
 
 class PredictionRun:
-    """Predictors that run in a worker process; a thread collects their results.
+    """Predictors that run as a job of the session; its thread collects their results.
 
     Args:
+        jobs: the jobs of the session.
         task: what runs.
         results: where the results go, by the keys of the members; those of the members are emptied first.
         tell: called with an event and JSON data, from the thread.
-
+        title, command: for the list of jobs.
         calibrates: calibrate the crowds instead of predicting.
+
+    Raises:
+        InputError: a limit of the session is reached.
     """
 
     def __init__(
         self,
+        jobs: JobBoard,
         task: PredictionTask,
         results: dict[str, PredictorResults],
         tell: Callable[[str, Any], None],
+        title: str,
+        command: str = "",
         calibrates: bool = False,
     ) -> None:
         self.task, self._results, self._tell = task, results, tell
         self._total = len(task.members)
         self._done = 0
-        self._cancelled = self._ended = False
-        context = multiprocessing.get_context("spawn")
-        self._pipe, theirs = context.Pipe(duplex=False)
-        target = run_calibration if calibrates else run_task
-        self._process = context.Process(target=target, args=(task, theirs), daemon=True)
-        self._process.start()
-        theirs.close()
-        self._thread = threading.Thread(target=self._collect, name="crowdbot-prediction-run", daemon=True)
-        self._thread.start()
+        self._ended = False
+        kind, target = ("calibrate", run_calibration) if calibrates else ("predict", run_task)
+        self._job = jobs.submit(JobWork(kind, title, target, (task,), command), self._take, self._finish)
 
     @property
     def alive(self) -> bool:
@@ -53,44 +54,26 @@ class PredictionRun:
 
     def cancel(self) -> None:
         """End the run; the results so far are kept."""
-        self._cancelled = True
-        with contextlib.suppress(ValueError):  # it has ended and is closed
-            self._process.terminate()
-        self.join()
+        self._job.cancel()
 
     def join(self, timeout: float | None = 20.0) -> bool:
         """Wait for the end of the run; returns whether it has ended."""
-        self._thread.join(timeout)
-        return not self._thread.is_alive()
+        return self._job.join(timeout)
 
-    def _collect(self) -> None:
-        problem = ""
-        try:
-            while True:
-                kind, key, content = self._pipe.recv()
-                if kind == "end":
-                    problem = content
-                    break
-                self._take(kind, key, content)
-        except (EOFError, OSError):
-            if not self._cancelled:
-                problem = "the worker process of the run has died (out of memory?)"
+    def _finish(self, job: Job) -> None:
         for member in self.task.members:
             with contextlib.suppress(KeyError):
-                self._results[member.key].stop(self._cancelled)
+                self._results[member.key].stop(job.cancelled)
         self._ended = True
-        self._tell("ended", {"problem": problem, "cancelled": self._cancelled})
-        self._process.join()
-        self._process.close()
-        self._pipe.close()
+        self._tell("ended", {"problem": job.record.problem, "cancelled": job.cancelled})
 
-    def _take(self, kind: str, key: str, content: Any) -> None:
+    def _take(self, kind: str, key: str, content: Any) -> float | None:
         if kind in ("share", "fit", "problem"):
             self._tell({"share": "progress"}.get(kind, kind), {"key": key, kind: content})
-            return
+            return content if kind == "share" else None
         found = self._results.get(key)
         if found is None:  # the predictor was removed while it ran
-            return
+            return None
         if kind == "begin":
             found.begin(content)
         elif kind == "part":
@@ -113,3 +96,4 @@ class PredictionRun:
         name = "clean" if self.task.degradation is None else "degraded"
         counts = {"done": found.count, "windows": len(found.past), "state": found.state, "problem": found.problem}
         self._tell("progress", {"key": key, "share": share, "input": name, **counts})
+        return share

@@ -16,7 +16,7 @@ from crowdbot.data import Degradation, Recording
 from .form_rows import builtin_kinds, written_values
 from .predictor_choice import PredictorChoice
 
-__all__ = ["DegradationChoice", "PredictionSetup", "recording_of"]
+__all__ = ["DegradationChoice", "PredictionSetup", "recording_of", "shown_path"]
 
 OPTIONS = (
     "format",
@@ -97,10 +97,11 @@ class PredictionSetup:
 
     def command(self, choice: PredictorChoice, degradation: DegradationChoice | None = None) -> str:
         """Return the command line that gives the same numbers for a predictor."""
-        words = ["crowdbot", "predict" if degradation is None else "degrade", *self._words(), *choice.words()]
+        own = choice.words()
+        if degradation is not None:  # there --set is for the degradation
+            own = ["--set-predictor" if word == "--set" else word for word in own]
+        words = ["crowdbot", "predict" if degradation is None else "degrade", *self._words(), *own]
         if degradation is not None:
-            if choice.values:
-                raise InputError("crowdbot degrade does not set parameters of predictors; copy it as Python instead")
             words += [*degradation.words(), "--draws", "1"]
         elif self.live:
             words.append("--live")
@@ -124,7 +125,7 @@ class PredictionSetup:
         given = {f.name: getattr(self.recording, f.name) for f in dataclasses.fields(Recording) if f.name != "path"}
         own = {key: value for key, value in given.items() if value != Recording.__dataclass_fields__[key].default}
         words = "".join(f", {key}={value!r}" for key, value in own.items())
-        lines = [f"recording = Recording({_shown_path(self.recording.path)!r}{words})"]
+        lines = [f"recording = Recording({shown_path(self.recording.path)!r}{words})"]
         parts = [self._part(choice, degradation) for choice in choices]
         body = "\n".join([*lines, *parts])
         return f"{_imports(body)}\n\n{body}\n"
@@ -155,7 +156,7 @@ class PredictionSetup:
         )
 
     def _words(self) -> list[str]:
-        found = ["--data", _shown_path(self.recording.path)]
+        found = ["--data", shown_path(self.recording.path)]
         for name in OPTIONS:
             value = getattr(self.recording, name)
             if value != Recording.__dataclass_fields__[name].default:
@@ -188,10 +189,10 @@ def recording_of(path: Path, options: Mapping[str, Any]) -> Recording:
     return Recording(str(path), **given)
 
 
-def _shown_path(path: str) -> str:
+def shown_path(path: str | Path) -> str:
     """Return a path relative to the working folder, if the file is inside it."""
     here = Path.cwd()
-    return os.path.relpath(path, here) if Path(path).is_relative_to(here) else path
+    return os.path.relpath(path, here) if Path(path).is_relative_to(here) else str(path)
 
 
 def _imports(body: str) -> str:

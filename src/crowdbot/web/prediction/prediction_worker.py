@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
-import multiprocessing.connection
-import signal
 import time
 import warnings
 from dataclasses import dataclass
@@ -19,6 +16,7 @@ from crowdbot.core import CrowdbotError, InputError, stream
 from crowdbot.data import Degradation, DegradedTracks, Recording, Windows
 from crowdbot.metrics import PersonErrors, Score
 from crowdbot.prediction import PredictorSpec, Simulated, degraded_windows
+from crowdbot.web.jobs.job_process import JobPipe
 
 __all__ = ["PredictionTask", "TaskMember", "WindowPart", "input_windows", "run_calibration", "run_task"]
 
@@ -109,20 +107,17 @@ def input_windows(recording: Recording, degradation: Degradation | None, seed: i
     return seen.past, seen.future
 
 
-def run_task(task: PredictionTask, pipe: multiprocessing.connection.Connection) -> None:
+def run_task(pipe: JobPipe, task: PredictionTask) -> None:
     """Predict all windows with all predictors and send messages ``(kind, key, content)``.
 
-    Kinds are ``begin`` (number of windows), ``part`` (:class:`WindowPart`), ``score``, ``failed`` (sentence) and
-    ``end``.
+    Kinds are ``begin`` (number of windows), ``part`` (:class:`WindowPart`), ``score`` and ``failed`` (sentence).
+
+    Raises:
+        InputError: the rows cannot be degraded so.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends this process
-    with contextlib.suppress(BrokenPipeError, ConnectionError), warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".* is used instead$")
-        try:
-            past, future = input_windows(task.recording, task.degradation, task.seed)
-        except CrowdbotError as error:
-            pipe.send(("end", "", str(error)))
-            return
+        past, future = input_windows(task.recording, task.degradation, task.seed)
         for member in task.members:
             pipe.send(("begin", member.key, len(past)))
             try:
@@ -131,7 +126,6 @@ def run_task(task: PredictionTask, pipe: multiprocessing.connection.Connection) 
                 pipe.send(("failed", member.key, str(error)))
             except (ArithmeticError, LookupError, MemoryError, TypeError, ValueError) as error:
                 pipe.send(("failed", member.key, f"{type(error).__name__}: {error}; this is a bug in crowdbot"))
-        pipe.send(("end", "", ""))
 
 
 def _run_member(
@@ -139,7 +133,7 @@ def _run_member(
     member: TaskMember,
     past: Windows,
     future: Windows,
-    pipe: multiprocessing.connection.Connection,
+    pipe: JobPipe,
 ) -> None:
     member.spec.check(task.recording, task.live)
     predictor = member.spec.build(task.recording)
@@ -165,19 +159,13 @@ def _run_member(
     pipe.send(("score", member.key, score))
 
 
-def run_calibration(task: PredictionTask, pipe: multiprocessing.connection.Connection) -> None:
+def run_calibration(pipe: JobPipe, task: PredictionTask) -> None:
     """Calibrate the crowds of the members on all windows, as `crowdbot calibrate`; sends ``share`` and ``fit``."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with contextlib.suppress(BrokenPipeError, ConnectionError):
-        for member in task.members:
-            try:
-                _calibrate_member(task, member, pipe)
-            except CrowdbotError as error:
-                pipe.send(("problem", member.key, str(error)))
-        pipe.send(("end", "", ""))
+    for member in task.members:
+        _calibrate_member(task, member, pipe)
 
 
-def _calibrate_member(task: PredictionTask, member: TaskMember, pipe: multiprocessing.connection.Connection) -> None:
+def _calibrate_member(task: PredictionTask, member: TaskMember, pipe: JobPipe) -> None:
     crowd = member.spec.predictor
     if not isinstance(crowd, Simulated) or crowd.calibrator is None:
         raise InputError(f"{member.spec.name} has no cost and no search, so there is nothing to calibrate")

@@ -9,7 +9,7 @@ from typing import Any
 
 from crowdbot.calibration import goal_class, resolve_search
 from crowdbot.core import InputError, did_you_mean, from_attributes, kebab_case
-from crowdbot.prediction import PredictorSpec, Simulated
+from crowdbot.prediction import WEIGHTS_FIELDS, PredictorSpec, Simulated
 
 from .form_rows import builtin_kinds, written_values
 
@@ -34,6 +34,7 @@ class PredictorChoice:
         free: calibrated parameters; empty means all.
         learnt: ``prior`` or ``shared`` if the learning part of the recording gives a prior or one set of parameters.
         values: parameters that differ from their defaults, as words.
+        weights: file of trained weights of a learned predictor; empty means those that ship.
 
     >>> choice = PredictorChoice.of({"predictor": "simulated", "model": "orca", "values": {"time_horizon": 3.0}})
     >>> " ".join(choice.words())
@@ -52,6 +53,7 @@ class PredictorChoice:
     free: tuple[str, ...] = ()
     learnt: str = ""
     values: tuple[tuple[str, str], ...] = ()
+    weights: str = ""
 
     @classmethod
     def of(cls, settings: Mapping[str, Any]) -> PredictorChoice:
@@ -71,7 +73,12 @@ class PredictorChoice:
         own: dict[str, Any] = {"predictor": settings["predictor"], "samples": _count(settings, "samples", MOST_SAMPLES)}
         if kind is not Simulated:
             found = written_values(kind, values, own["predictor"])
-            return cls(**own, values=tuple(found.items()))
+            weights = settings.get("weights") or ""
+            if weights and own["predictor"] not in WEIGHTS_FIELDS:
+                raise InputError(f"{own['predictor']} has no weights; known are {', '.join(WEIGHTS_FIELDS)}")
+            if weights:
+                found[WEIGHTS_FIELDS[own["predictor"]]] = str(weights)
+            return cls(**own, values=tuple(found.items()), weights=str(weights))
         parts = (("model", "models"), ("cost", "costs"), ("search", "searches"), ("goal", "goals"))
         for part, kinds in parts:
             if settings.get(part):
@@ -96,7 +103,10 @@ class PredictorChoice:
     @property
     def settings(self) -> dict[str, Any]:
         """The choice as JSON."""
-        return {**dataclasses.asdict(self), "free": list(self.free), "values": dict(self.values)}
+        values = dict(self.values)
+        if self.weights:
+            values.pop(WEIGHTS_FIELDS[self.predictor])
+        return {**dataclasses.asdict(self), "free": list(self.free), "values": values}
 
     def spec(self) -> PredictorSpec:
         """Return the predictor.

@@ -12,6 +12,7 @@ from crowdbot.sensors import DepthCamera, Infrared, Lidar2D, Lidar3D, RGBCamera,
 from crowdbot.simulation import Simulation
 from crowdbot.world import PeopleMotion, Robot, worlds_of
 
+from .camera_images import image_descriptions
 from .frame import LAYERS
 from .meshes import shown_links
 from .scene_revision import scene_revision
@@ -32,7 +33,8 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
     ``stage`` (walls, ground, doors, props); ``zones``; ``regions`` and ``parts`` of bodies; ``people`` with lists for
     all people: ``body`` (row of the asset), ``kind`` (its name), ``scale``, ``height`` [m], ``colors`` (six digits for
     each region), ``parts`` (bits of the parts that are worn), ``radius`` [m] and ``rider``; ``robots``; ``sensors``;
-    ``layers`` (names and titles of :data:`crowdbot.web.scene.LAYERS`).
+    ``images`` of cameras, see :func:`image_descriptions`; ``layers`` (names and titles of
+    :data:`crowdbot.web.scene.LAYERS`).
 
     Args:
         simulation: the simulation.
@@ -62,6 +64,7 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
         "sensors": [
             _sensor(robot, sensor) for robot, one in enumerate(simulation.robots) for sensor in one.sensors
         ],
+        "images": image_descriptions(simulation),
         "layers": [{"name": name, "title": title} for name, title in LAYERS.items()],
     }  # fmt: skip
 

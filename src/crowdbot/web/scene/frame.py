@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.sensors import Infrared, Lidar2D, Lidar3D, Ultrasound
-from crowdbot.simulation import RobotControl, Simulation
+from crowdbot.simulation import Simulation
 from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import PeopleMotion, worlds_of
 
+from .bone_packing import pack_bones
+from .crowd_layers import collision_lines, density_field
 from .quaternions import quaternions
-from .robot_links import link_poses
+from .scene_instant import SceneInstant
 from .scene_revision import scene_revision
 from .sensor_arrays import cloud_array, range_array, scan_array
 
-__all__ = ["LAYERS", "scene_frame"]
+__all__ = ["LAYERS", "instant_frame", "scene_frame"]
 
-Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 LAYERS = {
     "scans": "Laser returns",
@@ -29,10 +30,11 @@ LAYERS = {
     "ranges": "Sonar and infrared cones",
     "forces": "Contact forces",
     "goals": "Goals of people and robots",
+    "paths": "Predicted paths, 4.8 s",
+    "density": "Density of people [1/m²]",
+    "ttc": "Time to collision below 3 s",
 }
 """Layers that are computed only when asked for: names and titles."""
-BONE_UNIT = 32767.0
-"""Quaternions are sent in units of ``1 / BONE_UNIT``."""
 
 
 def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: PeopleMotion | None = None) -> StateFrame:
@@ -45,7 +47,8 @@ def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: Pe
     [R, 5]; ``links`` [L, 7] position and quaternion of the links with shapes of these robots, one robot after the
     other; ``doors`` [D]; ``props`` [P, 7] pose of movable props, and ``propnum`` [P] their numbers. Layers add:
     ``scanK`` and ``poseK`` for scanner K of the description; ``cloudK`` [M, 3]; ``cones``; ``forces`` [F, 6] point [m]
-    and vector [N]; ``goals`` [N, 2].
+    and vector [N]; ``goals`` [N, 2]; ``paths`` [P, 2 (S + 1)] and their step, see :class:`PredictedPaths`; ``density``
+    [H, W] and ``densbox`` [3], see :func:`density_field`; ``ttc`` [C, 5], see :func:`collision_lines`.
 
     Args:
         simulation: the simulation; ``posed=True``, unless ``people`` is given.
@@ -62,36 +65,34 @@ def scene_frame(simulation: Simulation, layers: Collection[str] = (), people: Pe
     >>> frame.arrays["bones"].shape, frame.arrays["links"].shape[1]
     ((1, 112), 7)
     """
+    return instant_frame(SceneInstant.of(simulation, people), layers)
+
+
+def instant_frame(instant: SceneInstant, layers: Collection[str] = ()) -> StateFrame:
+    """Return the frame of an instant, see :func:`scene_frame`.
+
+    Raises:
+        InputError: a layer is unknown.
+    """
     unknown = [name for name in layers if name not in LAYERS]
     if unknown:
         raise InputError(f"layer {unknown[0]!r} of a scene does not exist; layers are {', '.join(LAYERS)}")
-    motion = people or _motion(simulation)
-    scene = simulation.world.environment_scene(0)
-    active = scene.active[0]
-    rows = np.flatnonzero(active[motion.agents])
+    motion, scene = instant.motion, instant.scene
+    rows = np.flatnonzero(scene.active[0][motion.agents])
     agents = motion.agents[rows]
     posture = motion.posture()
-    bones = np.round(BONE_UNIT * quaternions(posture.rotation[rows]))
     arrays: Arrays = {
-        "revision": np.array([scene_revision(simulation, motion)], dtype=np.uint32),
+        "revision": np.array([scene_revision(instant.simulation, motion)], dtype=np.uint32),
         "who": rows.astype(np.uint16),
-        "ids": simulation.world.ids[0, agents].astype(np.int32),
+        "ids": instant.ids[agents].astype(np.int32),
         "place": _places(scene, agents),
         "pelvis": posture.position[rows, 0].astype(np.float32),
-        "bones": bones.astype(np.int16).reshape(len(rows), 4 * posture.rotation.shape[1]),
+        "bones": pack_bones(posture.rotation, rows),
     }
-    arrays |= _robots(simulation, scene) | _things(simulation)
+    arrays |= _robots(instant) | _things(instant.simulation)
     for layer in layers:
-        arrays |= MAKERS[layer](simulation, scene, agents)
-    return StateFrame("scene", float(simulation.world.times[0]), arrays)
-
-
-def _motion(simulation: Simulation) -> PeopleMotion:
-    motion = worlds_of(simulation.world)[0].people
-    if motion is None:
-        raise InputError("the simulation has no bodies of people: make it with posed=True")
-    found: PeopleMotion = motion
-    return found
+        arrays |= MAKERS[layer](instant, agents)
+    return StateFrame("scene", instant.time, arrays)
 
 
 def _places(scene: Any, agents: NDArray[np.int64]) -> NDArray[np.float32]:
@@ -99,13 +100,13 @@ def _places(scene: Any, agents: NDArray[np.int64]) -> NDArray[np.float32]:
     return np.concatenate([scene.position[0, agents], heading, scene.velocity[0, agents]], axis=1).astype(np.float32)
 
 
-def _robots(simulation: Simulation, scene: Any) -> Arrays:
-    present = [(k, one) for k, one in enumerate(simulation.robots) if scene.active[0, one.agent]]
+def _robots(instant: SceneInstant) -> Arrays:
+    present = [(k, one) for k, one in enumerate(instant.simulation.robots) if instant.scene.active[0, one.agent]]
     agents = np.array([one.agent for _, one in present], dtype=np.int64)
-    links = [link_poses(simulation, scene, one) for _, one in present]
+    links = [instant.links(one) for _, one in present]
     return {
         "bots": np.array([k for k, _ in present], dtype=np.uint16),
-        "botplace": _places(scene, agents),
+        "botplace": _places(instant.scene, agents),
         "links": np.concatenate([np.zeros((0, 7)), *links]).astype(np.float32),
     }
 
@@ -124,49 +125,59 @@ def _things(simulation: Simulation) -> Arrays:
     return found
 
 
-def _sensors(simulation: Simulation, kinds: tuple[type, ...]) -> list[tuple[int, RobotControl, Any]]:
-    """Return number, robot and sensor of the sensors of some kinds; numbers are those of the description."""
-    every = [(robot, sensor) for robot in simulation.robots for sensor in robot.sensors]
-    return [(k, robot, one) for k, (robot, one) in enumerate(every) if isinstance(one.mount.sensor, kinds)]
-
-
-def _scans(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
-    found = Arrays()
-    for number, robot, sensor in _sensors(simulation, (Lidar2D,)):
-        reading = sensor.reading(0)
-        if reading is not None and scene.active[0, robot.agent]:
-            found |= scan_array(number, reading, sensor)
-    return found
-
-
-def _clouds(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
-    found = Arrays()
-    for number, robot, sensor in _sensors(simulation, (Lidar3D,)):
-        reading = sensor.reading(0)
-        if reading is not None and scene.active[0, robot.agent]:
-            found |= cloud_array(number, reading)
-    return found
-
-
-def _ranges(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
-    rows = [
-        range_array(number, sensor)
-        for number, robot, sensor in _sensors(simulation, (Ultrasound, Infrared))
-        if sensor.reading(0) is not None and scene.active[0, robot.agent]
+def _readings(instant: SceneInstant, kinds: tuple[type, ...]) -> list[tuple[int, Any, Any]]:
+    """Return number, sensor and reading of the sensors of some kinds; numbers are those of the description."""
+    every = [(robot, sensor) for robot in instant.simulation.robots for sensor in robot.sensors]
+    found = [
+        (k, sensor, instant.reading(robot, sensor))
+        for k, (robot, sensor) in enumerate(every)
+        if isinstance(sensor.mount.sensor, kinds) and instant.scene.active[0, robot.agent]
     ]
+    return [row for row in found if row[2] is not None]
+
+
+def _scans(instant: SceneInstant, agents: Any) -> Arrays:
+    found = Arrays()
+    for number, sensor, reading in _readings(instant, (Lidar2D,)):
+        found |= scan_array(number, reading, sensor)
+    return found
+
+
+def _clouds(instant: SceneInstant, agents: Any) -> Arrays:
+    found = Arrays()
+    for number, _, reading in _readings(instant, (Lidar3D,)):
+        found |= cloud_array(number, reading)
+    return found
+
+
+def _ranges(instant: SceneInstant, agents: Any) -> Arrays:
+    rows = [range_array(reading, sensor) for _, sensor, reading in _readings(instant, (Ultrasound, Infrared))]
     return {"cones": np.array(rows, dtype=np.float32).reshape(-1, 9)}
 
 
-def _forces(simulation: Simulation, scene: Any, agents: Any) -> Arrays:
-    rows = [(*one.point, *one.vector) for one in simulation.world.forces_of(0)]
-    return {"forces": np.array(rows, dtype=np.float32).reshape(-1, 6)}
+def _forces(instant: SceneInstant, agents: Any) -> Arrays:
+    return {"forces": np.array(instant.forces(), dtype=np.float32).reshape(-1, 6)}
 
 
-def _goals(simulation: Simulation, scene: Any, agents: NDArray[np.int64]) -> Arrays:
-    return {"goals": scene.goal[0, agents].astype(np.float32)}
+def _goals(instant: SceneInstant, agents: NDArray[np.int64]) -> Arrays:
+    return {"goals": instant.scene.goal[0, agents].astype(np.float32)} if instant.goals_known else {}
 
 
-MAKERS: dict[str, Callable[[Simulation, Any, NDArray[np.int64]], Arrays]] = {
+def _paths(instant: SceneInstant, agents: Any) -> Arrays:
+    return {"paths": instant.paths()}
+
+
+def _density(instant: SceneInstant, agents: NDArray[np.int64]) -> Arrays:
+    field, place = density_field(instant.scene.position[0, agents])
+    return {"density": field, "densbox": place}
+
+
+def _ttc(instant: SceneInstant, agents: Any) -> Arrays:
+    return {"ttc": collision_lines(instant.scene)}
+
+
+MAKERS: dict[str, Callable[[SceneInstant, NDArray[np.int64]], Arrays]] = {
     "scans": _scans,
-    "clouds": _clouds, "ranges": _ranges, "forces": _forces, "goals": _goals,
+    "clouds": _clouds, "ranges": _ranges, "forces": _forces, "goals": _goals, "paths": _paths,
+    "density": _density, "ttc": _ttc,
 }  # fmt: skip

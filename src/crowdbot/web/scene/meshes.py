@@ -13,6 +13,8 @@ from crowdbot.web.desk import Resource
 from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import Robot, link_surface
 
+from .mesh_textures import TexturedFaces, texture_arrays
+
 __all__ = ["body_mesh", "robot_mesh", "scene_resource", "shown_links"]
 
 Floats = NDArray[np.float64]
@@ -91,10 +93,12 @@ def robot_mesh(robot: Robot) -> StateFrame:
     """Return the triangles of a robot.
 
     Arrays: ``vertices`` [N, 3] [m] in the frame of their link, ``faces`` [M, 3], ``color`` [M, 4] and ``first`` [L]
-    number of faces before each link of :func:`shown_links`.
+    number of faces before each link of :func:`shown_links`. With textures also ``uv`` [N, 2]; ``textured`` [T, 3] first
+    face, the one after the last, and number of the image; and PNG files ``image0``, ``image1``, ...
     """
     vertices, faces, colors, first = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], [np.zeros((0, 4), np.uint8)], []
     points = triangles = 0
+    coordinates, textures = [np.zeros((0, 2))], list[TexturedFaces]()
     for name in shown_links(robot):
         surface = link_surface(robot.model.links[name])
         assert surface is not None
@@ -102,6 +106,8 @@ def robot_mesh(robot: Robot) -> StateFrame:
         vertices.append(surface.vertices)
         faces.append(surface.faces + points)
         colors.append(surface.colors)
+        coordinates.append(surface.uv)
+        textures += [one._replace(first=one.first + triangles, last=one.last + triangles) for one in surface.textures]
         points, triangles = points + len(surface.vertices), triangles + len(surface.faces)
     return StateFrame(
         "robot", 0.0,
@@ -110,6 +116,7 @@ def robot_mesh(robot: Robot) -> StateFrame:
             "faces": np.concatenate(faces).astype(np.uint32),
             "color": np.concatenate(colors),
             "first": np.array(first, dtype=np.uint32),
+            **texture_arrays(textures, np.concatenate(coordinates)),
         },
     )  # fmt: skip
 

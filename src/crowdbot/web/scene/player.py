@@ -7,16 +7,18 @@ import gzip
 import html
 import json
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from crowdbot.core import InputError, lock_output
-from crowdbot.recording import open_rerun, read_episode
+from crowdbot.recording import RecordedEpisode, open_rerun, read_episode
 from crowdbot.simulation import Simulation, SimulationRun
 
+from .camera_images import encode_image, image_descriptions, sensor_images
 from .description import scene_description
+from .episode_events import EpisodeEvent, episode_events
 from .frame import LAYERS, scene_frame
 from .meshes import scene_resource
 
@@ -81,6 +83,7 @@ def write_player(
     """Write an episode as one HTML file that plays in any browser, without a server and without the net.
 
     The episode runs again with its seed and its orders, with bodies of people. Between two frames the page blends.
+    Images of cameras are those of the records.
 
     Args:
         episode: the episode, which is not a branch.
@@ -124,7 +127,8 @@ def write_player(
             running.step()
             if progress is not None:
                 progress(simulation.tick / max(1, recorded.steps))
-        text = _page(pack, simulation)
+        images = _add_images(pack, simulation, recorded)
+        text = _page(pack, simulation, episode_events(recorded), images)
         path.write_text(text, encoding="utf-8")
     return PlayerFile(path, frames, last, len(text.encode()))
 
@@ -140,11 +144,32 @@ def _add_instant(pack: _Pack, simulation: Simulation) -> None:
     pack.add_frame(frame.encode())
 
 
-def _page(pack: _Pack, simulation: Simulation) -> str:
+def _add_images(pack: _Pack, simulation: Simulation, recorded: RecordedEpisode) -> list[dict[str, Any]]:
+    """Add the recorded images ``image/NUMBER/ROW``; return the description, type and times [s] of those of a number."""
+    found: list[dict[str, Any]] = []
+    for image, about in zip(sensor_images(simulation), image_descriptions(simulation), strict=True):
+        times, kind = list[float](), ""
+        for reading in recorded.readings.get(f"{image.control.robot.name}/{image.sensor.name}", ()):
+            frame = encode_image(reading, image, "image")
+            kind = "png" if "png" in frame.arrays else "jpeg"
+            data = frame.arrays[kind].tobytes()
+            pack.add(f"image/{len(found)}/{len(times)}", data)
+            pack.size += len(data)
+            times.append(frame.time)
+            if pack.size > LARGEST:
+                raise InputError(f"{recorded.name} is too long for one file: with its camera images it needs more than"
+                                 f" {LARGEST / 1e6:g} MB")  # fmt: skip
+        if times:
+            found.append({"image": about, "type": f"image/{kind}", "times": times})
+    return found
+
+
+def _page(pack: _Pack, simulation: Simulation, events: Sequence[EpisodeEvent], images: Sequence[dict[str, Any]]) -> str:
     trial = simulation.trial
     for level in LEVELS:
         pack.add(f"bodies/{level}.bin", scene_resource(simulation, f"bodies/{level}.bin", {}).data)
     index: dict[str, Any] = {"name": trial.name, "about": trial.about, "layers": SHOWN, "optional": list(LAYERS)}
+    index |= {"events": [one._asdict() for one in events], "images": images}
     pack.add("index.json", json.dumps(index).encode())
     folder = resources.files("crowdbot").joinpath("assets", "web")
     page, style, script, licenses = (

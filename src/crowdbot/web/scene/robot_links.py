@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from crowdbot.world import Robot, free_joints, simulated_body
 from .meshes import shown_links
 from .quaternions import quaternions
 
-__all__ = ["link_poses"]
+__all__ = ["link_frames", "link_poses", "standing_links"]
 
 Floats = NDArray[np.float64]
 
@@ -30,19 +31,32 @@ def link_poses(simulation: Simulation, scene: Any, control: RobotControl) -> Flo
     if body is not None:
         frames = body.frames()
         found = np.array([frames[name] for name in names]).reshape(-1, 4, 4)
-    else:
-        x, y = scene.position[0, control.agent].tolist()
-        heading = float(scene.heading[0, control.agent])
-        base = np.eye(4)
-        base[:2, :2] = [[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]]
-        base[:3, 3] = x, y, robot.lift
-        found = base @ _resting(robot, tuple(control.joints[0].tolist()))
+        return np.concatenate([found[:, :3, 3], quaternions(found[:, :3, :3])], axis=1)
+    targets = tuple(None if math.isnan(at) else at for at in control.joints[0].tolist())  # NaN is never cached
+    return standing_links(scene, control.agent, _resting(robot, targets))
+
+
+def standing_links(scene: Any, agent: int, links: Floats) -> Floats:
+    """Return position [m] and quaternion ``[L, 7]`` in the world of links ``[L, 4, 4]`` of an upright robot."""
+    x, y = scene.position[0, agent].tolist()
+    heading = float(scene.heading[0, agent])
+    base = np.eye(4)
+    base[:2, :2] = [[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]]
+    base[:2, 3] = x, y
+    found = base @ links
     return np.concatenate([found[:, :3, 3], quaternions(found[:, :3, :3])], axis=1)
 
 
 @functools.lru_cache(maxsize=64)
-def _resting(robot: Robot, targets: tuple[float, ...]) -> Floats:
-    """Return the frames ``[L, 4, 4]`` of the links with shapes in the root frame; NaN for joints without a target."""
-    joints = {name: at for name, at in zip(free_joints(robot), targets, strict=True) if not math.isnan(at)}
+def _resting(robot: Robot, targets: tuple[float | None, ...]) -> Floats:
+    """Return the frames ``[L, 4, 4]`` of the links with shapes in the base frame; None for joints without a target."""
+    joints = {name: at for name, at in zip(free_joints(robot), targets, strict=True) if at is not None}
+    return link_frames(robot, joints)
+
+
+def link_frames(robot: Robot, joints: Mapping[str, float]) -> Floats:
+    """Return the frames ``[L, 4, 4]`` of the links with shapes for positions of joints; others are at rest."""
     poses = robot.model.poses({**robot.posture, **joints})
-    return np.array([poses[name] for name in shown_links(robot)]).reshape(-1, 4, 4)
+    found = np.array([poses[name] for name in shown_links(robot)]).reshape(-1, 4, 4)
+    found[:, 2, 3] += robot.lift
+    return found

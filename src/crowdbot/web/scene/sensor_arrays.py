@@ -33,9 +33,8 @@ def cloud_array(number: int, reading: Any) -> dict[str, NDArray[Any]]:
     return {f"cloud{number}": points[:: max(1, -(-len(points) // MOST_POINTS))].astype(np.float32)}
 
 
-def range_array(number: int, sensor: Any) -> tuple[float, ...]:
+def range_array(reading: Any, sensor: Any) -> tuple[float, ...]:
     """Return the row of a cone: pose of the sensor (7), length [m], and 1 with an echo or 0 without."""
-    reading = sensor.reading(0)
     distance = float(reading.ranges[0])
     echo = bool(np.isfinite(distance))
     kind = sensor.mount.sensor

@@ -1,6 +1,8 @@
 """The simulator tab: a running trial or a recorded episode, steered by orders."""
 
-from .simulator_desk import SimulatorDesk
+from .live_run import LiveRun
+from .simulator_desk import FIRST, SimulatorDesk
 from .stage_view import StageView
+from .steering_desk import navigator_orders
 
-__all__ = ["SimulatorDesk", "StageView"]
+__all__ = ["FIRST", "LiveRun", "SimulatorDesk", "StageView", "navigator_orders"]

@@ -11,6 +11,7 @@ from crowdbot.core import builtin_name
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import Navigator
 from crowdbot.simulation import RobotControl, Simulation
+from crowdbot.web.scene import SceneInstant
 from crowdbot.world import Drive, slot_of
 
 __all__ = ["inspect_agent", "people_rows"]
@@ -49,14 +50,21 @@ def inspect_agent(simulation: Simulation, agent: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def people_rows(simulation: Simulation) -> list[dict[str, Any]]:
-    """Return id, kind, name and place of everybody who is present, for choosing without a mouse."""
-    scene, found = simulation.world.environment_scene(0), []
+def people_rows(simulation: Simulation, recorded: SceneInstant | None = None) -> list[dict[str, Any]]:
+    """Return id, kind, name and place of everybody who is present, for choosing without a mouse.
+
+    Args:
+        simulation: the simulation.
+        recorded: a recorded instant, instead of that of the simulation.
+    """
+    found = []
+    scene = simulation.world.environment_scene(0) if recorded is None else recorded.scene
+    ids = simulation.world.ids[0] if recorded is None else recorded.ids
     robots = {one.agent: one.robot.name for one in simulation.robots}
     for slot in np.flatnonzero(scene.active[0]).tolist():
         x, y = scene.position[0, slot].round(2).tolist()
         kind, name = ("robot", robots[slot]) if slot in robots else ("person", _avatar(simulation, slot))
-        found.append({"id": int(simulation.world.ids[0, slot]), "kind": kind, "name": name, "x": x, "y": y})
+        found.append({"id": int(ids[slot]), "kind": kind, "name": name, "x": x, "y": y})
     return found
 
 

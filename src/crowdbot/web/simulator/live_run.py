@@ -14,18 +14,21 @@ from typing import Any
 from crowdbot.core import CrowdbotError, InputError, TrialError, notify_compiling
 from crowdbot.navigation import Navigator
 from crowdbot.recording import Recorder, open_run, repair
-from crowdbot.simulation import EpisodeStatistics, Order, Simulation, SimulationRun
+from crowdbot.simulation import EpisodeStatistics, Order, OrderSource, Simulation, SimulationRun
 from crowdbot.trials import Trial
 
-from .held_control import HeldAvatar, HeldVelocity
+from .beginning_player import BeginningPlayer
 from .paced_loop import PacedLoop
+from .recorded_beginning import RecordedBeginning
 from .stage_view import StageView
 
 __all__ = ["LiveRun"]
 
-Controls = dict[str, HeldVelocity | HeldAvatar]
+Controls = dict[str, OrderSource]
 SHARE = 0.02
 """Largest share of the real time for metrics that are computed while a trial runs."""
+SEAMLESS = 10.0
+"""Time of the recording [s] up to which the run goes on there; later, the run is shown from its start."""
 
 
 class LiveRun:
@@ -39,12 +42,20 @@ class LiveRun:
         view: sends the state to the windows.
         tell: called in the thread of the run when the status has changed.
         paused: whether the run waits at its start.
+        beginning: recording of the same run, shown until it is prepared, or None.
     """
 
     kind = "run"
 
     def __init__(
-        self, trial: Trial, seed: int, file: Path, view: StageView, tell: Callable[[Any], None], paused: bool = False
+        self,
+        trial: Trial,
+        seed: int,
+        file: Path,
+        view: StageView,
+        tell: Callable[[Any], None],
+        paused: bool = False,
+        beginning: RecordedBeginning | None = None,
     ) -> None:
         self.trial, self.seed, self.file, self.view = trial, seed, file, view
         self._tell = tell
@@ -64,7 +75,13 @@ class LiveRun:
         self._chains: deque[Order] = deque()
         self._stack = contextlib.ExitStack()
         self._run: SimulationRun | None = None
-        self.loop = PacedLoop(trial.step, self._advance, self._begin, self._end, paused)
+        self.loop = PacedLoop(trial.step, self._advance, self._begin, self._end, paused, view.settle)
+        self.beginning: BeginningPlayer | None = None
+        """Shows a recording until the run is prepared."""
+        if beginning is not None:
+            self.beginning = BeginningPlayer(
+                beginning, trial, view.session, lambda: 0.0 if self.loop.paused else self.loop.speed or 1.0
+            )
 
     @property
     def simulation(self) -> Simulation:
@@ -121,10 +138,13 @@ class LiveRun:
 
     def start(self) -> None:
         """Start the thread."""
+        if self.beginning is not None:
+            self.beginning.start()
         self.loop.start()
 
     def close(self, wait: float | None = None) -> None:
         """Stop the run and remove its recording."""
+        self._stop_beginning()
         self.view.close()
         self.loop.close(wait)
 
@@ -132,11 +152,12 @@ class LiveRun:
         """Return the status, JSON."""
         run = self._run
         time_now = 0.0 if run is None else float(run.simulation.world.times[0])
+        recorded = self.beginning is not None and self.beginning.active
         return {
             "kind": self.kind, "state": self._state_word(), "time": time_now, "duration": self.trial.duration,
             "speed": self.loop.speed, "factor": self.view.factor, "seed": self.seed, "trial": self.trial.name,
             "outcome": None if run is None else run.outcome, "problems": self.problems, "orders": self.given,
-            "compiling": self.compiling, "values": self.values,
+            "compiling": self.compiling, "recorded": recorded, "values": self.values,
             "metrics": {key: one for key, one in self.metrics.items() if math.isfinite(one)},
         }  # fmt: skip
 
@@ -150,6 +171,8 @@ class LiveRun:
             with notify_compiling(self._note_compiling):
                 run = self._stack.enter_context(open_run(self.trial, self.seed, self.file, force=True))
                 self.view.open(run.simulation)
+                if not self.loop.paused:
+                    self._take_first_step(run)
         except TrialError as error:
             self._fail(list(error.problems))
             return
@@ -161,8 +184,28 @@ class LiveRun:
             return
         self._run = run
         self._statistics = next(one for one in run.sinks if isinstance(one, EpisodeStatistics))
-        self._set_state("running")
+        self._stop_beginning()
+        if run.outcome is not None:
+            self.loop.ended.set()
+            self._finish(run)
+            return
         self.view.show(always=True)
+        self._set_state("running")
+
+    def _take_first_step(self, run: SimulationRun) -> None:
+        """Compile what a step and its picture need, and go on to where the recording is."""
+        run.step()
+        self.view.prepare()
+        recorded = self.beginning
+        while recorded is not None and run.outcome is None and not self.loop.closed:
+            if not float(run.simulation.world.times[0]) < recorded.now <= SEAMLESS:
+                break
+            run.step()
+            self.view.walk()
+
+    def _stop_beginning(self) -> None:
+        if self.beginning is not None:
+            self.beginning.stop()
 
     def _note_compiling(self) -> None:
         self.compiling = True
@@ -170,6 +213,7 @@ class LiveRun:
 
     def _fail(self, problems: list[str]) -> None:
         self.problems = problems
+        self._stop_beginning()
         self.loop.ended.set()
         self._set_state("failed")
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crowdbot.core import Scene
 from crowdbot.metrics import clearance, local_density, time_to_collision, wall_clearance
 from crowdbot.simulation import Simulation
 
@@ -34,15 +35,19 @@ LIVE_VALUES = (
 """Values of the first robot and of the crowd."""
 
 
-def live_values(simulation: Simulation) -> dict[str, float | None]:
+def live_values(simulation: Simulation, recorded: Scene | None = None) -> dict[str, float | None]:
     """Return the values now; None where there is no robot, person or wall.
+
+    Args:
+        simulation: the simulation.
+        recorded: people and robots of a recorded instant, instead of those of the simulation.
 
     >>> from crowdbot.trials import load_trial
     >>> values = live_values(Simulation(load_trial("frontal")))
     >>> values["people"], values["speed"]
     (1.0, 0.0)
     """
-    scene = simulation.world.environment_scene(0)
+    scene = simulation.world.environment_scene(0) if recorded is None else recorded
     robots = [one.agent for one in simulation.robots]
     people = scene.active[0].copy()
     people[robots] = False

@@ -31,6 +31,7 @@ class PacedLoop:
         begin: called first, in the thread.
         end: called last, in the thread.
         paused: whether the loop waits at its start.
+        settle: called in the thread before it waits, at a pause or at the end.
 
     >>> done = []
     >>> loop = PacedLoop(0.01, lambda: len(done) < 2 and not done.append(1))
@@ -49,8 +50,9 @@ class PacedLoop:
         begin: Callable[[], None] = lambda: None,
         end: Callable[[], None] = lambda: None,
         paused: bool = True,
+        settle: Callable[[], None] = lambda: None,
     ) -> None:
-        self._advance, self._begin, self._end = advance, begin, end
+        self._advance, self._begin, self._end, self._settle = advance, begin, end, settle
         self._clock = PacedClock(step, sleep=self._sleep)
         self._changed = threading.Condition()
         self._calls: list[Callable[[], None]] = []
@@ -84,6 +86,11 @@ class PacedLoop:
     def paused(self) -> bool:
         """Whether the loop waits."""
         return self._paused
+
+    @property
+    def closed(self) -> bool:
+        """Whether the thread ends after its current step."""
+        return self._closed
 
     def pause(self) -> None:
         """Wait after the current step."""
@@ -154,6 +161,7 @@ class PacedLoop:
                 if self._may_advance():
                     self._step()
                 else:
+                    self._settle()
                     with self._changed:
                         if not (self._calls or self._closed or self._may_advance()):
                             self._changed.wait()

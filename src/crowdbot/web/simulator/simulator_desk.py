@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from crowdbot.benchmark import builtin_names
-from crowdbot.core import CrowdbotError, InputError
+from crowdbot.core import CrowdbotError, InputError, builtin_name
+from crowdbot.prediction import Predictor
 from crowdbot.recording import branch
 from crowdbot.trials import (
-    PRESETS,
     Trial,
     add_element,
     expand_sweeps,
@@ -26,9 +26,11 @@ from crowdbot.web.scene import LAYERS, scene_resource
 
 from .live_run import LiveRun
 from .live_values import LIVE_VALUES
+from .picture_desk import PictureDesk
 from .playback import Playback
-from .stage_view import StageView
-from .steering_desk import Player, SteeringDesk
+from .recorded_beginning import RecordedBeginning, shipped_beginning
+from .steering_desk import Player
+from .trial_parameters import parameter_rows
 from .trial_preview import trial_preview
 
 __all__ = ["FIRST", "SimulatorDesk"]
@@ -47,7 +49,7 @@ WAIT = 8.0
 """Longest time [s] that closing waits for a run, which may be compiling and then ends by itself."""
 
 
-class SimulatorDesk(SteeringDesk):
+class SimulatorDesk(PictureDesk):
     """The simulator tab of a session: at most one trial runs, or one episode plays."""
 
     name = "simulator"
@@ -59,7 +61,6 @@ class SimulatorDesk(SteeringDesk):
         self._opening = threading.Lock()
         self._number = 0
         self._source: dict[str, Any] = {}
-        self._layers: frozenset[str] = frozenset()
         self._history: deque[list[Any]] = deque(maxlen=HISTORY)
         self._greeted = False
         self._branching: threading.Thread | None = None
@@ -72,6 +73,7 @@ class SimulatorDesk(SteeringDesk):
             threading.Thread(target=self._open_first, name="crowdbot-open", daemon=True).start()
         return {
             "status": self._status(), "source": self._source, "layers": sorted(self._layers),
+            "cameras": sorted(self._cameras.chosen), "predictor": builtin_name(type(self._predictor), Predictor),
             "known_layers": [{"name": name, "title": title} for name, title in LAYERS.items()],
             "plots": [one._asdict() for one in LIVE_VALUES], "history": list(self._history),
         }  # fmt: skip
@@ -81,10 +83,12 @@ class SimulatorDesk(SteeringDesk):
         """Return the built-in trials with their parameters, and the trial files of the folder."""
         titles = trial_titles()
         found = [
-            {"name": name, "title": titles[name], "built_in": True, "parameters": _parameters(name)}
+            {"name": name, "title": titles[name], "built_in": True, "parameters": parameter_rows(name)}
             for name in sorted(titles, key=lambda one: (one.startswith("challenge"), one))
         ]
-        own = [{"name": name, "title": "", "built_in": False, "parameters": []} for name in self._files("*.xml")]
+        own = [
+            {"name": name, "title": "", "built_in": False, "parameters": []} for name in self.session.workspace.trials()
+        ]
         return own + found
 
     @command
@@ -94,8 +98,8 @@ class SimulatorDesk(SteeringDesk):
 
     @command
     def names(self) -> dict[str, list[str]]:
-        """Return built-in navigators and types of robots."""
-        return {kind: list(builtin_names(kind)[kind]) for kind in ("navigators", "robots")}
+        """Return built-in navigators, types of robots, and predictors."""
+        return {kind: list(builtin_names(kind)[kind]) for kind in ("navigators", "robots", "predictors")}
 
     @command
     def open(
@@ -115,7 +119,7 @@ class SimulatorDesk(SteeringDesk):
     @command
     def open_episode(self, name: str, at: float | None = None, paused: bool = True) -> None:
         """Play a recorded episode of the folder."""
-        view = StageView(self.session, self._layers)
+        view = self._view()
         player = Playback(self.session.workspace.readable(name), name, view, self._tell, at, paused)
         self._replace(player, {"kind": "episode", "name": name})
 
@@ -140,6 +144,11 @@ class SimulatorDesk(SteeringDesk):
         source = self._source
         self._start(trial, source["name"], source["settings"], run.seed, source["variant"], False)
         return AVATAR
+
+    def run_trial(self, trial: Trial) -> None:
+        """Run a changed trial from its start, with the seed of the run before."""
+        source, seed = self._source, self.run.seed
+        self._start(trial, source["name"], source["settings"], seed, source["variant"], False)
 
     @command
     def play(self) -> None:
@@ -219,30 +228,8 @@ class SimulatorDesk(SteeringDesk):
         return target
 
     @command
-    def description(self) -> dict[str, Any]:
-        """Return what stands still in the picture."""
-        player = self._any()
-        found: dict[str, Any] = player.do(player.view.description)
-        return found
-
-    @command
     def ping(self) -> None:
         """Do nothing, to measure the latency."""
-
-    @command
-    def show_frame(self) -> None:
-        """Send the current state again, for a new window."""
-        player = self._any()
-        player.do(lambda: player.view.show(always=True))
-
-    @command
-    def layers(self, names: list[str]) -> None:
-        """Choose the layers that the frames contain."""
-        self._layers = frozenset(name for name in names if name in LAYERS)
-        if self._player is not None:
-            self._player.view.layers = self._layers
-            self.show_frame()
-        self.session.tell("simulator.layers", sorted(self._layers))
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
         """Return a thumbnail of a trial, or meshes of the picture."""
@@ -250,7 +237,9 @@ class SimulatorDesk(SteeringDesk):
         if kind == "thumbnail":
             return Resource(_thumbnail(name.removesuffix(".svg")), "image/svg+xml")
         player = self._any()
-        found: Resource = player.do(lambda: scene_resource(player.simulation, path, query))
+        if (recorded := self._beginning()) is not None:
+            return recorded.resource(path)
+        found: Resource = player.do(lambda: scene_resource(player.view.simulation, path, query))
         return found
 
     def close(self) -> None:
@@ -258,6 +247,7 @@ class SimulatorDesk(SteeringDesk):
         player, self._player = self._player, None
         if player is not None:
             player.close(WAIT)
+        self._cameras.close()
         if self._branching is not None:
             self._branching.join(WAIT)
 
@@ -267,7 +257,8 @@ class SimulatorDesk(SteeringDesk):
                 return
             if self.first is None:
                 name, values, seed = FIRST
-                self.open(name, dict(values), seed)
+                trial = self._load(name, values, 1)
+                self._start(trial, name, dict(values), seed, 1, False, shipped_beginning())
             elif self.first.endswith(".mcap"):
                 self.open_episode(self.first)
             else:
@@ -288,10 +279,19 @@ class SimulatorDesk(SteeringDesk):
             trial = variants[variant - 1]
         return trial
 
-    def _start(self, trial: Trial, name: str, values: dict[str, str], seed: int, variant: int, paused: bool) -> None:
+    def _start(
+        self,
+        trial: Trial,
+        name: str,
+        values: dict[str, str],
+        seed: int,
+        variant: int,
+        paused: bool,
+        beginning: RecordedBeginning | None = None,
+    ) -> None:
         self._number += 1
         file = self.session.workspace.writable(f".running/{self._number}.mcap")
-        run = LiveRun(trial, int(seed), file, StageView(self.session, self._layers), self._tell, paused)
+        run = LiveRun(trial, int(seed), file, self._view(), self._tell, paused, beginning)
         source = {"kind": "run", "name": name, "settings": values, "variant": variant, "seed": int(seed)}
         self._replace(run, source | {"preview": trial_preview(trial)})
 
@@ -350,26 +350,6 @@ class SimulatorDesk(SteeringDesk):
 def _recorded_instant(player: Playback, at: float) -> float:
     times = player.episode.times
     return float(times[int(abs(times - at).argmin())])
-
-
-def _parameters(name: str) -> list[dict[str, Any]]:
-    """Return the parameters of a built-in trial as rows of a form."""
-    preset = PRESETS.get(name)
-    rows: list[dict[str, Any]] = []
-    for key, one in preset.options.items() if preset is not None else ():
-        kinds = {bool: "switch", int: "whole", float: "number", str: "text"}
-        row = {
-            "name": key,
-            "label": one.about,
-            "unit": one.unit,
-            "value": one.default,
-            "kind": kinds[type(one.default)],
-        }
-        low, high = one.low, one.high
-        row |= {} if abs(low) == float("inf") else {"low": low}
-        row |= {} if abs(high) == float("inf") else {"high": high}
-        rows.append(row | ({"kind": "choice", "choices": list(one.choices)} if one.choices else {}))
-    return rows
 
 
 @functools.lru_cache(maxsize=256)

@@ -15,13 +15,14 @@ from crowdbot.web.command import command
 from crowdbot.web.desk import Desk
 from crowdbot.world import worlds_of
 
+from .beginning_player import BeginningPlayer
 from .held_control import SOURCE, HeldAvatar, HeldVelocity
 from .inspection import inspect_agent, people_rows
 from .live_run import LiveRun
 from .playback import Playback
 from .value_rows import value_rows
 
-__all__ = ["Player", "SteeringDesk"]
+__all__ = ["Player", "SteeringDesk", "navigator_orders"]
 
 Player = LiveRun | Playback
 EXTERNAL = "external"
@@ -31,6 +32,11 @@ class SteeringDesk(Desk):
     """A desk with a running trial or a recorded episode."""
 
     _player: Player | None = None
+
+    @property
+    def run(self) -> LiveRun:
+        """The running trial; raises InputError if there is none."""
+        return self._live()
 
     @command
     def order(self, order: dict[str, Any]) -> None:
@@ -47,14 +53,16 @@ class SteeringDesk(Desk):
     def people(self) -> list[dict[str, Any]]:
         """Return everybody who is present."""
         player = self._any()
-        rows: list[dict[str, Any]] = player.do(lambda: people_rows(player.simulation))
+        rows: list[dict[str, Any]] = player.do(
+            lambda: people_rows(player.view.simulation, player.view.recording_instant)
+        )
         return rows
 
     @command
     def values(self) -> list[dict[str, Any]]:
         """Return the values of the trial by their paths."""
         player = self._any()
-        rows: list[dict[str, Any]] = player.do(lambda: value_rows(player.simulation.trial))
+        rows: list[dict[str, Any]] = player.do(lambda: value_rows(player.view.simulation.trial))
         return rows
 
     @command
@@ -100,7 +108,7 @@ class SteeringDesk(Desk):
         run.controls.pop(robot, None)
         navigator = run.taken.pop(robot, None)
         if navigator is not None:
-            run.order_in_turn(_navigator_orders(robot, navigator))
+            run.order_in_turn(navigator_orders(robot, navigator))
 
     @command
     def drive(self, robot: str, forward: float, turn: float, left: float = 0.0) -> None:
@@ -123,8 +131,16 @@ class SteeringDesk(Desk):
         control.hold(float(forward), float(left), float(turn))
 
     def _asked(self, action: Any) -> dict[str, Any]:
-        found: dict[str, Any] = self._any().do(action)
+        player = self._any()
+        if player.state == "preparing":
+            raise InputError("the simulation is being prepared; values come as soon as it runs")
+        found: dict[str, Any] = player.do(action)
         return found
+
+    def _beginning(self) -> BeginningPlayer | None:
+        """Return what shows a recording while the run is prepared."""
+        found = self._player.beginning if isinstance(self._player, LiveRun) else None
+        return found if found is not None and found.active else None
 
     def _any(self) -> Player:
         if self._player is None:
@@ -152,7 +168,7 @@ def _robot(simulation: Simulation, name: str) -> RobotSpec:
     return robots[name]
 
 
-def _navigator_orders(robot: str, navigator: Navigator) -> list[Order]:
+def navigator_orders(robot: str, navigator: Navigator) -> list[Order]:
     """Return orders that give a robot a navigator: its type, then each parameter that is not the default."""
     path = f"robot[{robot}]/navigator"
     values = {"type": builtin_name(type(navigator), Navigator)}

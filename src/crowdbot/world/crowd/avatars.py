@@ -176,6 +176,10 @@ class Avatars:
             motion.set_poses(poses)
             motion.take(motion.state)
 
+    def poses(self, environment: int) -> dict[int, Floats]:
+        """Return the rows of the avatars with a pose of head, hands or skeleton in an environment, by agent."""
+        return list(self._poses())[environment]
+
     def _poses(self) -> Iterator[dict[int, Floats]]:
         """Yield the rows of the avatars with a pose of head, hands or skeleton, by agent, in each environment."""
         for rows in self.rows:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from crowdbot.core import Scene, Walls
 from crowdbot.world.physics.robots.base_servo import release_base_motors
-from crowdbot.world.physics.robots.castor_springs import soften_castors
+from crowdbot.world.physics.robots.castor_springs import FIRM_TRAVEL, TRAVEL, rests_on_castors, soften_castors
 from crowdbot.world.physics.robots.robot_body import RobotBody
 from crowdbot.world.physics.robots.robot_height import is_level
 from crowdbot.world.physics.robots.wheel_servo import WheelServos
@@ -108,8 +108,11 @@ class CompiledBodies:
         for start in design.robots:
             if start.robot.base == "planar":
                 release_base_motors(self.base, self.built.prefixes[start.agent])
-        if design.stage.ground is not None:
-            soften_castors(self.base, {self.built.prefixes[agent]: robot for agent, robot in robots.items()})
+        named = {self.built.prefixes[agent]: robot for agent, robot in robots.items()}
+        if design.stage.ground is None:
+            named = {prefix: robot for prefix, robot in named.items() if rests_on_castors(self.base, prefix, robot)}
+        if named:
+            soften_castors(self.base, named, FIRM_TRAVEL if design.stage.ground is None else TRAVEL)
         self.first = engine().MjData(self.base)
         for start in design.robots:
             RobotBody(self.base, self.first, start.robot, self.built.prefixes[start.agent], design.step).prepare()

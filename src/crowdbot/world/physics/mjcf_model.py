@@ -15,7 +15,6 @@ from crowdbot.world.robots.drives.ackermann import AckermannDrive
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot
-from crowdbot.world.robots.wheel import Wheel
 from crowdbot.world.urdf import BaseServo, mjcf
 from crowdbot.world.urdf.geoms import row
 
@@ -49,7 +48,8 @@ SPRING = "0.5 0.5 0.001 0.5 2"
 
 class MjcfModel(NamedTuple):
     """A world model: XML tree, mesh files, name ``prefixes`` of the robots, joints of all ``wheels``, largest
-    ``torques`` [N m] of the driven ones by joint, and joints of those of ``skidding`` bases.
+    ``torques`` [N m] of the motors that drive and steer wheels by joint, joints of wheels of ``skidding`` bases, and of
+    those that carry their robots (``bearing``).
     """
 
     root: Element
@@ -58,6 +58,7 @@ class MjcfModel(NamedTuple):
     wheels: frozenset[str]
     torques: dict[str, float]
     skidding: frozenset[str] = frozenset()
+    bearing: frozenset[str] = frozenset()
 
     def load(self, timestep: float) -> Any:
         """Return the ``mujoco.MjModel``."""
@@ -65,7 +66,7 @@ class MjcfModel(NamedTuple):
         model.opt.timestep = timestep
         _steadied(model, self.wheels)
         _lean(model)
-        _firm(model, self.torques, self.skidding)
+        _firm(model, self.bearing, self.skidding)
         return model
 
 
@@ -114,42 +115,53 @@ def build_mjcf_model(
     root.children += [Element("asset", {}, assets), Element("worldbody", {}, world)]
     root.children += [Element(tag, {}, rows) for tag, rows in sections.items() if rows]
     wheels = {prefixes[agent] + wheel.joint for agent, robot in robots.items() for wheel in robot.wheels}
-    torques = (
-        {}
-        if posed
-        else {
-            prefixes[agent] + wheel.joint: _torque(robot, wheel)
-            for agent, robot in robots.items()
-            for wheel in robot.wheels
-            if wheel.driven and robot.base != "planar"
-        }
-    )
+    torques = {
+        prefixes[agent] + joint: most
+        for agent, robot in robots.items()
+        for joint, most in _torques(robot).items()
+        if robot.base != "planar" and not posed
+    }
     skidding = {
         prefixes[agent] + wheel.joint
         for agent, robot in robots.items()
         for wheel in robot.wheels
         if isinstance(robot.drive, SkidSteerDrive)
     }
-    return MjcfModel(root, files, prefixes, frozenset(wheels), torques, frozenset(skidding))
+    bearing = {
+        prefixes[agent] + wheel.joint
+        for agent, robot in robots.items()
+        for wheel in robot.wheels
+        if robot.base != "planar" and not posed
+    }
+    return MjcfModel(root, files, prefixes, frozenset(wheels), torques, frozenset(skidding), frozenset(bearing))
 
 
-def _torque(robot: Robot, wheel: Wheel) -> float:
-    """Return the largest torque [N m] of the motor of a wheel; without a limit, enough to spin the wheel."""
-    joint = robot.model.joints[wheel.joint]
-    effort = joint.motor.effort
-    return effort if math.isfinite(effort) and effort > 0.0 else GRAVITY * robot.model.mass * wheel.radius
+def _torques(robot: Robot) -> dict[str, float]:
+    """Return the largest torques [N m] of the motors that drive and steer wheels; without a limit, enough to spin."""
+    found = {}
+    for wheel in robot.wheels:
+        for joint in (wheel.joint if wheel.driven else "", wheel.steering):
+            if joint:
+                effort = robot.model.joints[joint].motor.effort
+                limited = math.isfinite(effort) and effort > 0.0
+                found[joint] = effort if limited else GRAVITY * robot.model.mass * wheel.radius
+    return found
 
 
-def _firm(model: Any, driven: Collection[str], skidding: Collection[str]) -> None:
-    """Make the tyres of driven wheels firm, with their friction on this floor.
+def _firm(model: Any, bearing: Collection[str], skidding: Collection[str]) -> None:
+    """Make the tyres of wheels firm, with their friction on this floor.
 
     Soft tyres creep sideways in curves, and castors would take the load off them. Tyres of a skid-steer base yield:
-    four firm ones on a rigid frame lose contact in turns, and hop.
+    four firm ones on a rigid frame lose contact in turns, and hop. They are equally stiff, so that middle axles bear
+    their share; the engine would make contacts stiffer near the centre of mass.
     """
-    bodies = [int(model.jnt_bodyid[model.joint(name).id]) for name in driven]
+    bodies = [int(model.jnt_bodyid[model.joint(name).id]) for name in bearing]
     tires = np.isin(model.geom_bodyid, bodies) & (model.geom_contype > 0)
     model.geom_solimp[tires, :2] = FIRM
-    yielding = [int(model.jnt_bodyid[model.joint(name).id]) for name in driven if name in skidding]
+    yielding = [int(model.jnt_bodyid[model.joint(name).id]) for name in sorted(bearing) if name in skidding]
+    for root in {int(model.body_rootid[body]) for body in yielding}:
+        own = [body for body in yielding if model.body_rootid[body] == root]
+        model.body_invweight0[own, 0] = model.body_invweight0[own, 0].mean()
     model.geom_solimp[tires & np.isin(model.geom_bodyid, yielding), :2] = YIELDING
     model.geom_friction[tires, 0] *= model.geom("floor").friction[0]
 
@@ -236,6 +248,7 @@ def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[
         motors={**(motors or {}), **kinds},
         servo=BaseServo(PULL * mass, SPIN * mass) if planar else None,
         contact=PULLED if planar else ROBOT,
+        wheels={} if planar else {wheel.joint: wheel.radius for wheel in robot.wheels},
     )
 
 

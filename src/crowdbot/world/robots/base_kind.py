@@ -13,7 +13,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.world.urdf import Cylinder, Joint, RobotModel
 from crowdbot.world.urdf.transforms import transform_points
 
-__all__ = ["BASE_KINDS", "BaseKind", "FoundWheel", "recognize_base"]
+__all__ = ["BASE_KINDS", "BaseKind", "FoundWheel", "recognize_base", "wheel_springs"]
 
 Floats = NDArray[np.float64]
 BASE_KINDS = (
@@ -25,7 +25,8 @@ NEAR_GROUND = 0.03
 TOUCHES = 0.008
 """Height [m] above the lowest point up to which a part without wheels touches the ground."""
 PLUGINS = {
-    "skid": "skid-steer", "mecanum": "mecanum", "planar_move": "omnidirectional", "omni": "omnidirectional",
+    "skid": "skid-steer", "mecanum": "mecanum", "planar_move": "omnidirectional",
+    "force_based_move": "omnidirectional", "omni": "omnidirectional",
     "holonomic": "omnidirectional", "ackermann": "ackermann", "tricycle": "tricycle", "diff": "differential",
 }  # fmt: skip
 """Kinds by a part of the name of a Gazebo plugin or controller."""
@@ -48,7 +49,7 @@ class BaseKind(NamedTuple):
     Fields:
         kind: one of :data:`BASE_KINDS`.
         why: reason, a part of a sentence.
-        wheels: driven and steered wheels.
+        wheels: all wheels without castors.
         driven: joints of the driven wheels.
         castors: links that roll or glide on the ground without a motor.
         legs: joints of legs.
@@ -80,6 +81,13 @@ class BaseKind(NamedTuple):
         """Distance [m] between the first and the last axle of all wheels."""
         places = [float(wheel.center[0]) for wheel in self.wheels]
         return max(places) - min(places) if places else 0.0
+
+    @property
+    def axles(self) -> int:
+        """Number of axles: groups of wheels whose places differ by less than half a radius."""
+        places = sorted(float(wheel.center[0]) for wheel in self.wheels)
+        least = 0.5 * max((wheel.radius for wheel in self.wheels), default=0.0)
+        return sum(k == 0 or place - places[k - 1] > least for k, place in enumerate(places))
 
     @property
     def wheelbase(self) -> float:
@@ -169,6 +177,21 @@ def _steering(model: RobotModel, joint: Joint, poses: Mapping[str, Floats]) -> s
         if above.size == 1 and above.kind != "prismatic" and vertical:
             return above.name
     return ""
+
+
+def wheel_springs(model: RobotModel, base: BaseKind) -> tuple[str, ...]:
+    """Return the vertical sliding joints between the base and its driven or steered wheels: springs.
+
+    Args:
+        model: the robot.
+        base: its base.
+    """
+    poses, found = model.poses(), dict[str, None]()
+    for wheel in base.wheels:
+        for above in _above(model, model.joints[wheel.joint]):
+            if above.kind == "prismatic" and abs((poses[above.child][:3, :3] @ above.axis)[2]) > 0.8:
+                found[above.name] = None
+    return tuple(found)
 
 
 def _above(model: RobotModel, joint: Joint) -> list[Joint]:

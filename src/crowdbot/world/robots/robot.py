@@ -49,7 +49,7 @@ class Robot:
             omnidirectional wheels).
         footprint: corners of the outline on the ground ``[N, 2]`` [m], counter-clockwise.
         mounts: sensors.
-        wheels: driven and steered wheels.
+        wheels: wheels that drive, steer, or roll freely on a fixed axle; no castors.
         posture: joint positions while driving [rad, m]; 0 for joints left out.
         about: description, one line.
         seat: whether it has the seat of a wheelchair.

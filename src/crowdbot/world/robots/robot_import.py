@@ -24,11 +24,19 @@ from crowdbot.world.robots.drives.base_drive import (
 from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
-from .base_kind import BaseKind, recognize_base
+from .base_kind import BaseKind, recognize_base, wheel_springs
 from .controllers import JointLimits, find_controller_files, read_controllers, read_joint_limits
 from .gazebo_tags import DriveParameters, find_sensors, guess_sensors, read_drive_parameters
 from .guess_table import DERIVED, FILE, GIVEN, GUESS, Guess, GuessTable
-from .robot_urdf import add_masses, add_motors, add_shapes, copy_elements, copy_meshes, format_number
+from .robot_urdf import (
+    add_masses,
+    add_motors,
+    add_shapes,
+    add_wheel_shapes,
+    copy_elements,
+    copy_meshes,
+    format_number,
+)
 
 __all__ = ["Guess", "RobotFolder", "import_robot"]
 
@@ -111,6 +119,7 @@ def import_robot(
         add_shapes(table, document.root, model, f"{name}.urdf")
         model = read_urdf(format_xml(copy_elements(document.root, model.name)), colliders="hull")
     parameters, remarks = _parameters(source, document, model, controllers)
+    model = add_wheel_shapes(table, document.root, model, parameters.values.get("radius"), f"{name}.urdf")
     base = recognize_base(model, parameters.plugins, kind)
     status = GIVEN if kind else (FILE if base.why.startswith("the plugin") else DERIVED)
     table.rows.insert(0, Guess("kind of base", base.kind, base.why, "--base KIND", status))
@@ -180,7 +189,7 @@ def _robot_element(done: _Conversion) -> Element:
             change = "rollers= of <wheel> in robot.xml"
             table.add(f"rollers {wheel.joint}", f"{rollers:.4g} rad", source, change, GUESS)
             row["rollers"] = format_number(rollers)
-        if done.wheeled and (wheel.joint in base.driven or wheel.steering):
+        if done.wheeled:  # the tyres of wheels without motors also hold the base
             root.children.append(Element("wheel", row))
     for link in base.castors:
         why = "it touches the ground without a motor"
@@ -216,7 +225,10 @@ def _drive(done: _Conversion) -> dict[str, str]:
     why = "common value" if grip >= 1.0 else "0.3 of the friction of its wheels"
     choose("max_acceleration", min(1.0, grip), why, GUESS if grip >= 1.0 else DERIVED, "m/s2")
     if kind in ("ackermann-drive", "tricycle-drive"):
-        choose("max_steering", *_steering(done), "rad")
+        angle, why, status = _steering(done)
+        if status == FILE and given.get("max_steering", 0.0) > angle:  # the inner wheel would reach its joint limit
+            given = {key: value for key, value in given.items() if key != "max_steering"}
+        choose("max_steering", angle, why, status, "rad")
         choose("max_steering_rate", 1.0, "common value", GUESS, "rad/s")
         if base.wheelbase:
             given = {key: value for key, value in given.items() if key != "wheelbase"}
@@ -309,6 +321,7 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
     model, base = done.model, done.base
     root = copy_elements(source, done.name)
     copies = copy_meshes(root, model)
+    _lock_springs(done, root)
     _free_steering(done.table, root, {wheel.steering for wheel in base.wheels}, done.urdf)
     done.mass = add_masses(done.table, root, model, done.urdf)
     if abs(base.rear) > 0.005 and base.wheels and base.kind != "planar":
@@ -329,6 +342,17 @@ def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str
             mu = Element("mu1", {"value": format_number(friction)})
             root.children.append(Element("gazebo", {"reference": name}, [mu]))
     return root, copies
+
+
+def _lock_springs(done: _Conversion, root: Element) -> None:
+    """Fix the springs of wheels: URDF has no stiffness and no preload, which decide how much weight the wheels bear."""
+    names = wheel_springs(done.model, done.base) if done.wheeled else ()
+    for joint in root.each("joint"):
+        name = joint.attributes.get("name", "")
+        if name in names:
+            joint.attributes["type"] = "fixed"
+            source = "a spring of a wheel: URDF has no stiffness and no preload"
+            done.table.add(f"joint {name}", "fixed", source, f"type= of <joint> in {done.urdf}", DERIVED)
 
 
 def _free_steering(table: GuessTable, root: Element, names: set[str], urdf: str) -> None:

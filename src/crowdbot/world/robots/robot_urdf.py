@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections.abc import Mapping
@@ -11,15 +12,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element
-from crowdbot.world.urdf import Link, LinkInertia, RobotModel, replacement_shape
+from crowdbot.world.urdf import Cylinder, Joint, Link, LinkInertia, LinkShape, RobotModel, replacement_shape
+from crowdbot.world.urdf.transforms import across
 
 from .base_kind import BaseKind
 from .guess_table import DERIVED, FILE, GUESS, GuessTable
 
-__all__ = ["add_masses", "add_motors", "add_shapes", "copy_elements", "copy_meshes", "format_number"]
+__all__ = [
+    "add_masses",
+    "add_motors",
+    "add_shapes",
+    "add_wheel_shapes",
+    "copy_elements",
+    "copy_meshes",
+    "format_number",
+]
 
 Floats = NDArray[np.float64]
 GRAVITY = 9.81
+WHEEL_NAMES = ("wheel", "whl")
+WHEEL_WIDTH = 0.4
+"""Width of a guessed wheel by its radius."""
 
 
 def format_number(value: float) -> str:
@@ -149,6 +162,63 @@ def add_shapes(table: GuessTable, root: Element, model: RobotModel, urdf: str) -
         table.add(f"shape of {link.name}", f"{sides} m", f"the file has no shapes: {what}", f"<link> in {urdf}", GUESS)
 
 
+def add_wheel_shapes(
+    table: GuessTable, root: Element, model: RobotModel, radius: float | None, urdf: str
+) -> RobotModel:
+    """Give wheels whose shapes are missing a cylinder, and return the model with them.
+
+    A wheel is a joint without limits about an axle across the robot, with "wheel" in its name or that of its link. The
+    radius is that of the drive plugin or controller; without it, nothing is added.
+
+    Args:
+        table: lists the shapes.
+        root: <robot> of the maker's file, which gets them, too.
+        model: the robot.
+        radius: radius [m] of the wheels that a plugin or controller gives.
+        urdf: name of the URDF file of the folder.
+    """
+    if radius is None or not 0.005 < radius < 2.0:
+        return model
+    elements, poses = {link.attributes.get("name", ""): link for link in root.each("link")}, model.poses()
+    links = dict(model.links)
+    for joint in model.movable:
+        link, matrix = model.links[joint.child], poses[joint.child]
+        axle = matrix[:3, :3] @ joint.axis
+        if abs(axle[1]) < 0.95 or not _is_named_wheel(joint) or _has_shapes(elements[link.name], model):
+            continue
+        turn = np.eye(4)
+        turn[:3, :3] = across(joint.axis)
+        shape = Cylinder(radius, WHEEL_WIDTH * radius)
+        links[link.name] = dataclasses.replace(link, visuals=(), collisions=(LinkShape(shape, turn),))
+        values = {"radius": format_number(radius), "length": format_number(shape.length)}
+        geometry = Element("geometry", {}, [Element("cylinder", values)])
+        place = Element("origin", {"rpy": _angles(turn[:3, :3])})
+        element = elements[link.name]
+        element.children = [child for child in element.children if child.tag != "collision"]
+        element.children.append(Element("collision", {}, [place, geometry]))
+        source = "it has no shape that can be read: radius of the drive plugin"
+        table.add(f"shape of {link.name}", f"cylinder, radius {radius:.4g} m", source, f"<link> in {urdf}", GUESS)
+    return dataclasses.replace(model, links=links)
+
+
+def _has_shapes(link: Element, model: RobotModel) -> bool:
+    """Return whether a link has a shape that is no missing mesh."""
+    shapes = [
+        shape
+        for tag in ("visual", "collision")
+        for outer in link.each(tag)
+        for geometry in outer.each("geometry")
+        for shape in geometry.children
+    ]
+    return any(shape.tag != "mesh" or shape.attributes.get("filename", "").strip() in model.meshes for shape in shapes)
+
+
+def _is_named_wheel(joint: Joint) -> bool:
+    names = f"{joint.name} {joint.child}".lower()
+    turns = joint.kind in ("continuous", "revolute") and joint.upper - joint.lower >= 2.0 * math.pi
+    return turns and "cast" not in names and any(word in names for word in WHEEL_NAMES)
+
+
 def _angles(rotation: Floats) -> str:
     """Return roll, pitch and yaw of a rotation ``[3, 3]``."""
     pitch = math.asin(min(1.0, max(-1.0, -float(rotation[2, 0]))))
@@ -186,6 +256,8 @@ def add_motors(
     swivels = {parents.get(link, "") for link in base.castors} - {model.root}
     motors: dict[str, str] = {}
     for joint in model.movable:
+        if elements[joint.name].attributes.get("type") == "fixed":
+            continue
         if joint.size != 1 or joint.child in base.castors or (joint.child in swivels and not joint.motor.kind):
             continue
         wheel = wheels.get(joint.name)

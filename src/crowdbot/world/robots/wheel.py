@@ -1,4 +1,4 @@
-"""Wheel: a driven or steered wheel of a robot."""
+"""Wheel: a wheel of a robot that holds it on its path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_ROLLERS = 1.4
 
 @dataclass(frozen=True)
 class Wheel:
-    """A driven or steered wheel.
+    """A wheel that drives, steers, or rolls freely and holds the base sideways. Castors are no such wheels.
 
     Fields:
         joint: joint of the axle.
@@ -26,8 +26,8 @@ class Wheel:
             from above: 0 for omnidirectional wheels, +-pi / 4 for mecanum wheels; None for a wheel without rollers.
 
     Raises:
-        InputError: the radius is not finite and above 0, the wheel neither steers nor drives, or rollers are more than
-            80 degrees from the rolling direction.
+        InputError: the radius is not finite and above 0, or rollers are more than 80 degrees from the rolling
+            direction.
 
     >>> Wheel("rear_left", 0.2).driven
     True
@@ -42,7 +42,5 @@ class Wheel:
     def __post_init__(self) -> None:
         if not 0.0 < self.radius < math.inf:
             raise InputError(f"Wheel: radius = {self.radius} m must be finite and above 0")
-        if not (self.driven or self.steering):
-            raise InputError(f"Wheel: {self.joint!r} is neither driven nor steered; give its steering joint")
         if self.rollers is not None and not abs(self.rollers) <= MAX_ROLLERS:
             raise InputError(f"Wheel: rollers = {self.rollers} rad of {self.joint!r} must be at most 1.4 (80 degrees)")

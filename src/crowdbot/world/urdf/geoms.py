@@ -12,7 +12,7 @@ from crowdbot.core import Element
 
 from .model import Link, LinkShape, RobotModel
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Texture
-from .transforms import quaternion
+from .transforms import across, quaternion, transform_points
 
 __all__ = ["Geoms", "row"]
 
@@ -29,6 +29,10 @@ MOST_COLORS = 32
 MOST_TESTED = 64
 """Number of triangles that are tested first, since most meshes have an area there."""
 SMALLEST_AREA = 1e-12
+ROUND = 0.25
+"""Largest difference of the reach of a mesh from the radius of its wheel, as a share of it."""
+NARROW = 0.02
+"""A mesh that is flatter than this share of the radius is no tyre."""
 NOTHING = 1e-30
 """Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
@@ -60,7 +64,7 @@ class Geoms:
         self._known: dict[tuple[int, bool], list[str]] = {}
         self._materials: dict[tuple[bytes, tuple[float, float, float, float]], str] = {}
 
-    def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
+    def of(self, link: Link, matrix: Floats, axle: Floats | None = None, radius: float = 0.0) -> list[Element]:
         """Return the geoms of a link.
 
         A cylinder that turns about its own axis, or has no friction, is a wheel and becomes an ellipsoid, which touches
@@ -71,15 +75,19 @@ class Geoms:
             link: the link.
             matrix: frame ``[4, 4]`` of the link in the body.
             axle: rotation axis ``[3]`` of the body through its origin, or None.
+            radius: radius [m] if the body is a wheel: a mesh around the axle becomes an ellipsoid, too. 0: no wheel.
         """
         gliding = link.friction is not None and link.friction < SMOOTH
         geoms = []
         for number, part in enumerate(link.collisions):
             values = {"group": "3", "contype": str(self.contact[0]), "conaffinity": str(self.contact[1])}
             values |= {"rgba": "0.3 0.6 0.9 0.4", **_friction_attributes(link.friction)}
-            geoms += self._parse_shape(
-                part, matrix, f"{self.prefix}{link.name}/{number}", values, gliding or _rolls(part, matrix, axle)
-            )
+            name = f"{self.prefix}{link.name}/{number}"
+            tire = _tire_of(part, matrix, axle, radius) if radius and axle is not None else None
+            if tire is not None:
+                geoms.append(Element("geom", {"name": name, **tire, **values}))
+                continue
+            geoms += self._parse_shape(part, matrix, name, values, gliding or _rolls(part, matrix, axle))
         for number, part in enumerate(one for visual in link.visuals for one in self._painted(visual)):
             values = {"group": "2", "contype": "0", "conaffinity": "0", "rgba": row(part.color or GREY)}
             geoms += self._parse_shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
@@ -169,6 +177,20 @@ def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
     place = matrix @ part.origin
     aside = place[:3, 3] - (place[:3, 3] @ axle) * axle
     return bool(abs(place[:3, 2] @ axle) > 0.999 and np.linalg.norm(aside) < 0.01 * part.shape.radius)
+
+
+def _tire_of(part: LinkShape, matrix: Floats, axle: Floats, radius: float) -> dict[str, str] | None:
+    """Return the ellipsoid of a wheel whose collider is a mesh that is round about the axle, otherwise None."""
+    if not isinstance(part.shape, Mesh):
+        return None
+    points = transform_points(matrix @ part.origin, part.shape.points())
+    along = points @ axle
+    away = float(np.linalg.norm(points - along[:, None] * axle, axis=1).max())
+    low, high = float(along.min()), float(along.max())
+    if abs(away - radius) > ROUND * radius or high - low < NARROW * radius:
+        return None
+    place = {"pos": row(0.5 * (low + high) * axle), "quat": row(quaternion(across(axle)))}
+    return {"type": "ellipsoid", "size": row((radius, radius, 0.5 * (high - low))), **place}
 
 
 def _sized(shape: Shape, wheel: bool) -> dict[str, str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .model import Link, LinkShape
-from .shapes import Box, Capsule, Cylinder, Mesh, Shape
+from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Texture
 from .transforms import transform_points
 
 __all__ = ["LinkSurface", "link_surface"]
@@ -32,18 +32,22 @@ class LinkSurface(NamedTuple):
     Fields:
         vertices: vertices ``[N, 3]`` [m].
         faces: triangles ``[M, 3]``, counter-clockwise from outside.
-        colors: red, green, blue, alpha of the triangles ``[M, 4]``, 0 to 255.
+        colors: red, green, blue, alpha of the triangles ``[M, 4]``, 0 to 255; with a texture, the factor of its image.
+        uv: texture coordinates ``[N, 2]`` of the vertices, from the lower left corner; 0 without a texture.
+        textures: images on some of the triangles.
     """
 
     vertices: Floats
     faces: Ints
     colors: NDArray[np.uint8]
+    uv: Floats
+    textures: tuple[Texture, ...] = ()
 
 
 def link_surface(link: Link) -> LinkSurface | None:
     """Return the triangles of the visual shapes of a link, or of its colliders if it has none; None without shapes.
 
-    Round shapes have 20 edges around. Triangles with a texture have the colour factor of the texture.
+    Round shapes have 20 edges around. A colour in the robot file replaces colours and textures of a mesh file.
 
     >>> from crowdbot.world import Robot
     >>> surface = link_surface(Robot.load("turtlebot2").model.links["wheel_left"])
@@ -58,14 +62,28 @@ def link_surface(link: Link) -> LinkSurface | None:
         np.concatenate([vertices for vertices, _, _ in parts]),
         np.concatenate([faces + first for (_, faces, _), first in zip(parts, starts[:-1], strict=True)]),
         np.concatenate([colors for _, _, colors in parts]),
+        *_textured(link, parts),
     )
+
+
+def _textured(link: Link, parts: list[tuple[Floats, Ints, NDArray[np.uint8]]]) -> tuple[Floats, tuple[Texture, ...]]:
+    """Return texture coordinates of all vertices, and the textures with the numbers of their triangles."""
+    coordinates, textures, first = [], [], 0
+    for one, (vertices, faces, _) in zip(link.visuals or link.collisions, parts, strict=True):
+        mesh = one.shape if isinstance(one.shape, Mesh) and one.color is None else None
+        uv = None if mesh is None else mesh.uv
+        coordinates.append(np.zeros((len(vertices), 2)) if uv is None else uv)
+        for image in () if mesh is None or uv is None else mesh.textures:
+            textures.append(image._replace(first=first + image.first, last=first + image.last))
+        first += len(faces)
+    return np.concatenate(coordinates), tuple(textures)
 
 
 def _placed(part: LinkShape) -> tuple[Floats, Ints, NDArray[np.uint8]]:
     vertices, faces = _triangles(part.shape)
     if np.linalg.det(part.origin[:3, :3]) < 0.0:
         faces = faces[:, ::-1]
-    own = part.shape.colors if isinstance(part.shape, Mesh) else None
+    own = part.shape.colors if isinstance(part.shape, Mesh) and part.color is None else None
     plain = np.tile(np.round(255.0 * np.clip(part.color or PLAIN, 0.0, 1.0)).astype(np.uint8), (len(faces), 1))
     return transform_points(part.origin, vertices), faces, plain if own is None else own
 

@@ -84,6 +84,7 @@ class _Build:
     prefix: str
     geoms: Geoms
     collision: list[str]
+    wheels: Mapping[str, float]
 
     def called(self, name: str) -> str:
         return f"{self.prefix}{name}"
@@ -101,6 +102,7 @@ def mjcf(
     contact: tuple[int, int] = (1, 1),
     inside: bool = False,
     floor: bool = False,
+    wheels: Mapping[str, float] | None = None,
 ) -> Mjcf:
     """Return a robot as MJCF.
 
@@ -117,6 +119,8 @@ def mjcf(
         contact: MuJoCo's contype and conaffinity of the colliders.
         inside: whether self-collisions are enabled.
         floor: add a floor, a light and gravity, to view the robot alone.
+        wheels: radii [m] of wheels by joint. Their colliders that are meshes become ellipsoids: a tyre of a mesh is a
+            polygon, and the robot would hop from corner to corner.
 
     Raises:
         InputError: an option is unknown, or a moving base has no mass.
@@ -124,7 +128,7 @@ def mjcf(
     if base not in BASES:
         raise InputError(f"base = {base!r} must be one of {', '.join(BASES)}{did_you_mean(base, BASES)}")
     kinds = _motor_kinds(model, motors or {})
-    build = _Build(model, base, prefix, Geoms(model, prefix, contact), [])
+    build = _Build(model, base, prefix, Geoms(model, prefix, contact), [], wheels or {})
     body = _body(build, model.root, frame(place, axis_rotation((0.0, 0.0, 1.0), heading)))
     root = Element("mujoco", {"model": f"{prefix}{model.name}"})
     root.children.append(
@@ -184,7 +188,8 @@ def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) 
         body.children.append(
             Element("site", {"name": build.called(name), "group": "4", "size": "0.01", **_placed(matrix)})
         )
-        shapes = build.geoms.of(build.model.links[name], matrix, axle)
+        radius = build.wheels.get(joint.name, 0.0) if joint is not None else 0.0
+        shapes = build.geoms.of(build.model.links[name], matrix, axle, radius)
         body.children += shapes
         if any(shape.attributes.get("group") == "3" for shape in shapes) and build.called(link) not in build.collision:
             build.collision.append(build.called(link))

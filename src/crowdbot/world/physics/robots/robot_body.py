@@ -76,6 +76,8 @@ class RobotBody:
         self._servo = [model.actuator(prefix + name).id for name in BASE_MOTORS] if robot.base == "planar" else []
         joints = [model.joint(f"{prefix}base_{name}") for name in ("x", "y", "yaw")] if self._servo else []
         self._base = [int(one.qposadr[0]) for one in joints], [int(one.dofadr[0]) for one in joints]
+        free = None if self._servo else model.joint(f"{prefix}base")
+        self._free = (0, 0) if free is None else (int(free.qposadr[0]), int(free.dofadr[0]))
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
@@ -112,6 +114,18 @@ class RobotBody:
         self._mj.mj_objectVelocity(self._model, self._data, self._mj.mjtObj.mjOBJ_XBODY, self.body, speed, 1)
         return Twists(speed[3:4].copy(), speed[2:3].copy(), speed[4:5].copy())
 
+    def _moved(self) -> Twist:
+        """Return the twist of a free base from its coordinates, which are those of the end of the last step.
+
+        The velocities of the bodies are those of its beginning, except after the last step of the world.
+        """
+        place, speed = self._free
+        w, x, y, z = self._data.qpos[place + 3 : place + 7].tolist()
+        vx, vy, vz, _, _, turn = self._data.qvel[speed : speed + 6].tolist()
+        ahead = (1.0 - 2.0 * (y * y + z * z)) * vx + 2.0 * (x * y + w * z) * vy + 2.0 * (x * z - w * y) * vz
+        aside = 2.0 * (x * y - w * z) * vx + (1.0 - 2.0 * (x * x + z * z)) * vy + 2.0 * (y * z + w * x) * vz
+        return Twist(ahead, turn, left=aside)
+
     def put(self, x: float, y: float, heading: float) -> None:
         """Place the robot upright and at rest; joint positions and height are unchanged."""
         model, data = self._model, self._data
@@ -140,7 +154,7 @@ class RobotBody:
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
             self._current = now
-        if now is self._forced and self._slip_state is None:  # unchanged since the command was reached
+        if now is self._forced and self._slip_state is None and not self._steers:  # the command is reached
             return
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
@@ -150,19 +164,19 @@ class RobotBody:
         if _same(old, self._aim):
             self._forced = now
         if self._steers:
-            self._steered(self._aim)
+            self._steered(old, self._aim)
             return
         speeds = self._wheel_rates(old, self._aim)
         before = speeds if self._slip is not None else self._wheel_rates(old, old)
         if self._slip is not None and self._slip_state is not None:
-            self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self.twist.at(0), self.step)
+            self._slip_state = self._slip.step(self._slip_state, self._aim.at(0), self._moved(), self.step)
         lead = self._lag / self.step  # the servos lag behind; they get the speed of the wheels ahead of time
         self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = before + lead * (speeds - before)
 
     def _wheel_rates(self, old: Twists, twist: Twists) -> Floats:
         """Return the speeds of the driven wheels [rad/s] on the way to a twist, with the slip of a skid-steer base."""
         if self._slip is not None and self._slip_state is not None:
-            found = self._slip.wheels(self._slip_state, old.at(0), twist.at(0), self.twist.at(0), self.loads, self.step)
+            found = self._slip.wheels(self._slip_state, old.at(0), twist.at(0), self._moved(), self.loads, self.step)
             return np.asarray(self._rolling @ (found.forward, found.turn, 0.0))
         return np.asarray(self._rolling @ _row(twist))
 
@@ -175,16 +189,30 @@ class RobotBody:
         velocity = self._data.qvel[speed]
         self._data.ctrl[self._servo] = self._forces.forces(old, self._aim, velocity, heading, self._quick)
 
-    def _steered(self, aim: Twists) -> None:
-        """Steer the wheels of a car or tricycle; at rest they keep their angle."""
+    def _steered(self, old: Twists, aim: Twists) -> None:
+        """Steer the wheels of a car or tricycle; at rest they keep their angle.
+
+        Servos lag behind, so they get their speeds ahead of time. A servo that steers also corrects its angle, with the
+        same time constant.
+        """
+        (angles, speeds), (now, after) = self._wheel_motion(old), self._wheel_motion(aim)
+        lead = self._lag / self.step
+        for joint, value in now.items():
+            row = self._model.joint(self.prefix + joint)
+            angle, rate = float(self._data.qpos[row.qposadr[0]]), float(self._data.qvel[row.dofadr[0]])
+            goal = (value - angles[joint]) / self.step + (angles[joint] - angle) / self._lag
+            self._data.ctrl[self._wheels[joint]] = rate + lead * (goal - rate)
+        for joint, value in after.items():
+            self._data.ctrl[self._wheels[joint]] = speeds[joint] + lead * (value - speeds[joint])
+
+    def _wheel_motion(self, twist: Twists) -> tuple[dict[str, float], dict[str, float]]:
+        """Return steering angles [rad] and wheel speeds [rad/s] of a car or tricycle, by joint."""
         drive = self.robot.drive
         assert isinstance(drive, AckermannDrive | TricycleDrive)
-        angle = aim.steering if isinstance(aim, SteeredTwists) else np.zeros(1)
-        way, speed = drive.motion(float(angle[0])), float(drive.rolling(aim, angle)[0])
-        values = self.robot.steering(way)
-        values |= {joint: rate * speed for joint, rate in self.robot.wheel_speeds(way).items()}
-        for joint, value in values.items():
-            self._data.ctrl[self._wheels[joint]] = value
+        angle = twist.steering if isinstance(twist, SteeredTwists) else np.zeros(1)
+        way, speed = drive.motion(float(angle[0])), float(drive.rolling(twist, angle)[0])
+        speeds = {joint: rate * speed for joint, rate in self.robot.wheel_speeds(way).items()}
+        return self.robot.steering(way), speeds
 
     def command(self, joints: Mapping[str, float]) -> None:
         """Set the commands of joint motors: position, velocity or effort, depending on the motor.

@@ -1,4 +1,4 @@
-"""Speed control of driven wheels, solved together with the contacts of their tyres."""
+"""Speed control of wheels and their steering, solved together with the contacts of their tyres."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STIFF = (0.9999, 0.9999, 1.0, 0.5, 2.0)
 
 
 class WheelServos:
-    """Servos that hold the wheels of a model at their commanded speeds, with at most the torque of the motors.
+    """Servos that hold wheels and steering joints at their commanded speeds, with at most the torque of the motors.
 
     A motor that is an actuator of the engine is either unstable with light wheels (explicit integration) or changes
     velocities after the tyre forces have been found (implicit integration), and the tyres slip. Here each servo is a

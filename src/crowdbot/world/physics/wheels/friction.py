@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.robots.wheel_servo import lag
+from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
 
@@ -18,8 +20,12 @@ __all__ = ["WheelFriction"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-STICKS, SLIDES = 0.01, 0.06
-"""Slip speeds [m/s]: below the first, the engine holds a tyre; above the second, it slides."""
+SOFT = 0.005
+"""Slip [m/s] below which the friction of a sliding tyre is proportional to its slip."""
+ROUNDS = 25
+"""Largest number of Newton steps, and of halvings of one."""
+CLOSE = 1e-9
+"""Change of velocities [m/s], [rad/s] at which the steps end."""
 FREE = 0.01
 """Friction across the axes of rollers, as a share of the friction along them: the resistance of their bearings."""
 LEAST = 0.001
@@ -62,13 +68,16 @@ def _roll(
 
 
 @kernel
-def _slide(
+def _slips(
     geom: NDArray[np.int32], place: Floats, frame: Floats, friction: Floats, wheel_of: Ints, body: Ints, root: Ints,
-    speed: Floats, center: Floats, loads: Floats, force: Floats, point: Floats,
+    axle: Floats, anchor: Floats, speed: Floats, center: Floats, gain: Floats, loads: Floats, slips: Floats,
 ) -> int:  # fmt: skip
-    """Write force and point of application ``[W, 3]`` of the friction of sliding tyres; return their contacts."""
+    """Write the contacts of sliding tyres into ``slips`` ``[C, 12]``; return their number.
+
+    A row has slip ``[3]`` [m/s] of the tyre with the speed of its motor after the step, normal ``[3]``, place ``[3]``
+    from the centre of mass [m], largest friction [N], wheel, and contact.
+    """
     found, count = 0, np.zeros(len(body))
-    force[:], point[:] = 0.0, 0.0
     for c in range(len(geom)):
         w = max(wheel_of[geom[c, 0]], wheel_of[geom[c, 1]])
         if w >= 0 and abs(frame[c, 2]) >= FLAT:
@@ -83,21 +92,113 @@ def _slide(
         tx = speed[b, 3] + speed[b, 1] * pz - speed[b, 2] * py
         ty = speed[b, 4] + speed[b, 2] * px - speed[b, 0] * pz
         tz = speed[b, 5] + speed[b, 0] * py - speed[b, 1] * px
+        ax, ay, az = gain[w] * axle[w, 0], gain[w] * axle[w, 1], gain[w] * axle[w, 2]
+        dx, dy, dz = place[c, 0] - anchor[w, 0], place[c, 1] - anchor[w, 1], place[c, 2] - anchor[w, 2]
+        tx, ty, tz = tx + ay * dz - az * dy, ty + az * dx - ax * dz, tz + ax * dy - ay * dx
         along = tx * nx + ty * ny + tz * nz
-        tx, ty, tz = tx - along * nx, ty - along * ny, tz - along * nz
-        size = math.sqrt(tx * tx + ty * ty + tz * tz)
-        share = min(1.0, max(0.0, (size - STICKS) / (SLIDES - STICKS)))
-        for k in range(3):
-            point[w, k] += place[c, k] / count[w]
-        if share > 0.0:
-            push = share * friction[c, 0] * loads[w] / (count[w] * size)
-            force[w, 0] -= push * tx
-            force[w, 1] -= push * ty
-            force[w, 2] -= push * tz
-            rest = max(LEAST, 1.0 - share)
-            friction[c, 0], friction[c, 1] = rest * friction[c, 0], rest * friction[c, 1]
-            found += 1
+        row = slips[found]
+        row[0], row[1], row[2] = tx - along * nx, ty - along * ny, tz - along * nz
+        up = 1.0 if nz > 0.0 else -1.0
+        row[3], row[4], row[5], row[6], row[7], row[8] = up * nx, up * ny, up * nz, px, py, pz
+        row[9], row[10], row[11] = friction[c, 0] * loads[w] / count[w], w, c
+        found += 1
     return found
+
+
+@kernel
+def _rows(slips: Floats, rows: Floats) -> None:
+    """Write for each contact ``[C, 3, 3]`` the slip by a motion of the base along two axes of the floor, and a turn."""
+    nx, ny, nz = slips[:, 3].mean(), slips[:, 4].mean(), slips[:, 5].mean()
+    size = math.sqrt(nx * nx + ny * ny + nz * nz)
+    nx, ny, nz = nx / size, ny / size, nz / size
+    size = math.sqrt(nz * nz + nx * nx)
+    ex, ez = nz / size, -nx / size
+    for c in range(len(slips)):
+        px, py, pz = slips[c, 6], slips[c, 7], slips[c, 8]
+        rows[c, 0, 0], rows[c, 1, 0], rows[c, 2, 0] = ex, 0.0, ez
+        rows[c, 0, 1], rows[c, 1, 1], rows[c, 2, 1] = ny * ez, nz * ex - nx * ez, -ny * ex
+        rows[c, 0, 2], rows[c, 1, 2], rows[c, 2, 2] = ny * pz - nz * py, nz * px - nx * pz, nx * py - ny * px
+        for k in range(3):
+            along = rows[c, 0, k] * slips[c, 3] + rows[c, 1, k] * slips[c, 4] + rows[c, 2, k] * slips[c, 5]
+            for i in range(3):
+                rows[c, i, k] -= along * slips[c, 3 + i]
+
+
+@kernel
+def _cost(slips: Floats, rows: Floats, heft: Floats, pull: Floats, change: Floats) -> float:
+    """Return the function whose minimum is the change of the velocity of the base in a step."""
+    total = 0.0
+    for k in range(3):
+        total += change[k] * (0.5 * heft[k] * change[k] - pull[k])
+    for c in range(len(slips)):
+        size = SOFT * SOFT
+        for i in range(3):
+            q = slips[c, i]
+            for k in range(3):
+                q += rows[c, i, k] * change[k]
+            size += q * q
+        total += slips[c, 9] * math.sqrt(size)
+    return total
+
+
+@kernel
+def _settle(slips: Floats, rows: Floats, heft: Floats, pull: Floats, force: Floats) -> None:
+    """Write the friction ``[C, 3]`` [N] of tyres at the end of a step, by Newton's method.
+
+    Args:
+        slips: see :func:`_slips`.
+        rows: see :func:`_rows`.
+        heft: mass, mass [kg] and moment of inertia [kg m2] of the robot by the time step [s].
+        pull: other forces ``[2]`` [N] and torque [N m] on it.
+        force: the result.
+    """
+    change, trial = np.zeros(3), np.zeros(3)
+    gradient, matrix = np.empty(3), np.empty((3, 3))
+    cost = _cost(slips, rows, heft, pull, change)
+    for _ in range(ROUNDS):
+        matrix[:] = 0.0
+        for k in range(3):
+            gradient[k], matrix[k, k] = heft[k] * change[k] - pull[k], heft[k]
+        for c in range(len(slips)):
+            q = slips[c, :3] + rows[c] @ change
+            size = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + SOFT * SOFT)
+            for k in range(3):
+                along = (rows[c, 0, k] * q[0] + rows[c, 1, k] * q[1] + rows[c, 2, k] * q[2]) / size
+                gradient[k] += slips[c, 9] * along
+                for m in range(3):
+                    other = (rows[c, 0, m] * q[0] + rows[c, 1, m] * q[1] + rows[c, 2, m] * q[2]) / size
+                    dot = rows[c, 0, k] * rows[c, 0, m] + rows[c, 1, k] * rows[c, 1, m] + rows[c, 2, k] * rows[c, 2, m]
+                    matrix[k, m] += slips[c, 9] * (dot - along * other) / size
+        step = np.linalg.solve(matrix, gradient)
+        part = 1.0
+        slope = step[0] * gradient[0] + step[1] * gradient[1] + step[2] * gradient[2]
+        for _ in range(ROUNDS):
+            trial[:] = change - part * step
+            found = _cost(slips, rows, heft, pull, trial)
+            if found <= cost - 0.1 * part * slope:
+                break
+            part *= 0.5
+        change[:], cost = trial, found
+        if abs(part * step[0]) + abs(part * step[1]) + abs(part * step[2]) < CLOSE:
+            break
+    for c in range(len(slips)):
+        q = slips[c, :3] + rows[c] @ change
+        size = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + SOFT * SOFT)
+        force[c] = -slips[c, 9] * q / size
+
+
+@kernel
+def _push(slips: Floats, place: Floats, friction: Floats, found: Floats, force: Floats, point: Floats) -> None:
+    """Write force and point of application ``[W, 3]`` of the tyres, and take friction out of the engine."""
+    count = np.zeros(len(force))
+    force[:], point[:] = 0.0, 0.0
+    for c in range(len(slips)):
+        w, contact = int(slips[c, 10]), int(slips[c, 11])
+        count[w] += 1.0
+        for k in range(3):
+            force[w, k] += found[c, k]
+            point[w, k] += (place[contact, k] - point[w, k]) / count[w]
+        friction[contact, 0], friction[contact, 1] = LEAST * friction[contact, 0], LEAST * friction[contact, 1]
 
 
 @kernel
@@ -114,9 +215,11 @@ class WheelFriction:
     """Wheels of a robot whose friction has a direction.
 
     * **Sliding tyres** of a :class:`SkidSteerDrive`. The friction of the engine lifts a sliding wheel, and chooses its
-      direction by all forces of a step, so that a light driven wheel is held sideways and hardly along. A tyre that
-      slides faster than ``SLIDES`` instead gets the force of Coulomb's law: friction coefficient times the load of the
-      step before, against the slip. Below ``STICKS`` the engine holds it; between them, both take a share.
+      direction by all forces of a step, so that a light driven wheel is held sideways and hardly along. Tyres instead
+      get the force of Coulomb's law: friction coefficient times the load of the step before, against the slip;
+      proportional to slips below :data:`SOFT`. The slip is that at the end of the step (implicit Euler): forces that
+      turn with the slip of its beginning make robots with a small moment of inertia vibrate. It is found for the robot
+      as one rigid body with the commanded speeds of its motors; contacts with others are not part of it.
     * **Rollers.** A wheel with rollers has its full friction along their axes, and the share ``FREE`` across them.
       Single rollers are not simulated, so there is no vibration.
 
@@ -137,6 +240,12 @@ class WheelFriction:
         self.rollers = np.array([math.nan if wheel.rollers is None else wheel.rollers for wheel in wheels])
         self.body = np.asarray(model.jnt_bodyid[self.joint], dtype=np.int64)
         self.root = np.asarray(model.body_rootid[self.body], dtype=np.int64)
+        names = [prefix + wheel.joint for wheel in wheels]
+        self.dof = np.asarray(model.jnt_dofadr[self.joint], dtype=np.int64)
+        self.motor = np.array([model.actuator(name).id for name in names], dtype=np.int64)
+        whole, step = robot.model.inertial(robot.posture), float(model.opt.timestep)
+        self._mass, self._share = whole.mass, step / lag(step)
+        self._heft = np.array([whole.mass, whole.mass, float(whole.tensor[2, 2])]) / step
         self.wheel_of = np.full(model.ngeom, -1, dtype=np.int64)
         for number, body in enumerate(self.body.tolist()):
             self.wheel_of[model.geom_bodyid == body] = number
@@ -155,13 +264,7 @@ class WheelFriction:
         mj, contact = engine(), data.contact
         changed = 0
         if self.skids:
-            force, point = np.empty((len(self), 3)), np.empty((len(self), 3))
-            changed = _slide(
-                contact.geom, contact.pos, contact.frame, contact.friction, self.wheel_of, self.body, self.root,
-                data.cvel, data.subtree_com, loads, force, point,
-            )  # fmt: skip
-            data.xfrc_applied[self.body, :3] = force
-            data.xfrc_applied[self.body, 3:] = np.cross(point - data.xipos[self.body], force)
+            changed = self._skid(data, loads)
         else:
             changed = _roll(
                 contact.geom, contact.frame, contact.friction, self.wheel_of, self.rollers, self.joint, data.xaxis
@@ -170,6 +273,26 @@ class WheelFriction:
             mj.mj_makeConstraint(model, data)
             mj.mj_projectConstraint(model, data)
             mj.mj_referenceConstraint(model, data)
+
+    def _skid(self, data: Any, loads: Floats) -> int:
+        """Apply the friction of sliding tyres; return the number of their contacts."""
+        contact = data.contact
+        slips, force = np.empty((len(contact.geom), 12)), np.zeros((len(self), 3))
+        gain = self._share * (data.ctrl[self.motor] - data.qvel[self.dof])
+        count = _slips(
+            contact.geom, contact.pos, contact.frame, contact.friction, self.wheel_of, self.body, self.root,
+            data.xaxis[self.joint], data.xanchor[self.joint], data.cvel, data.subtree_com, gain, loads, slips,
+        )  # fmt: skip
+        slips, point = slips[:count], np.zeros((len(self), 3))
+        if count:
+            rows, found = np.empty((count, 3, 3)), np.empty((count, 3))
+            _rows(slips, rows)
+            down = rows[0, 2] * (1.0, 1.0, 0.0)
+            _settle(slips, rows, self._heft, -GRAVITY * self._mass * down, found)
+            _push(slips, contact.pos, contact.friction, found, force, point)
+        data.xfrc_applied[self.body, :3] = force
+        data.xfrc_applied[self.body, 3:] = np.cross(point - data.xipos[self.body], force)
+        return count
 
     def loads(self, data: Any) -> Floats:
         """Return the normal forces ``[W]`` [N] of the wheels in the last step."""

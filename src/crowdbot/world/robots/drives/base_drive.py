@@ -29,8 +29,9 @@ WHEELED = ("differential", "skid-steer", "ackermann", "tricycle", "mecanum", "om
 """Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
 FASTEST = 3.0
 """Largest guess of the maximum turn rate [rad/s]."""
-PULLED = 2.0
-"""Largest acceleration in curves [m/s2] of a base that is moved directly: half of what its forces give."""
+PULLED = 1.0
+"""Largest acceleration in curves [m/s2] of a base that is moved directly: a quarter of what its forces give. In tighter
+curves, bodies on its joints lean out, and their reaction at a stop exceeds the declared turn acceleration."""
 RUBBER = 1.0
 """Friction coefficient of rubber on the floor."""
 SMOOTH = 0.01
@@ -98,7 +99,10 @@ def wheel_attributes(base: BaseKind, track: float, wheeled: bool) -> tuple[list[
     radius = ("wheel_radius", base.wheels[0].radius if base.wheels else 0.0, "m")
     if wheeled and base.kind in ("skid-steer", "mecanum"):
         rows = [("track", track, "m"), ("wheelbase", long, "m"), radius]
-        return rows, 0.5 * (track * slip_of(track, long) if base.kind == "skid-steer" else track + long), most
+        if base.kind == "mecanum":
+            return rows, 0.5 * (track + long), most
+        rows += [("axles", float(base.axles), "")] if base.axles > 2 else []
+        return rows, 0.5 * track * slip_of(track, long, max(base.axles, 2)), most
     if wheeled and base.kind == "omnidirectional" and star is not None:
         count, distance, first = star
         return (
@@ -185,7 +189,7 @@ def _axle_share(model: RobotModel, base: BaseKind) -> float:
 def curve_limit(model: RobotModel, base: BaseKind, wheeled: bool) -> tuple[float, str]:
     """Return the largest product of speed and turn rate [m/s2] of a differential base, and the reason."""
     if not wheeled:
-        return PULLED, "half of the force that moves the base"
+        return PULLED, "a quarter of the force that moves the base"
     floor = min(wheel.center[2] - wheel.radius for wheel in base.wheels)
     height = float(model.inertial().center[2] - floor)
     tips = UPRIGHT * GRAVITY * 0.5 * base.track / max(height, 1e-3)

@@ -22,6 +22,8 @@ CLOSE = 1e-9
 """Residual, as a share of the weight, at which the steps end."""
 PART = 0.3
 """Largest change of a speed in a Newton step, as a share of the speed of the rims in the turn."""
+HALVINGS = 8
+"""Largest number of halvings of a Newton step."""
 FAILED = 0.02
 """Residual above which the forces have no balance: the base slides out of the curve."""
 
@@ -89,10 +91,36 @@ def slide_of(before: Floats, after: Floats, dt: float, tires: Floats, body: Floa
 
 
 @kernel
+def _missing(now: Floats, change: Floats, tires: Floats, rims: Floats, out: Floats) -> None:
+    """Write residuals ``[2]`` of force and moment, and their derivatives ``[4]`` by the left and the right rims.
+
+    Args:
+        now: as in :func:`rims_of`.
+        change: acceleration ahead, and moment by mass [m], both by friction coefficient times gravity.
+        tires: as in :func:`rims_of`.
+        rims: ``[2]`` speeds [m/s].
+        out: ``[6]`` the result.
+    """
+    out[:] = 0.0
+    out[0], out[1] = -change[0], -change[1]
+    for k in range(len(tires)):
+        x, y, share, px, py = tires[k, 0], tires[k, 1], tires[k, 2], tires[k, 3], tires[k, 4]
+        sx, sy = now[0] - now[1] * y - (rims[0] if y > 0.0 else rims[1]), now[2] + now[1] * x
+        slip = math.sqrt(sx * sx + sy * sy + SOFT * SOFT)
+        out[0], out[1] = out[0] - share * sx / slip, out[1] + share * (py * sx - px * sy) / slip
+        cube = share / (slip * slip * slip)
+        xx, xy = (slip * slip - sx * sx) * cube, sx * sy * cube
+        side = 0 if y > 0.0 else 1
+        out[2 + side] += xx
+        out[4 + side] -= px * xy + py * xx
+
+
+@kernel
 def rims_of(now: Floats, change: Floats, tires: Floats, grip: float, gyration: float, most: float, out: Floats) -> None:
     """Write the speeds [m/s] of the left and of the right rims at which the tyres give a base its acceleration.
 
-    Unlike in :func:`slide_of`, the lateral speed and the loads are those of the moment.
+    Unlike in :func:`slide_of`, the lateral speed and the loads are those of the moment. Newton steps are halved until
+    the residual falls: near rolling, the forces bend sharply, and full steps would end at the limits.
 
     Args:
         now: ``[3]`` speed [m/s], turn rate [rad/s] and lateral speed [m/s] of the middle of the wheels.
@@ -105,30 +133,29 @@ def rims_of(now: Floats, change: Floats, tires: Floats, grip: float, gyration: f
     """
     forward, turn, left = now[0], now[1], now[2]
     mass_x, mass_y = tires[0, 0] - tires[0, 3], tires[0, 1] - tires[0, 4]
-    ahead = (change[0] - change[1] * mass_y - turn * turn * mass_x - turn * left) / grip
-    spin = gyration * change[1] / grip
+    wanted = np.empty(2)
+    wanted[0] = (change[0] - change[1] * mass_y - turn * turn * mass_x - turn * left) / grip
+    wanted[1] = gyration * change[1] / grip
+    here, there, trial = np.empty(6), np.empty(6), np.empty(2)
+    _missing(now, wanted, tires, out, here)
+    scale = 1.0 / max(abs(tires[0, 1]), 1e-9)
     for _ in range(ROUNDS):
-        rx, rz, a, b, g, h = -ahead, -spin, 0.0, 0.0, 0.0, 0.0
-        for k in range(len(tires)):
-            x, y, share, px, py = tires[k, 0], tires[k, 1], tires[k, 2], tires[k, 3], tires[k, 4]
-            sx, sy = forward - turn * y - (out[0] if y > 0.0 else out[1]), left + turn * x
-            slip = math.sqrt(sx * sx + sy * sy + SOFT * SOFT)
-            rx, rz = rx - share * sx / slip, rz + share * (py * sx - px * sy) / slip
-            cube = share / (slip * slip * slip)
-            xx, xy = (slip * slip - sx * sx) * cube, sx * sy * cube
-            if y > 0.0:
-                a, g = a + xx, g - px * xy - py * xx
-            else:
-                b, h = b + xx, h - px * xy - py * xx
-        if abs(rx) + abs(rz) < CLOSE:
+        size = abs(here[0]) + scale * abs(here[1])
+        whole = here[2] * here[5] - here[3] * here[4]
+        if size < CLOSE or abs(whole) < 1e-12:
             break
-        whole = a * h - b * g
-        if abs(whole) < 1e-12:
-            break
-        first, second = (rx * h - b * rz) / whole, (a * rz - g * rx) / whole
+        first = (here[0] * here[5] - here[3] * here[1]) / whole
+        second = (here[2] * here[1] - here[0] * here[4]) / whole
         part = min(1.0, PART * most / max(abs(first), abs(second), 1e-300))
-        out[0] = min(max(out[0] - part * first, forward - most), forward + most)
-        out[1] = min(max(out[1] - part * second, forward - most), forward + most)
+        for _ in range(HALVINGS):
+            trial[0] = min(max(out[0] - part * first, forward - most), forward + most)
+            trial[1] = min(max(out[1] - part * second, forward - most), forward + most)
+            _missing(now, wanted, tires, trial, there)
+            if abs(there[0]) + scale * abs(there[1]) < size:
+                break
+            part *= 0.5
+        out[:] = trial
+        here[:] = there
 
 
 @kernel

@@ -20,28 +20,38 @@ SHARE = 0.4
 """Largest product of speed and turn rate, as a share of friction coefficient times gravity: sliding wheels need the
 rest of the friction to turn the base."""
 SLIDING = 0.3
-"""Smallest lateral slip of a tyre in a curve, as a share of that on the spot. The curve shifts the slip of the inner
-end to 0; tyres that begin to stick there turn the base faster than its wheels say."""
+"""Smallest lateral slip of a tyre of the first or last axle in a curve, as a share of that on the spot. The curve
+shifts the slip of the inner end to 0; tyres that begin to stick there turn the base faster than its wheels say."""
 LEAST_SHARE = 0.05
 """Least share for bases that never slide in this way: with the centre of mass above an axle."""
 
 
-def slip_of(track: float, wheelbase: float) -> float:
+def slip_of(track: float, wheelbase: float, axles: int = 2) -> float:
     """Return the slip factor of a skid-steer base: effective track divided by track.
 
     At a wheel with the centre ``(+-wheelbase / 2, +-track / 2)`` whose rim runs at the speed ``v``, a base that turns
     at the rate ``w`` slides by ``(v - w track / 2, w wheelbase / 2)``. Coulomb friction opposes the slide. With equal
     loads its moment about the centre is zero for ``w = 2 v / (track (1 + (wheelbase / track)^2))``, whatever the
     friction coefficient and the forward speed. Real controllers have the same factor: 1.5 for Jackal (1.49 here),
-    1.875 for Husky (1.80 here).
+    1.875 for Husky (1.80 here). With more axles at equal distances, the moment is zero for another ``w``, found by
+    bisection: the wheels of middle axles slide less.
 
     Source: J. L. Martinez et al., Approximating Kinematics for Tracked Mobile Robots, IJRR 24(10), 2005 (instantaneous
     centres of rotation of the sides); ``wheel_separation_multiplier`` of jackal_control and husky_control.
 
-    >>> round(slip_of(0.3756, 0.262), 2), round(slip_of(0.5708, 0.512), 2)
-    (1.49, 1.8)
+    >>> round(slip_of(0.3756, 0.262), 2), round(slip_of(0.5708, 0.512), 2), round(slip_of(0.5, 0.6, axles=3), 2)
+    (1.49, 1.8, 1.74)
     """
-    return 1.0 + (wheelbase / track) ** 2
+    if axles == 2:
+        return 1.0 + (wheelbase / track) ** 2
+    places, half = np.linspace(-0.5, 0.5, axles) * wheelbase, 0.5 * track
+    low, high = 1.0, 1.0 + (wheelbase / track) ** 2
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        along = half * (middle - 1.0)
+        moment = (half * along - places**2) / np.maximum(np.hypot(along, places), 1e-300)
+        low, high = (middle, high) if moment.sum() < 0.0 else (low, middle)
+    return 0.5 * (low + high)
 
 
 @dataclass(frozen=True)
@@ -57,6 +67,7 @@ class SkidSteerDrive(WheeledDrive):
     Fields:
         track: distance between the left and right wheels [m].
         wheelbase: distance between the first and the last axle [m].
+        axles: number of axles, at equal distances.
         slip: slip factor; 0: :func:`slip_of`.
         friction: friction coefficient of the tyres on the floor.
         wheels_x: middle of the wheels, ahead of the origin of the robot [m].
@@ -67,7 +78,8 @@ class SkidSteerDrive(WheeledDrive):
             :class:`WheeledDrive`.
 
     Raises:
-        InputError: a number is not finite, a length or limit is not above 0, or ``slip`` is between 0 and 1.
+        InputError: a number is not finite, a length or limit is not above 0, ``slip`` is between 0 and 1, or there are
+            fewer than two axles.
 
     >>> from crowdbot.core import Twist
     >>> drive = SkidSteerDrive(track=0.4, wheelbase=0.4, wheel_radius=0.1)
@@ -84,6 +96,7 @@ class SkidSteerDrive(WheeledDrive):
     center_y: float = 0.0
     center_height: float = 0.0
     gyration_radius: float = 0.0
+    axles: int = 2
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -91,6 +104,7 @@ class SkidSteerDrive(WheeledDrive):
         check_number("SkidSteerDrive", "wheelbase", self.wheelbase, "m", exclusive_min=0.0)
         if self.slip != 0.0:
             check_number("SkidSteerDrive", "slip", self.slip, min=1.0)
+        check_number("SkidSteerDrive", "axles", self.axles, min=2)
         check_number("SkidSteerDrive", "friction", self.friction, exclusive_min=0.0)
         for name, most in (("center_x", 0.5 * self.wheelbase), ("center_y", 0.5 * self.track)):
             check_number("SkidSteerDrive", name, getattr(self, name), "m", min=-most, max=most)
@@ -98,10 +112,10 @@ class SkidSteerDrive(WheeledDrive):
         for name in ("center_height", "gyration_radius"):
             check_number("SkidSteerDrive", name, getattr(self, name), "m", min=0.0)
 
-    @property
+    @functools.cached_property
     def slip_factor(self) -> float:
         """Effective track divided by the track."""
-        return self.slip or slip_of(self.track, self.wheelbase)
+        return self.slip or slip_of(self.track, self.wheelbase, self.axles)
 
     @property
     def matrix(self) -> Floats:
@@ -112,7 +126,7 @@ class SkidSteerDrive(WheeledDrive):
     def slide(self, before: Twists, after: Twists, dt: float) -> Floats:
         """Return the speeds ``[E, 3]`` [m/s] of the left and right rims, and of the middle of the wheels to the left.
 
-        They are those at which the friction forces of four tyres give the base its acceleration: Coulomb's law against
+        They are those at which the friction forces of the tyres give the base its acceleration: Coulomb's law against
         the slip of each tyre, with its load. If the forces do not suffice, the base has no lateral speed, and the rims
         have the speeds for equal loads.
 
@@ -141,10 +155,16 @@ class SkidSteerDrive(WheeledDrive):
 
     @functools.cached_property
     def _tires(self) -> Floats:
-        """Places, shares of the weight and levers of four tyres ``[4, 5]``; see :func:`slide_of`."""
-        long = self.track * math.sqrt(self.slip_factor - 1.0)
-        place = 0.5 * np.array([[long, self.track], [long, -self.track], [-long, self.track], [-long, -self.track]])
-        balance = np.concatenate([np.ones((1, 4)), place.T])
+        """Places, shares of the weight and levers of the tyres ``[W, 5]``; see :func:`slide_of`.
+
+        A given slip factor shortens or lengthens the wheelbase.
+        """
+        long = self.wheelbase * math.sqrt(
+            (self.slip_factor - 1.0) / (slip_of(self.track, self.wheelbase, self.axles) - 1.0)
+        )
+        rows = [(x * long, y * self.track) for x in np.linspace(0.5, -0.5, self.axles) for y in (0.5, -0.5)]
+        place = np.array(rows)
+        balance = np.concatenate([np.ones((1, len(place))), place.T])
         load = np.linalg.pinv(balance) @ np.array([1.0, self.center_x, self.center_y])
         load = np.maximum(load, 0.0) / np.maximum(load, 0.0).sum()
         return np.concatenate([place, load[:, None], place - (self.center_x, self.center_y)], axis=1)
@@ -170,8 +190,9 @@ class SkidSteerDrive(WheeledDrive):
         ahead = share * self.friction * GRAVITY / turn
         before = Twists(np.array([ahead]), np.array([turn]), np.zeros(1))
         aside = float(self.slide(before, before, 1e6)[0, 2])
-        on_spot = 0.5 * float(np.ptp(self._tires[:, 0])) * turn
-        return bool((np.abs(aside + turn * self._tires[:, 0]) >= SLIDING * on_spot).all())
+        ends = self._tires[np.abs(self._tires[:, 0]) > 0.49 * np.ptp(self._tires[:, 0]), 0]
+        on_spot = 0.5 * float(np.ptp(ends)) * turn
+        return bool((np.abs(aside + turn * ends) >= SLIDING * on_spot).all())
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later, with the lateral speed at which the base slides."""

@@ -14,6 +14,9 @@ from .drive import Drive, Floats, Twists, check_step, integrate_twist
 
 __all__ = ["TricycleDrive"]
 
+ACROSS = 1e-9
+"""Smaller cosines of the steering angle are rounding errors: the wheel is across the base."""
+
 
 @dataclass(frozen=True)
 class TricycleDrive(Drive):
@@ -23,7 +26,8 @@ class TricycleDrive(Drive):
     ``forward = v cos(s)`` and ``turn = v sin(s) / wheelbase``. Back: ``s = atan2(turn * wheelbase, forward)``, and
     ``v = hypot(forward, turn * wheelbase)``; the wheel rolls backwards instead of steering beyond 90 degrees. With a
     steering angle of 90 degrees the base turns on the spot. While the wheel still steers, it rolls at the share
-    ``cos`` of the remaining angle. A command for a tighter curve than possible keeps its forward speed.
+    ``cos`` of the remaining angle, and not so fast that the base moves ahead faster than asked: it waits until it is
+    across before it turns the base on the spot. A command for a tighter curve than possible keeps its forward speed.
 
     Source: R. Siegwart, I. Nourbakhsh, Introduction to Autonomous Mobile Robots, 3.3; tricycle_controller of
     ros2_controllers.
@@ -91,6 +95,8 @@ class TricycleDrive(Drive):
             tight = np.abs(wanted.turn) * self.wheelbase > np.abs(wanted.forward) * math.tan(self.max_steering)
             along = np.where(tight, np.abs(wanted.forward) / math.cos(self.max_steering), along)
         goal = np.minimum(along, self.max_speed) * np.cos(asked - steering) * np.where(backwards, -1.0, 1.0)
+        ahead = np.abs(wanted.forward) / np.maximum(np.cos(steering), ACROSS)
+        goal = np.where(steering == asked, goal, np.clip(goal, -ahead, ahead))
         push = self.max_acceleration * dt
         before = self.rolling(twist, now)
         speed = np.clip(goal, before - push, before + push)

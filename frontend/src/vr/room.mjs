@@ -1,0 +1,158 @@
+// Room: the real room of the participant in the virtual one: where the headset is, the limits, hands, and a veil.
+import * as THREE from "three";
+
+const AXES = new THREE.Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+const NEAR = 0.9;
+const HIGH = 2.2;
+const GAP = 0.25;
+
+export class Room {
+  constructor() {
+    this.group = new THREE.Group();
+    this.rig = new THREE.Group();
+    this.rig.quaternion.setFromRotationMatrix(AXES);
+    this.camera = new THREE.PerspectiveCamera(75, 1, 0.05, 300);
+    this.rig.add(this.camera);
+    this.group.add(this.rig);
+    this.margin = Infinity;
+    this._corners = [];
+    this._limits = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: "#ff5c00", transparent: true, opacity: 0, depthTest: false }));
+    this._limits.renderOrder = 8;
+    this.group.add(this._limits);
+    this._hands = { left: hand(), right: hand() };
+    for (const one of Object.values(this._hands)) this.rig.add(one);
+    this._veil = veil();
+    this.camera.add(this._veil, (this._panel = panel()));
+  }
+
+  /** Places the room; place has x, y, z, heading [m], [rad] and limits [[x, y], ...]. */
+  set(place) {
+    this.group.position.set(place.x, place.y, place.z);
+    this.group.rotation.z = place.heading;
+    if (JSON.stringify(place.limits) === JSON.stringify(this._corners)) return;
+    this._corners = place.limits;
+    this._limits.geometry.dispose();
+    this._limits.geometry = fence(place.limits);
+  }
+
+  /** Shows hands where they are, and the limits before they are reached; `parts` are transforms of the headset. */
+  update({ head, hands }) {
+    for (const [side, mesh] of Object.entries(this._hands)) {
+      const one = hands[side];
+      mesh.visible = Boolean(one);
+      if (!one) continue;
+      mesh.position.copy(one.position);
+      mesh.quaternion.copy(one.orientation);
+    }
+    const points = [head, ...Object.values(hands)].filter(Boolean).map(({ position: p }) => [-p.z, -p.x]);
+    this.margin = Math.min(Infinity, ...points.map((point) => inside(point, this._corners)));
+    this._limits.material.opacity = this._corners.length ? Math.max(0, Math.min(1, (NEAR - this.margin) / (NEAR - 0.3))) : 0;
+    this._limits.visible = this._limits.material.opacity > 0;
+  }
+
+  /** Draws no hands: the avatar of the participant has some. */
+  hideHands() {
+    for (const mesh of Object.values(this._hands)) mesh.visible = false;
+  }
+
+  /** Opacity of the limits, for tests. */
+  get warning() {
+    return this._limits.visible ? this._limits.material.opacity : 0;
+  }
+
+  /** Fades the picture towards black: 0 shows it, 1 hides it. Returns the opacity that is reached. */
+  fade(wish, seconds) {
+    const material = this._veil.material;
+    const step = seconds / 0.2;
+    material.opacity += Math.max(-step, Math.min(step, wish - material.opacity));
+    this._veil.visible = material.opacity > 0.001;
+    return material.opacity;
+  }
+
+  /** Opacity of the black before the eyes, for tests. */
+  get veil() {
+    return Math.round(1000 * this._veil.material.opacity) / 1000;
+  }
+
+  /** Shows a sentence in front of the participant; an empty one shows nothing. */
+  say(text) {
+    if (this._said === text) return;
+    this._said = text;
+    this._panel.visible = Boolean(text);
+    if (text) write(this._panel, text);
+  }
+
+  get said() {
+    return this._said ?? "";
+  }
+}
+
+/** Distance [m] of a point from the sides of a polygon, negative outside; infinite without a polygon. */
+export function inside([x, y], corners) {
+  if (corners.length < 3) return Infinity;
+  let gap = Infinity;
+  let within = false;
+  corners.forEach(([ax, ay], k) => {
+    const [bx, by] = corners[(k + 1) % corners.length];
+    const [dx, dy] = [bx - ax, by - ay];
+    const share = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / Math.max(dx * dx + dy * dy, 1e-12)));
+    gap = Math.min(gap, Math.hypot(x - ax - share * dx, y - ay - share * dy));
+    if (ay > y !== by > y && x < ax + ((y - ay) / dy) * dx) within = !within;
+  });
+  return within ? gap : -gap;
+}
+
+function fence(corners) {
+  const points = [];
+  corners.forEach(([ax, ay], k) => {
+    const [bx, by] = corners[(k + 1) % corners.length];
+    const count = Math.max(1, Math.round(Math.hypot(bx - ax, by - ay) / GAP));
+    for (let i = 0; i < count; i++) {
+      const [x, y] = [ax + ((bx - ax) * i) / count, ay + ((by - ay) * i) / count];
+      points.push(x, y, 0, x, y, HIGH);
+    }
+    for (let z = 0; z <= HIGH + 0.01; z += HIGH / 8) points.push(ax, ay, z, bx, by, z);
+  });
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+}
+
+function hand() {
+  const mesh = new THREE.Mesh(new THREE.CapsuleGeometry(0.035, 0.09, 6, 12), new THREE.MeshStandardMaterial({ color: "#e0ac8a", roughness: 0.8 }));
+  mesh.geometry.rotateX(0.5 * Math.PI);
+  mesh.visible = false;
+  return mesh;
+}
+
+function veil() {
+  const material = new THREE.MeshBasicMaterial({ color: "#000", side: THREE.BackSide, transparent: true, opacity: 0, depthTest: false, depthWrite: false, fog: false });
+  const mesh = new THREE.Mesh(new THREE.SphereGeometry(0.5, 16, 12), material);
+  mesh.renderOrder = 9;
+  mesh.visible = false;
+  return mesh;
+}
+
+function panel() {
+  const map = new THREE.CanvasTexture(Object.assign(document.createElement("canvas"), { width: 1024, height: 256 }));
+  const mesh = new THREE.Mesh(new THREE.PlaneGeometry(1, 0.25), new THREE.MeshBasicMaterial({ map, transparent: true, depthTest: false, fog: false }));
+  mesh.position.set(0, -0.05, -1.2);
+  mesh.renderOrder = 10;
+  mesh.visible = false;
+  return mesh;
+}
+
+function write(mesh, text) {
+  const { image } = mesh.material.map;
+  const pen = image.getContext("2d");
+  pen.clearRect(0, 0, image.width, image.height);
+  pen.fillStyle = "rgba(20, 28, 38, 0.92)";
+  pen.beginPath();
+  pen.roundRect(0, 0, image.width, image.height, 40);
+  pen.fill();
+  pen.fillStyle = "#fff";
+  pen.font = "52px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  const lines = text.split("\n");
+  lines.forEach((line, k) => pen.fillText(line, image.width / 2, image.height / 2 + 66 * (k - (lines.length - 1) / 2), image.width - 60));
+  mesh.material.map.needsUpdate = true;
+}

@@ -1,0 +1,1 @@
+"""Load of a bridge: its processor time with many topics at once."""

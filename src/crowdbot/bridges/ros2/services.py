@@ -1,0 +1,90 @@
+"""Services of a ROS 2 node: those of ``std_srvs``, and of ``simulation_interfaces`` where it is installed."""
+
+from __future__ import annotations
+
+import importlib
+import queue
+from collections.abc import Callable
+from typing import Any
+
+from crowdbot.bridges.inbox import Inbox
+from crowdbot.bridges.plain_services import PLAIN_SERVICES, PlainService
+from crowdbot.bridges.verbs.definitions import PACKAGE, SERVICES
+from crowdbot.bridges.verbs.results import FAILED, result
+from crowdbot.core import InputError
+
+from .values import fill_message, message_fields
+
+__all__ = ["CALLS", "add_services", "service_class"]
+
+CALLS = 4
+"""Number of calls that can wait for the simulation at the same time; the node needs as many threads."""
+ANSWER_TIME = 600.0
+"""Longest real time [s] that a call waits for the simulation."""
+UNANSWERED = "the simulation does not answer"
+
+
+def service_class(package: str, kind: str) -> Any:
+    """Return the class of a service type of the ROS installation; None if its package is not installed."""
+    try:
+        return getattr(importlib.import_module(f"{package}.srv"), kind, None)
+    except ImportError:
+        return None
+
+
+def add_services(node: Any, inbox: Inbox, sender: str) -> tuple[str, ...]:
+    """Offer the services on a node, and return the types that are not installed.
+
+    A callback blocks its thread until the simulation has answered, which ends with the run at the latest.
+
+    Args:
+        node: node of rclpy, in an executor with :data:`CALLS` threads.
+        inbox: receives the calls.
+        sender: name of the transport.
+    """
+    missing: dict[str, None] = {}
+    group = importlib.import_module("rclpy.callback_groups").ReentrantCallbackGroup()
+    for name, plain in PLAIN_SERVICES.items():
+        found = service_class("std_srvs", plain.kind)
+        if found is None:
+            missing[f"std_srvs/srv/{plain.kind}"] = None
+        else:
+            node.create_service(found, name, _plain_callback(plain, node, inbox, sender), callback_group=group)
+    for short, definition in SERVICES.items():
+        found = service_class(PACKAGE, definition.kind)
+        if found is None:
+            missing[f"{PACKAGE}/srv/{definition.kind}"] = None
+        else:
+            name = f"/crowdbot/{short}"
+            node.create_service(found, name, _callback(name, inbox, sender), callback_group=group)
+    return tuple(missing)
+
+
+def _plain_callback(service: PlainService, node: Any, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
+    def call(request: Any, response: Any) -> Any:
+        found: queue.SimpleQueue[str] = queue.SimpleQueue()
+        try:
+            service.call(inbox, found.put, sender)
+            problem = found.get(timeout=ANSWER_TIME)
+        except (InputError, queue.Empty) as error:
+            problem = str(error) or UNANSWERED
+        if service.kind == "Trigger":
+            return fill_message(response, {"success": not problem, "message": problem})
+        if problem:  # Empty has no place for it
+            node.get_logger().error(problem)
+        return response
+
+    return call
+
+
+def _callback(name: str, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
+    def call(request: Any, response: Any) -> Any:
+        found: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        try:
+            inbox.call(name, message_fields(request), found.put, sender)
+            fields = found.get(timeout=ANSWER_TIME)
+        except (InputError, queue.Empty) as error:
+            fields = result(FAILED, str(error) or UNANSWERED)
+        return fill_message(response, fields)
+
+    return call

@@ -1,0 +1,1 @@
+"""Robot software in processes of its own as the navigator of a trial."""

@@ -1,0 +1,1 @@
+"""The TCP protocol of the challenge "Crowd against the machine"."""

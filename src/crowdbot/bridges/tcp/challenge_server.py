@@ -1,0 +1,228 @@
+"""ChallengeServer: the TCP server of the CrowdBot challenge, to which its clients connect unchanged."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import socket
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+from crowdbot.bridges.inbox import Inbox
+from crowdbot.bridges.interface import RobotInterface
+from crowdbot.core import InputError
+from crowdbot.recording import StepMessage
+
+from .challenge_protocol import LONGEST, ChallengeRequest, format_reply, read_request
+
+__all__ = ["ChallengeServer"]
+
+PORT = 25001
+LOOK = 0.1
+"""Longest real time [s] until a thread sees that the run has ended."""
+LATEST = 60.0
+"""Longest real time [s] of a step that a client waits for."""
+QUIT = 3
+"""State of ``simulation_interfaces/SimulationState`` that ends the simulation."""
+
+
+class ChallengeServer:
+    """A server for one client that drives in lock step: with ``--clock follow``, each request moves the time.
+
+    The reply has the topics ``clock``, ``crowd`` (people: number x y), ``odom`` of the first robot (x y theta and their
+    velocities in the same frame, in m and degrees) and ``report`` (contacts). Lidar and camera are not sent. The list
+    of scenarios is the one trial, so that next, previous, first, last and reset all begin it again.
+
+    Args:
+        port: TCP port; 0: any free one, see :attr:`port` after :meth:`start`.
+
+    Raises:
+        InputError: the port is not allowed.
+
+    >>> ChallengeServer().port
+    25001
+    """
+
+    name = "tcp"
+
+    def __init__(self, port: int = PORT) -> None:
+        if not 0 <= port <= 65535:
+            raise InputError(f"port {port} must be from 0 to 65535")
+        self.port = port
+        self._listener: socket.socket | None = None
+        self._thread: threading.Thread | None = None
+        self._ended = False
+        self._state = threading.Condition()
+        self._payloads: dict[str, str] = {}
+        self._now, self._step, self._number, self._contacts = -1, 1, 0, list[str]()
+        self._interface: RobotInterface | None = None
+        self._inbox: Inbox | None = None
+
+    @classmethod
+    def of(cls, address: str) -> ChallengeServer:
+        """Return the server of an address on the command line: a port, or nothing.
+
+        Raises:
+            InputError: the address is no port.
+        """
+        if address and not address.isdecimal():
+            raise InputError(f"tcp:{address[:40]} must be tcp or tcp:PORT, such as tcp:{PORT}")
+        return cls(int(address or PORT))
+
+    def start(self, interface: RobotInterface, inbox: Inbox) -> None:
+        """Listen, or forget the state of the last run.
+
+        Raises:
+            InputError: the port is in use, or the trial has no robot.
+        """
+        if not interface.trial.robots:
+            raise InputError(f"the bridge tcp needs a robot, and trial {interface.trial.name!r} has none")
+        with self._state:
+            self._interface, self._inbox, self._payloads, self._now = interface, inbox, {}, -1
+            self._step = round(interface.trial.step * 1e9)
+        if self._listener is not None:
+            return
+        try:
+            self._listener = socket.create_server(("127.0.0.1", self.port))
+        except OSError as error:
+            raise InputError(f"tcp cannot listen on 127.0.0.1:{self.port}: {error.strerror}") from None
+        self.port = self._listener.getsockname()[1]
+        self._listener.settimeout(LOOK)
+        self._thread = threading.Thread(target=self._serve, name="tcp", daemon=True)
+        self._thread.start()
+
+    def wants(self, topic: str) -> bool:
+        """Return whether a topic is part of the replies."""
+        return topic in ("/clock", "/people", self._odometry, "/crowdbot/contacts")
+
+    @property
+    def _robot(self) -> str:
+        assert self._interface is not None
+        return self._interface.trial.robots[0].name
+
+    @property
+    def _odometry(self) -> str:
+        return f"/{self._robot}/odom"
+
+    def publish(self, messages: Sequence[StepMessage]) -> None:
+        """Keep what the next reply says."""
+        with self._state:
+            for one in messages:
+                if one.topic in ("/people", self._odometry, "/crowdbot/contacts"):
+                    self._keep(one)
+            if messages and messages[0].topic != "/map":
+                self._now = messages[-1].nanoseconds
+                self._payloads["clock"] = f"{self._now / 1e9:.9g}"
+            self._state.notify_all()
+
+    def _keep(self, one: StepMessage) -> None:
+        stamp = f"{one.nanoseconds / 1e9:.9g}"
+        if one.topic == "/people":
+            people = one.message.people
+            rows = [f"({k} {man.position.x:.9g} {man.position.y:.9g})" for k, man in enumerate(people)]
+            self._payloads["crowd"] = " ".join([stamp, str(len(rows)), *rows])
+        elif one.topic == self._odometry:
+            self._payloads["odom"] = " ".join([stamp, *(f"{value:.9g}" for value in _planar(one.message))])
+        else:
+            self._contacts += [f"{man.robot} {man.other}" for man in one.message.contacts]
+
+    def poll(self) -> None:
+        """Do nothing: a thread serves the client."""
+
+    def report(self, level: str, text: str) -> None:
+        """Do nothing: the protocol has no messages about problems."""
+
+    def stop(self) -> None:
+        """Disconnect the client and stop listening."""
+        with self._state:
+            self._ended = True
+            self._state.notify_all()
+        if self._thread is not None:
+            self._thread.join()
+        if self._listener is not None:
+            self._listener.close()
+
+    def _serve(self) -> None:
+        assert self._listener is not None
+        while not self._ended:
+            try:
+                client, _ = self._listener.accept()
+            except TimeoutError:
+                continue
+            with client, contextlib.suppress(OSError):
+                client.settimeout(LOOK)
+                self._talk(client)
+
+    def _talk(self, client: socket.socket) -> None:
+        """Answer the requests of a client until it goes or sends what is no request."""
+        text = b""
+        while not self._ended:
+            try:
+                part = client.recv(LONGEST)
+            except TimeoutError:
+                continue
+            text += part
+            if not part or len(text) > LONGEST:
+                return
+            if not text.endswith(b";") and text.strip() != b"stop":
+                continue
+            try:
+                request = read_request(text.decode("utf-8", "replace"))
+                self._take(request)
+            except InputError:  # the protocol has no words for errors
+                return
+            text = b""
+            client.settimeout(LATEST)
+            client.sendall(self._reply())
+            client.settimeout(LOOK)
+            if request.control == "s":
+                return
+
+    def _take(self, request: ChallengeRequest) -> None:
+        """Give a request to the simulation and wait until it has come to its time."""
+        assert self._inbox is not None
+        if request.control != "i":
+            self._control(request.control)
+        names = {one.name for one in self._interface.trial.robots} if self._interface else set()
+        for name, (speed, turn) in request.commands.items():
+            if not name or name in names:
+                twist = {"linear": {"x": speed}, "angular": {"z": turn}}
+                self._inbox.receive(f"/{name or self._robot}/cmd_vel", twist, self.name)
+        target = None
+        if request.clock is not None and any(one.name == "/clock" for one in self._inbox.interface.inputs):
+            target = round(request.clock * 1e9)
+            clock = {"sec": target // 10**9, "nanosec": target % 10**9}
+            self._inbox.receive("/clock", {"clock": clock}, self.name)
+        with self._state:
+            self._state.wait_for(lambda: self._ended or self._is_at(target), LATEST)
+
+    def _is_at(self, target: int | None) -> bool:
+        return self._now >= 0 and (target is None or self._now + self._step > target)
+
+    def _control(self, letter: str) -> None:
+        """Begin the trial again, or end the simulation."""
+        assert self._inbox is not None
+        done = threading.Event()
+        service, request = "reset_simulation", dict[str, Any]()
+        if letter == "s":
+            service, request = "set_simulation_state", {"state": {"state": QUIT}}
+        self._inbox.call(f"/crowdbot/{service}", request, lambda _: done.set(), self.name)
+        while not done.wait(LOOK) and not self._ended:
+            continue
+
+    def _reply(self) -> bytes:
+        with self._state:
+            self._number += 1
+            report, self._contacts = "|".join(self._contacts), []
+            return format_reply(self._number, {"clock": "0", **self._payloads, "report": report})
+
+
+def _planar(message: Any) -> tuple[float, ...]:
+    """Return x, y [m], heading [deg] of an odometry message, and their velocities in the same frame."""
+    place, turn = message.pose.pose.position, message.pose.pose.orientation
+    heading = 2.0 * math.atan2(turn.z, turn.w)
+    cos, sin = math.cos(heading), math.sin(heading)
+    forward, left = message.twist.twist.linear.x, message.twist.twist.linear.y
+    angles = (math.degrees(math.remainder(heading, math.tau)), math.degrees(message.twist.twist.angular.z))
+    return place.x, place.y, angles[0], cos * forward - sin * left, sin * forward + cos * left, angles[1]

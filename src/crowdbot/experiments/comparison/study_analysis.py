@@ -1,0 +1,190 @@
+"""Analysis of sessions: the measures of each trial, and tests between the conditions within participants."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import CrowdbotError, EpisodeError, InputError
+from crowdbot.experiments.experiment import Experiment
+from crowdbot.experiments.parser import parse_experiment
+from crowdbot.experiments.question import Scale
+from crowdbot.experiments.session_folder import COPY, folder_of
+from crowdbot.experiments.session_summary import summary
+from crowdbot.metrics import correct_p_values
+from crowdbot.recording import read_episode
+from crowdbot.trials import parse_trial, read_trial_bytes
+
+from .paired_test import PairedTest, paired_test
+from .study import Measure, RecordedTrial, Study, TrialMeasures
+from .view_track import looking_shares
+
+__all__ = ["LOOKING", "SETTLING", "ConditionTest", "StudyAnalysis", "analyse_study", "experiment_of", "rating_measures"]
+
+SETTLING = 2.0
+"""Time at the start of a trial that is left out of steady motions [s]."""
+LOOKING: Mapping[str, Measure] = {
+    "looking": Measure("share of time looking at the robot [1]", 0.1),
+    "looking_visible": Measure("share of time looking at the robot, not hidden [1]", 0.1),
+}
+"""Measures of all studies, from the recorded directions of head or gaze."""
+RATING_BOUND = 0.1
+"""Bound of equivalence of a rating, as a part of the range of its scale."""
+
+
+@dataclass(frozen=True)
+class ConditionTest:
+    """A measure in two conditions; ``corrected`` is the p-value after the correction of Holm over all tests."""
+
+    measure: str
+    first: str
+    second: str
+    test: PairedTest
+    corrected: float
+
+    def record(self) -> dict[str, Any]:
+        """Return the values as a row of a table."""
+        head = {"measure": self.measure, "first": self.first, "second": self.second}
+        return {**head, **self.test._asdict(), "corrected": self.corrected}
+
+
+@dataclass(frozen=True)
+class StudyAnalysis:
+    """All trials of all participants, and the paired tests between the conditions.
+
+    Fields:
+        study: kind of the experiment.
+        measures: measures that are compared, with ratings as ``screen.question``.
+        trials: the trials that ran.
+        tests: a test for each measure and two conditions.
+    """
+
+    study: Study
+    measures: Mapping[str, Measure]
+    trials: tuple[TrialMeasures, ...]
+    tests: tuple[ConditionTest, ...] = ()
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Names of the conditions in their first order."""
+        return tuple(dict.fromkeys(trial.condition for trial in self.trials))
+
+    @property
+    def finite_measures(self) -> dict[str, Measure]:
+        """The measures that are known in a trial."""
+        known = {name for one in self.trials for name, value in one.values.items() if math.isfinite(value)}
+        return {name: measure for name, measure in self.measures.items() if name in known}
+
+    def values(self, measure: str, condition: str) -> dict[int, float]:
+        """Return the mean of a measure in a condition by participant; trials in which it is unknown do not count."""
+        found: dict[int, list[float]] = {}
+        for trial in self.trials:
+            value = trial.values.get(measure, math.nan)
+            if trial.condition == condition and math.isfinite(value):
+                found.setdefault(trial.participant, []).append(value)
+        return {who: float(np.mean(values)) for who, values in found.items()}
+
+
+def analyse_study(
+    folder: Path | str, study: Study, *, bounds: Mapping[str, float] | None = None, settling: float = SETTLING
+) -> StudyAnalysis:
+    """Analyse the recorded trials of all participants.
+
+    The names of the trials in the experiment are the conditions. Repetitions of a participant are averaged for the
+    tests. Trials without an episode, or of another kind, are kept with the reason.
+
+    Args:
+        folder: output folder of the sessions.
+        study: kind of the experiment.
+        bounds: largest differences that count as equivalent, by measure.
+        settling: time at the start of each trial that is left out of steady motions [s].
+
+    Raises:
+        EpisodeError: there is no session, or one is damaged.
+        InputError: a bound is not that of a measure, or not above 0.
+    """
+    everything = summary(folder)
+    ratings = rating_measures(experiment_of(folder))
+    measures = {**study.measures, **LOOKING, **ratings}
+    limits = _checked({name: measure.bound for name, measure in measures.items()}, bounds or {})
+    rows = [row for row in everything if row["outcome"] != "not run"]
+    trials = tuple(_measured(Path(folder), row, study, settling, ratings) for row in rows)
+    found = StudyAnalysis(study, measures, trials)
+    return StudyAnalysis(study, measures, trials, _tests(found, limits))
+
+
+def experiment_of(folder: Path | str) -> Experiment:
+    """Return the experiment of the first session in a folder.
+
+    Raises:
+        EpisodeError: there is no session.
+        TrialError: the copy of the experiment is damaged.
+    """
+    home = Path(folder)
+    copies = [home / COPY] if (home / COPY).is_file() else sorted(home.glob(f"*/{COPY}"))
+    if not copies:
+        raise EpisodeError(f"{folder} contains no sessions; give the output folder of 'experiment run' (--out)")
+    return parse_experiment(read_trial_bytes(copies[0]), place=str(copies[0]), folder=copies[0].parent, whole=False)
+
+
+def rating_measures(experiment: Experiment) -> dict[str, Measure]:
+    """Return the scales that are asked after trials as measures, by ``screen.question``.
+
+    >>> from crowdbot.experiments import load_experiment
+    >>> list(rating_measures(load_experiment("robot-speed")))
+    ['opinion.comfort']
+    """
+    screens = [
+        screen for block in experiment.blocks for screen in (*block.after, *(s for t in block.trials for s in t.after))
+    ]
+    asked = {f"{s.name}.{one.name}": one for s in screens for one in s.questions if isinstance(one, Scale)}
+    return {
+        name: Measure(f"{name} [{one.low} to {one.high}]", RATING_BOUND * (one.high - one.low))
+        for name, one in asked.items()
+    }
+
+
+def _checked(limits: dict[str, float], given: Mapping[str, float]) -> dict[str, float]:
+    for name, bound in given.items():
+        if name not in limits:
+            raise InputError(f"there is no measure {name!r}; measures are {', '.join(limits)}")
+        if not (math.isfinite(bound) and bound > 0.0):
+            raise InputError(f"the bound of {name} = {bound} must be above 0")
+    return limits | dict(given)
+
+
+def _measured(
+    folder: Path, row: Mapping[str, Any], study: Study, settling: float, ratings: Mapping[str, Measure]
+) -> TrialMeasures:
+    who, condition = int(row["participant"]), str(row["trial"])
+    home = (folder if (folder / COPY).is_file() else folder_of(folder, who)) / str(row["folder"])
+    try:
+        if row["outcome"] in ("failed", "running"):
+            raise EpisodeError(row["reason"] or "the trial did not end")
+        episode = read_episode(home / "episode.mcap")
+        recorded = RecordedTrial(parse_trial(episode.xml, place=str(episode.path)), episode, home, settling)
+        values, labels, curves = study.evaluate(recorded)
+        shares, view = looking_shares(recorded)
+    except CrowdbotError as error:
+        return TrialMeasures(who, condition, {}, str(error))
+    given = {name: float(row[name]) for name in ratings if isinstance(row.get(name), int | float)}
+    return TrialMeasures(who, condition, {**values, **shares, **given}, "", {**labels, "view": view}, curves)
+
+
+def _tests(analysis: StudyAnalysis, limits: Mapping[str, float]) -> tuple[ConditionTest, ...]:
+    found: list[tuple[str, str, str, PairedTest]] = []
+    for measure, (first, second) in itertools.product(limits, itertools.combinations(analysis.conditions, 2)):
+        one, other = analysis.values(measure, first), analysis.values(measure, second)
+        both = sorted(one.keys() & other.keys())
+        if both:
+            values = [one[k] for k in both], [other[k] for k in both]
+            test = paired_test(*values, limits[measure], binary=analysis.measures[measure].binary)
+            found.append((measure, first, second, test))
+    corrected: Sequence[float] = correct_p_values([test.p_value for *_, test in found])
+    return tuple(ConditionTest(*one, p) for one, p in zip(found, corrected, strict=True))

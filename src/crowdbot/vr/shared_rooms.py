@@ -1,0 +1,139 @@
+"""SharedRooms: the rooms of the person and of the robot, and where they are in the virtual room."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core import InputError
+
+from .rigid_transform import RigidFit, RigidTransform, fit_rigid
+from .room_limits import RoomLimits
+
+__all__ = ["ROOMS", "RealRoom", "SharedRooms"]
+
+ROOMS = ("person", "robot")
+FEWEST = 3
+"""Points that define the place of a room."""
+MOST = 200
+"""Largest number of calibration points of a room."""
+
+
+@dataclass
+class RealRoom:
+    """A real room and its place in the virtual one.
+
+    Fields:
+        place: transform from the room to the virtual room.
+        limits: free floor in the frame of the room, or None.
+        source, target: touched points in the frame of the room and of the virtual room [m].
+        fit: the calibration, or None while ``place`` is a guess.
+    """
+
+    place: RigidTransform = field(default_factory=lambda: RigidTransform.at(0.0, 0.0))
+    limits: RoomLimits | None = None
+    source: list[list[float]] = field(default_factory=list)
+    target: list[list[float]] = field(default_factory=list)
+    fit: RigidFit | None = None
+
+    def state(self) -> dict[str, Any]:
+        """Return the room as JSON: place, limits, points, and the residuals [m] of the calibration."""
+        fit = self.fit
+        return {
+            "x": float(self.place.translation[0]),
+            "y": float(self.place.translation[1]),
+            "z": float(self.place.translation[2]),
+            "heading": self.place.heading,
+            "limits": [] if self.limits is None else [list(one) for one in self.limits.corners],
+            "source": self.source,
+            "target": self.target,
+            "rms": None if fit is None else fit.rms,
+            "noise": None if fit is None or fit.noise != fit.noise else fit.noise,
+            "residual": [] if fit is None else fit.residual.tolist(),
+        }
+
+
+class SharedRooms:
+    """Three workspaces: the room of the person, that of the robot, and the virtual room of the trial.
+
+    A point that is touched in a real room, with its coordinates in the virtual one, is a pair of the calibration. After
+    it, real walls are where virtual walls are. The place of the robot's room is the origin of its motion capture or
+    odometry in the trial.
+
+    >>> rooms = SharedRooms()
+    >>> for x, y in ((0, 0), (2, 0), (2, 3)):
+    ...     rooms.add_pair("person", [x, y, 1], [x + 5, y - 1, 1])
+    >>> rooms.calibrate("person").rms < 1e-9, rooms.rooms["person"].place.apply([0, 0, 0]).round(6).tolist()
+    (True, [5.0, -1.0, 0.0])
+    """
+
+    def __init__(self) -> None:
+        self.rooms = {name: RealRoom() for name in ROOMS}
+
+    def room(self, name: str) -> RealRoom:
+        """Return the room ``person`` or ``robot``; raises InputError for another name."""
+        if name not in self.rooms:
+            raise InputError(f"room = {name!r}: expected {' or '.join(ROOMS)}")
+        return self.rooms[name]
+
+    def add_pair(self, name: str, source: Sequence[float], target: Sequence[float]) -> None:
+        """Add a point of a room and the same point of the virtual room [m]; raises InputError for other values."""
+        room = self.room(name)
+        for one in (source, target):
+            if len(one) != 3 or not all(isinstance(k, int | float) and abs(k) <= 1e3 for k in one):
+                raise InputError(f"calibration: a point {list(one)} must be 3 numbers x, y, z of at most 1000 m")
+        if len(room.source) >= MOST:
+            raise InputError(f"calibration: more than {MOST} points; clear them first")
+        room.source.append([float(one) for one in source])
+        room.target.append([float(one) for one in target])
+
+    def clear(self, name: str) -> None:
+        """Remove the points of a room; its place stays."""
+        room = self.room(name)
+        room.source, room.target, room.fit = [], [], None
+
+    def calibrate(self, name: str) -> RigidFit:
+        """Compute the place of a room from its points; raises InputError if they do not define it."""
+        room = self.room(name)
+        room.fit = fit_rigid(room.source, room.target)
+        room.place = room.fit.transform
+        return room.fit
+
+    def record(self) -> dict[str, Any]:
+        """Return places, points and limits of the rooms, JSON, for :meth:`restore`."""
+        keys = ("x", "y", "z", "heading", "limits", "source", "target")
+        return {name: {key: room.state()[key] for key in keys} for name, room in self.rooms.items()}
+
+    def restore(self, record: Any) -> None:
+        """Take the rooms of a record; a room with at least 3 points is calibrated again.
+
+        Raises:
+            InputError: it is no record of rooms; nothing changes.
+        """
+        made = SharedRooms()
+        if not isinstance(record, dict) or not set(record) <= set(ROOMS):
+            raise InputError(f"a file of rooms must have the keys {' and '.join(ROOMS)}")
+        try:
+            for name, one in record.items():
+                room = made.room(name)
+                numbers = [float(one[key]) for key in ("x", "y", "z", "heading")]
+                room.place = RigidTransform.at(numbers[0], numbers[1], numbers[3], numbers[2])
+                room.limits = RoomLimits(tuple(tuple(row) for row in one["limits"])) if one["limits"] else None
+                for source, target in zip(one["source"], one["target"], strict=True):
+                    made.add_pair(name, source, target)
+                if len(room.source) >= FEWEST:
+                    made.calibrate(name)
+        except InputError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
+            raise InputError(f"a file of rooms is damaged: {error!r}") from None
+        self.rooms.update({name: made.rooms[name] for name in record})
+
+    def margin(self, name: str, x: float, y: float) -> float | None:
+        """Return the distance [m] of a place of the virtual room to the limits of a real one; None without limits."""
+        room = self.room(name)
+        if room.limits is None:
+            return None
+        inside = room.place.inverse().apply([x, y, 0.0])
+        return room.limits.margin(float(inside[0]), float(inside[1]))

@@ -1,0 +1,188 @@
+"""VrParticipant: a person in a headset who moves an avatar of a running simulation."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from crowdbot.core import InputError
+from crowdbot.humans import People
+from crowdbot.simulation import AvatarOrder, Order, Simulation
+from crowdbot.trials import people_appearance
+from crowdbot.web import StateFrame
+
+from .avatar_contacts import AvatarContacts
+from .body_estimate import BodyEstimator, BodySize
+from .headset_recording import HeadsetRecorder
+from .headset_sample import HeadsetSample
+from .headset_stream import HeadsetStream, StreamSettings
+from .shared_rooms import SharedRooms
+
+__all__ = ["VrParticipant", "avatar_body"]
+
+SOURCE = "vr"
+LATEST = 100
+"""Number of messages that are kept."""
+
+
+class VrParticipant:
+    """Gives the poses of a headset to an avatar, one order in each step, and tells the headset what it touches.
+
+    It is a control of a :class:`crowdbot.web.LiveRun`. Messages arrive in one thread, steps happen in another.
+
+    Args:
+        avatar: name of an external avatar of the trial.
+        rooms: where the room of the headset is in the virtual room.
+        settings: delays and noise.
+        recorder: recording of the raw messages, or None.
+        clock: time of the server [s].
+        tell: called with messages for the headset, JSON.
+    """
+
+    def __init__(
+        self,
+        avatar: str,
+        rooms: SharedRooms,
+        settings: StreamSettings | None = None,
+        recorder: HeadsetRecorder | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        tell: Callable[[dict[str, Any]], None] = lambda _: None,
+    ) -> None:
+        self.avatar, self.rooms, self.recorder = avatar, rooms, recorder
+        self.stream = HeadsetStream(settings)
+        self.refused, self.reason = 0, ""
+        """Number of samples that are no pose of a person, and why the last one is not."""
+        self.sample: HeadsetSample | None = None
+        """The latest message."""
+        self._latest: deque[HeadsetSample] = deque(maxlen=LATEST)
+        self._clock, self._tell = clock, tell
+        self._lock = threading.Lock()
+        self._simulation: Simulation | None = None
+        self._estimator: BodyEstimator | None = None
+        self._contacts: AvatarContacts | None = None
+        self._id: int | None = None
+
+    def take(self, data: bytes) -> dict[str, Any]:
+        """Take a message of the headset, and return the answer: the times of its arrival and of the answer.
+
+        Raises:
+            InputError: it is no message of a headset.
+        """
+        arrival = self._clock()
+        sample = HeadsetSample.of_frame(StateFrame.decode(data))
+        recorder = self.recorder  # another thread may exchange it
+        if recorder is not None:
+            recorder.message(arrival, data)
+        with self._lock:
+            self.sample = sample
+            self._latest.append(sample)
+            self.stream.add(sample, arrival)
+        return {"clock": [sample.time, arrival, self._clock()]}
+
+    def orders(self, simulation: Simulation) -> list[Order]:
+        """Return the pose at the end of the next step; none while tracking is lost, so the avatar stands."""
+        self._follow(simulation)
+        now = self._clock()
+        with self._lock:
+            sample = self.stream.at(now)
+            self._tell_contacts(simulation, now)
+        if sample is None or self._estimator is None:
+            return []
+        at = round(float(simulation.world.times[0]) + float(simulation.world.clock.dt), 9)
+        try:
+            pose = self._estimator.update(sample, self.rooms.rooms["person"].place)
+            if pose is None:
+                return []
+            parts = {name: getattr(pose, name) for name in ("head", "left_hand", "right_hand")}
+            order = AvatarOrder(
+                avatar=self.avatar, time=at, x=pose.x, y=pose.y, heading=pose.heading, source=SOURCE, **parts
+            )
+        except InputError as error:  # for instance a headset that lies on a cupboard
+            self.refused, self.reason = self.refused + 1, str(error)
+            return []
+        recorder = self.recorder
+        if recorder is not None:
+            place = [pose.x, pose.y, pose.heading]
+            recorder.note(now, {"step": at, "avatar": self.avatar, "sample": sample.time, "pose": place})
+        return [order]
+
+    def move_to(self, avatar: str) -> None:
+        """Move another avatar from now on, of another trial."""
+        self.avatar, self._simulation, self._id = avatar, None, None
+        self._tell({"avatar": avatar})
+
+    def record_to(self, recorder: HeadsetRecorder | None) -> None:
+        """Write the raw messages to another recording from now on, and close the one before."""
+        before, self.recorder = self.recorder, recorder
+        if before is not None:
+            before.close()
+
+    def history(self, count: int) -> list[HeadsetSample]:
+        """Return the latest messages, at most 100."""
+        with self._lock:
+            return list(self._latest)[-count:]
+
+    def is_lost(self) -> bool:
+        """Return whether the head has not been tracked for longer than the timeout."""
+        with self._lock:
+            return self.stream.is_lost(self._clock())
+
+    def apply(self, settings: StreamSettings) -> None:
+        """Use other settings from now on."""
+        with self._lock:
+            self.stream.settings = settings
+
+    def summary(self) -> dict[str, Any]:
+        """Return latency, clock offset and state, JSON."""
+        with self._lock:
+            now, sample = self._clock(), self.sample
+            found: dict[str, Any] = dict(self.stream.latency.summary())
+            clock = self.stream.clock
+            found |= {
+                "avatar": self.avatar, "id": self._id, "lost_tracking": self.stream.is_lost(now),
+                "refused": self.refused, "reason": self.reason, "offset": clock.offset if clock else None,
+                "round_trip": round(1e3 * clock.delay, 3) if clock else None,
+                "steps": self.stream.latency.count("motion"),
+                "hands": [name for name in ("left", "right") if getattr(sample, name, None) is not None],
+            }  # fmt: skip
+            if sample is not None and sample.head is not None:
+                place = self.rooms.rooms["person"].place.apply(sample.head[:3])
+                found["place"] = place.round(3).tolist()
+                found["margin"] = self.rooms.margin("person", float(place[0]), float(place[1]))
+        return found
+
+    def _follow(self, simulation: Simulation) -> None:
+        """Use the body of the avatar in a simulation that was not seen before."""
+        if simulation is self._simulation:
+            return
+        self._simulation = simulation
+        people, number, agent = avatar_body(simulation, self.avatar)
+        self._estimator = BodyEstimator(BodySize.of(people, number))
+        self._contacts = AvatarContacts(agent)
+        self._id = int(simulation.world.ids[0, agent])
+
+    def _tell_contacts(self, simulation: Simulation, now: float) -> None:
+        for event in [] if self._contacts is None else self._contacts.update(simulation):
+            recorder = self.recorder
+            if recorder is not None:
+                recorder.note(now, {"touch": event})
+            self._tell({"touch": event})
+
+
+def avatar_body(simulation: Simulation, name: str) -> tuple[People, int, int]:
+    """Return the bodies of all people, the number of that of an avatar, and its agent.
+
+    Raises:
+        InputError: there is no such avatar.
+    """
+    trial, people = simulation.trial, simulation.people
+    names = [getattr(people.owners[owner], "name", "") for owner in people.owner.tolist()]
+    first = len(names) - len(trial.avatars)
+    if name not in names[first:]:
+        raise InputError(f"the trial has no avatar {name!r}")
+    number = first + names[first:].index(name)
+    count = simulation.world.environment_scene(0).shape[1]
+    return people_appearance(trial, people, count, simulation.seeds[0]).people, number, number

@@ -1,0 +1,113 @@
+"""The worker process of a job."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import multiprocessing.connection
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from crowdbot.core import CrowdbotError
+
+from .process_memory import end_descendants, process_memory
+
+__all__ = ["CPU", "END", "LINE", "SHARE", "JobPipe", "run_work"]
+
+SHARE, LINE, CPU, END = "job.share", "job.line", "job.cpu", "job.end"
+"""Kinds of messages that every job sends: completed share, line of the log, processor time [s], end with a problem."""
+BEAT, LOOK = 1.0, 0.2
+"""Time between two reports of the processor time, and between two looks at the memory [s]."""
+
+
+class JobPipe:
+    """The end of the pipe in the worker process; may be used from several threads."""
+
+    def __init__(self, pipe: multiprocessing.connection.Connection) -> None:
+        self._pipe, self._lock = pipe, threading.Lock()
+
+    def send(self, message: tuple[Any, ...]) -> None:
+        """Send a message, a tuple that begins with its kind."""
+        with self._lock:
+            self._pipe.send(message)
+
+    def share(self, share: float) -> None:
+        """Report the completed share, 0 to 1."""
+        self.send((SHARE, float(share)))
+
+
+def run_work(
+    target: Callable[..., None],
+    arguments: tuple[Any, ...],
+    pipe: multiprocessing.connection.Connection,
+    cpu: float,
+    memory: float = math.inf,
+) -> None:  # pragma: no cover - in another process
+    """Call ``target(pipe, *arguments)`` and report how it ended.
+
+    Args:
+        target: the work; raises an error of crowdbot with a sentence for the user.
+        arguments: its arguments.
+        pipe: where messages go.
+        cpu: processor time after which the system ends the process [s].
+        memory: memory of this process and of those that it starts, above which it ends itself [B].
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends this process
+    _limit_cpu(cpu)
+    own = JobPipe(pipe)
+    threading.Thread(target=_watch, args=(own, memory), daemon=True).start()
+    try:
+        target(own, *arguments)
+        problem = ""
+    except (BrokenPipeError, ConnectionError):  # the server is gone
+        return
+    except CrowdbotError as error:
+        problem = str(error)
+    except MemoryError:
+        problem = f"{_used(process_memory(), memory)}, and the system gave no more"
+    except Exception as error:
+        problem = f"{type(error).__name__}: {error}; this is a bug in crowdbot or in your code"
+    own.send((CPU, time.process_time()))
+    own.send((END, problem))
+
+
+def _limit_cpu(seconds: float) -> None:
+    """Let the system end this process after its processor time; on Windows the server watches it alone."""
+    if sys.platform != "win32" and seconds < 1e9:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (max(1, int(seconds + 0.5)), max(2, int(seconds + 2.5))))
+
+
+def _watch(pipe: JobPipe, memory: float) -> None:
+    """Report the processor time; end this process above its memory, or when the server is gone, also when killed."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    told = 0.0
+    while True:
+        parent.join(LOOK)
+        if not parent.is_alive():
+            os._exit(1)
+        try:
+            used = process_memory()
+            if used > memory:
+                pipe.send((CPU, time.process_time()))
+                pipe.send((END, f"{_used(used, memory)}; it has ended"))
+                end_descendants()
+                os._exit(1)
+            if time.monotonic() - told < BEAT:
+                continue
+            told = time.monotonic()
+            pipe.send((CPU, time.process_time()))
+        except OSError:
+            os._exit(1)
+
+
+def _used(memory: float, limit: float) -> str:
+    limited = "" if math.isinf(limit) else f"; the limit of a job is {limit / 1e6:.0f} MB (--memory)"
+    return f"the job uses {memory / 1e6:.0f} MB of memory{limited}"

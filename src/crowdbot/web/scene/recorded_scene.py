@@ -1,0 +1,209 @@
+"""RecordedScene: the picture of an episode at any instant, from what was recorded, without simulating it again."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.humans import ACTIVITIES
+from crowdbot.recording import RecordedEpisode
+from crowdbot.sensors import Reading
+from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
+from crowdbot.world import PeopleMotion, worlds_of
+
+from .robot_links import link_frames, standing_links
+from .scene_instant import SceneInstant
+from .walking_bodies import WalkingBodies
+
+__all__ = ["RecordedScene", "simulation_reason"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+STRIDE, BEFORE = 0.1, 1.0
+"""Time step [s] of gaits, and time [s] that people have walked before an instant that was jumped to."""
+FAR = 1.0
+"""Distance [m] above which somebody has not walked between two records."""
+OLD = 1.0
+"""Age [s], or twice the mean interval of the sensor if that is longer, after which a reading is not shown."""
+
+
+def simulation_reason(simulation: Simulation, episode: RecordedEpisode, changes: int) -> str:
+    """Return what of an episode is not in its records, so that it must be simulated to be seen; empty for nothing.
+
+    Args:
+        simulation: the simulation of its trial, at the start.
+        episode: the episode.
+        changes: number of orders that have changed the trial.
+    """
+    trial, world = simulation.trial, worlds_of(simulation.world)[0]
+    if changes or any(isinstance(order, AddPersonOrder) for _, order in episode.orders):
+        return "people, robots or props are added"
+    if world.doors is not None or any(prop.movable for prop in (world.stage.props if world.walls_fixed else ())):
+        return "doors or props move"
+    if trial.stage.physical().ground is not None:
+        return "the ground is uneven"
+    return (
+        "" if recorded_slots(simulation.world.ids[0], episode) is not None else "more people are present than at once"
+    )
+
+
+def recorded_slots(first: Ints, episode: RecordedEpisode) -> Ints | None:
+    """Return the row in a scene of each id of an episode; None if the scene has too few rows.
+
+    Somebody who enters, or comes out of a portal, takes the row of somebody who has left: the one who left at the same
+    time, otherwise the lowest free one.
+
+    Args:
+        first: ids in the scene at the start ``[A]``.
+        episode: the episode.
+
+    >>> import types
+    >>> active = np.array([[1, 1, 0, 0], [1, 0, 1, 0], [0, 0, 1, 1]], dtype=bool)
+    >>> recorded_slots(np.array([0, 1]), types.SimpleNamespace(active=active)).tolist()
+    [0, 1, 1, 0]
+    """
+    slots = np.full(episode.active.shape[1], -1, dtype=np.int64)
+    known = np.flatnonzero((first >= 0) & (first < len(slots)))
+    slots[first[known]] = known
+    changed = np.flatnonzero((episode.active[1:] != episode.active[:-1]).any(axis=1)) + 1
+    free = set(range(len(first))) - set(slots[episode.active[0]].tolist())
+    for k in (0, *changed.tolist()):
+        now = episode.active[k]
+        left = [] if k == 0 else sorted(slots[episode.active[k - 1] & ~now].tolist())
+        new = np.flatnonzero(now & (slots < 0)).tolist()
+        free |= set(left)
+        free -= set(slots[now & (slots >= 0)].tolist())
+        for one in new:
+            same = next((slot for slot in left if slot in free), None)
+            chosen = min(free, default=None) if same is None else same
+            if chosen is None:
+                return None
+            slots[one] = chosen
+            free.discard(chosen)
+    return slots
+
+
+class RecordedScene:
+    """The picture of an episode between its records: positions are interpolated, and people walk along with them.
+
+    Args:
+        simulation: the simulation of the trial, at any time: shapes of robots, sensors, and bodies of people.
+        episode: the episode; :func:`simulation_reason` is empty for it.
+
+    Attributes:
+        scene, ids: people and robots at the instant of the last call of :meth:`at`, and their ids.
+    """
+
+    def __init__(self, simulation: Simulation, episode: RecordedEpisode) -> None:
+        self.simulation, self.episode = simulation, episode
+        motion = worlds_of(simulation.world)[0].people or WalkingBodies(simulation).motion
+        assert motion is not None  # WalkingBodies makes it for a simulation without one
+        self.motion: PeopleMotion = motion
+        self.scene: Scene = simulation.world.environment_scene(0)
+        self._first, self._last = float(episode.times[0]), float(episode.times[-1])
+        slots = recorded_slots(simulation.world.ids[0], episode)
+        assert slots is not None  # see simulation_reason
+        self._slots = slots
+        self.ids = simulation.world.ids[0].copy()
+        self._at = math.nan
+        self._reading_times = {
+            name: [float(np.ravel(one.time)[0]) for one in rows] for name, rows in episode.readings.items()
+        }
+        self._force_times = [one.time for one in episode.forces]
+        trial = simulation.trial
+        self._fixed_goals = not (
+            trial.journeys or trial.portals or trial.sources or episode.reactions is not None or episode.orders
+        )
+
+    def at(self, seconds: float) -> SceneInstant:
+        """Return an instant [s]; people walk on from the instant before, or begin to walk a second before it."""
+        step = seconds - self._at
+        if not 0.0 <= step <= 2.0 * STRIDE:
+            self._begin(seconds)
+        self.scene = self.scene_at(seconds)
+        if 1e-9 < step <= 2.0 * STRIDE:
+            self._walk(self.scene, step)
+        self._at = seconds
+        return SceneInstant(
+            self.simulation, self.motion, self.scene, self.ids, seconds,
+            self._links, self.reading, self._forces, self._fixed_goals,
+        )  # fmt: skip
+
+    def scene_at(self, seconds: float) -> Scene:
+        """Return people and robots at an instant [s]."""
+        one, (k, share) = self.episode, self._place(seconds)
+        following = min(k + 1, len(one.times) - 1)
+        here = np.flatnonzero(one.active[k])
+        way = one.position[following, here] - one.position[k, here]
+        stays = one.active[following, here] & (np.abs(way).max(axis=-1) < FAR)
+        part = np.where(stays, share, 0.0)
+        turn = one.heading[following, here] - one.heading[k, here]
+        faster = one.velocity[following, here] - one.velocity[k, here]
+        rest, slots = self.simulation.world.environment_scene(0), self._slots[here]
+        position, velocity = np.zeros(rest.position.shape), np.zeros(rest.position.shape)
+        heading, active = np.zeros(rest.shape), np.zeros(rest.shape, dtype=bool)
+        position[0, slots] = one.position[k, here] + part[:, None] * way
+        velocity[0, slots] = one.velocity[k, here] + part[:, None] * faster
+        heading[0, slots] = one.heading[k, here] + part * np.arctan2(np.sin(turn), np.cos(turn))
+        active[0, slots] = True
+        self.ids[slots] = one.ids[here]
+        return rest.replace(position=position, velocity=velocity, heading=heading, active=active)
+
+    def _place(self, seconds: float) -> tuple[int, float]:
+        times = self.episode.times
+        k = min(max(int(np.searchsorted(times, seconds + 1e-9, side="right")) - 1, 0), len(times) - 1)
+        if k + 1 >= len(times):
+            return k, 0.0
+        return k, min(1.0, max(0.0, float((seconds - times[k]) / (times[k + 1] - times[k]))))
+
+    def _begin(self, seconds: float) -> None:
+        """Let people walk for a while up to an instant, so that their legs do not depend on the way to it."""
+        count = min(round(BEFORE / STRIDE), math.floor((seconds - self._first) / STRIDE + 1e-9))
+        first = self.scene_at(seconds - count * STRIDE)
+        wish = self.motion.state.wish[: len(self.motion.afoot)].astype(np.int64)
+        self.motion.begin(first, [ACTIVITIES[k] for k in wish.tolist()])
+        for k in range(count - 1, -1, -1):
+            self._walk(self.scene_at(seconds - k * STRIDE), STRIDE)
+
+    def _walk(self, scene: Scene, step: float) -> None:
+        self.motion.take(self.motion.next_state(scene, step), self.motion.ends)
+
+    def _links(self, control: RobotControl) -> Floats:
+        rows, body = self.episode.joints.get(control.robot.name, {}), control.robot.body
+        k, share = self._place(self._at)
+        following = min(k + 1, len(self.episode.times) - 1)
+        joints = {
+            one.name: _between(rows[one.name][k], rows[one.name][following], share)
+            for one in body.model.movable
+            if one.name in rows
+        }
+        known = {name: at for name, at in joints.items() if math.isfinite(at)}
+        return standing_links(self.scene, control.agent, link_frames(body, known))
+
+    def reading(self, control: RobotControl, sensor: Any, seconds: float | None = None) -> Reading | None:
+        """Return the latest reading of a sensor at a time [s] (default: that of :meth:`at`), None if it is old."""
+        now = self._at if seconds is None else seconds
+        name = f"{control.robot.name}/{sensor.name}"
+        times = self._reading_times.get(name, [])
+        k = bisect.bisect_right(times, now + 1e-9) - 1
+        if k < 0 or now - times[k] > max(OLD, 2.0 * (times[-1] - times[0]) / max(1, len(times) - 1)):
+            return None
+        return self.episode.readings[name][k]
+
+    def _forces(self) -> list[tuple[float, ...]]:
+        times = self._force_times
+        k, _ = self._place(self._at)
+        begin = self.episode.times[k] - 1e-9
+        rows = self.episode.forces[bisect.bisect_left(times, begin) : bisect.bisect_right(times, self._at + 1e-9)]
+        latest = {(one.first, one.second, one.first_part, one.limb): one for one in rows}
+        return [(*one.point, *one.vector) for one in latest.values()]
+
+
+def _between(a: float, b: float, share: float) -> float:
+    """Return a value between two; angles that jump by more than half a turn have wrapped and are not blended."""
+    return float(a + share * (b - a)) if abs(b - a) < math.pi else float(a)

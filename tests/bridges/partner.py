@@ -1,0 +1,305 @@
+"""A robot program in a process of its own, over one of the transports; it needs nothing of crowdbot.
+
+    python partner.py TRANSPORT ADDRESS drive SECONDS
+    python partner.py TRANSPORT ADDRESS clock SECONDS
+
+``drive`` answers each tick of the clock with a velocity command, connects again when the simulation has gone, and at
+its end prints one line of JSON. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
+For rospy, ADDRESS is not used and the interpreter is that of the system.
+"""
+
+import contextlib
+import itertools
+import json
+import queue
+import signal
+import socket
+import struct
+import sys
+import time
+
+STEP = 50_000_000
+PORTIONS = (13_000_000, 131_000_000, 50_000_000, 207_000_000, 7_000_000, 99_000_000, 1)
+"""Portions of time [ns], none a multiple of the step but one."""
+SILENT = 1.0
+"""Real time [s] without a tick after which the simulation is silent."""
+
+
+class GoneError(Exception):
+    """The simulation has gone."""
+
+
+def command_of(nanoseconds):
+    """Return forward and turn of the command that answers a tick."""
+    return 0.4, 0.3 if nanoseconds // STEP % 7 < 4 else -0.3
+
+
+def twist_of(nanoseconds):
+    forward, turn = command_of(nanoseconds)
+    return {"linear": {"x": forward}, "angular": {"z": turn}}
+
+
+def stamp_of(nanoseconds):
+    return {"sec": nanoseconds // 10**9, "nanosec": nanoseconds % 10**9}
+
+
+class SocketLink:
+    """A connection over WebSocket."""
+
+    protocols = None
+
+    def __init__(self, address):
+        from websockets.exceptions import ConnectionClosed, InvalidHandshake
+        from websockets.sync.client import connect
+
+        self._closed = ConnectionClosed
+        try:
+            self._socket = connect(f"ws://{address}", subprotocols=self.protocols, max_size=None, close_timeout=2.0)
+        except (InvalidHandshake, EOFError):  # killed in between
+            raise ConnectionError from None
+        self.begin()
+
+    def tick(self, seconds):
+        """Return the next time of the clock [ns], None after some seconds."""
+        try:
+            return self.time_of(self._socket.recv(timeout=seconds))
+        except TimeoutError:
+            return None
+        except self._closed:
+            raise GoneError from None
+
+    def send(self, data):
+        try:
+            self._socket.send(data)
+        except self._closed:
+            raise GoneError from None
+
+    def close(self):
+        self._socket.close()
+
+
+class RosbridgeLink(SocketLink):
+    def begin(self):
+        self.send(json.dumps({"op": "advertise", "topic": "/robot/cmd_vel", "type": "geometry_msgs/Twist"}))
+        self.send(json.dumps({"op": "subscribe", "topic": "/clock", "queue_length": 100}))
+        self.send(json.dumps({"op": "subscribe", "topic": "/robot/scan"}))
+
+    def time_of(self, data):
+        frame = json.loads(data)
+        if frame.get("topic") != "/clock":
+            return None
+        return frame["msg"]["clock"]["sec"] * 10**9 + frame["msg"]["clock"]["nanosec"]
+
+    def drive(self, nanoseconds):
+        self.send(json.dumps({"op": "publish", "topic": "/robot/cmd_vel", "msg": twist_of(nanoseconds)}))
+
+    def set_time(self, nanoseconds):
+        self.send(json.dumps({"op": "publish", "topic": "/clock", "msg": {"clock": stamp_of(nanoseconds)}}))
+
+
+class FoxgloveLink(SocketLink):
+    protocols = ("foxglove.sdk.v1",)
+
+    def begin(self):
+        kinds = (("/robot/cmd_vel", "geometry_msgs/Twist"), ("/clock", "rosgraph_msgs/Clock"))
+        rows = [{"id": k, "topic": one, "encoding": "json", "schemaName": kind} for k, (one, kind) in enumerate(kinds)]
+        self.send(json.dumps({"op": "advertise", "channels": rows}))
+
+    def time_of(self, data):
+        return struct.unpack_from("<Q", data, 1)[0] if isinstance(data, bytes) and data[0] == 2 else None
+
+    def drive(self, nanoseconds):
+        self.send(struct.pack("<BI", 1, 0) + json.dumps(twist_of(nanoseconds)).encode())
+
+    def set_time(self, nanoseconds):
+        self.send(struct.pack("<BI", 1, 1) + json.dumps({"clock": stamp_of(nanoseconds)}).encode())
+
+
+class TcpLink:
+    """The protocol of the challenge: a command is a request, and the time is in its reply."""
+
+    def __init__(self, address):
+        host, _, port = address.partition(":")
+        self._socket = socket.create_connection((host, int(port)), timeout=30.0)
+        self._now, self._due = 0, time.monotonic()
+
+    def ask(self, text):
+        try:
+            self._socket.sendall(text.encode())
+            found = b""
+            while not found.endswith(b"@"):
+                part = self._socket.recv(65536)
+                if not part:
+                    raise GoneError
+                found += part
+        except OSError:
+            raise GoneError from None
+        self._now = round(float(found.partition(b"#")[2].partition(b";")[0]) * 1e9)
+
+    def tick(self, seconds):
+        time.sleep(max(0.0, self._due - time.monotonic()))  # the client has the clock: 20 requests a second
+        self._due = max(self._due + STEP / 1e9, time.monotonic())
+        return self._now
+
+    def drive(self, nanoseconds):
+        forward, turn = command_of(nanoseconds)
+        self.ask(f"vel_cmd={forward} {57.29577951308232 * turn};sim_control=i;")
+
+    def set_time(self, nanoseconds):
+        self.ask(f"clock={nanoseconds / 1e9:.9f};sim_control=i;")
+
+    def close(self):
+        self._socket.close()
+
+
+class Ros2Link:
+    def __init__(self, address):
+        import rclpy
+        from geometry_msgs.msg import Twist
+        from rclpy.signals import SignalHandlerOptions
+        from rosgraph_msgs.msg import Clock
+
+        rclpy.init(domain_id=int(address), signal_handler_options=SignalHandlerOptions.NO)  # drive() has a handler
+        self._ros, self._twist, self._time, self._ticks = rclpy, Twist, Clock, queue.SimpleQueue()
+        self._node = rclpy.create_node("partner")
+        self._out = self._node.create_publisher(Twist, "/robot/cmd_vel", 100)
+        if "clock" in sys.argv:
+            self._clock = self._node.create_publisher(Clock, "/clock", 100)
+        else:
+            self._node.create_subscription(Clock, "/clock", self._on_clock, 100)
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end and not self._is_matched():
+            rclpy.spin_once(self._node, timeout_sec=0.05)
+
+    def _is_matched(self):
+        if "clock" in sys.argv:
+            return self._clock.get_subscription_count() > 0
+        return self._out.get_subscription_count() > 0 and not self._ticks.empty()
+
+    def _on_clock(self, message):
+        self._ticks.put(message.clock.sec * 10**9 + message.clock.nanosec)
+
+    def tick(self, seconds):
+        if self._ticks.empty():
+            self._ros.spin_once(self._node, timeout_sec=seconds)
+        with contextlib.suppress(queue.Empty):
+            return self._ticks.get_nowait()
+
+    def drive(self, nanoseconds):
+        command = self._twist()
+        command.linear.x, command.angular.z = command_of(nanoseconds)
+        self._out.publish(command)
+
+    def set_time(self, nanoseconds):
+        now = self._time()
+        now.clock.sec, now.clock.nanosec = nanoseconds // 10**9, nanoseconds % 10**9
+        self._clock.publish(now)
+        if self._clock.get_subscription_count() == 0:
+            raise GoneError
+
+    def close(self):
+        time.sleep(0.5)  # the last commands are on their way
+        self._node.destroy_node()
+        self._ros.shutdown()
+
+
+class Ros1Link:
+    def __init__(self, address):
+        import rospy
+        from geometry_msgs.msg import Twist
+        from rosgraph_msgs.msg import Clock
+
+        rospy.init_node("partner", anonymous=True, disable_signals=True)
+        self._ros, self._twist, self._time, self._ticks = rospy, Twist, Clock, queue.Queue()
+        self._out = rospy.Publisher("/robot/cmd_vel", Twist, queue_size=100)
+        if "clock" in sys.argv:
+            self._clock = rospy.Publisher("/clock", Clock, queue_size=100)
+        else:
+            rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=100, tcp_nodelay=True)
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end and not self._is_matched():
+            time.sleep(0.02)
+
+    def _is_matched(self):
+        if "clock" in sys.argv:
+            return self._clock.get_num_connections() > 0
+        return self._out.get_num_connections() > 0 and not self._ticks.empty()
+
+    def _on_clock(self, message):
+        self._ticks.put(message.clock.to_nsec())
+
+    def tick(self, seconds):
+        with contextlib.suppress(queue.Empty):
+            return self._ticks.get(timeout=seconds)
+
+    def drive(self, nanoseconds):
+        command = self._twist()
+        command.linear.x, command.angular.z = command_of(nanoseconds)
+        self._out.publish(command)
+
+    def set_time(self, nanoseconds):
+        self._clock.publish(self._time(self._ros.Time(nanoseconds // 10**9, nanoseconds % 10**9)))
+        if self._clock.get_num_connections() == 0:
+            raise GoneError
+
+    def close(self):
+        time.sleep(0.5)
+        self._ros.signal_shutdown("done")
+
+
+LINKS = {
+    "rosbridge": RosbridgeLink, "rosbridge-client": RosbridgeLink, "foxglove": FoxgloveLink, "tcp": TcpLink,
+    "ros1": Ros1Link, "ros2": Ros2Link, "rosless": Ros2Link,
+}  # fmt: skip
+
+
+def drive(kind, address, seconds):
+    """Answer ticks, and count them, the times of silence and the connections."""
+    seen, stop = {"sent": 0, "links": 0, "silences": 0}, []
+    signal.signal(signal.SIGTERM, lambda *_: stop.append(1))
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not stop:
+        try:
+            link = kind(address)
+        except OSError:  # the simulation is not there
+            time.sleep(0.05)
+            continue
+        seen["links"] += 1
+        print("ready", flush=True)
+        end = max(end, time.monotonic() + seconds) if seen["links"] == 1 else end
+        latest, silent = time.monotonic(), False
+        with contextlib.suppress(GoneError):
+            while time.monotonic() < end and not stop:
+                now = link.tick(0.1)
+                if now is not None:
+                    latest, silent = time.monotonic(), False
+                    link.drive(now)
+                    seen["sent"] += 1
+                elif not silent and time.monotonic() - latest > SILENT:
+                    silent = True
+                    seen["silences"] += 1
+        link.close()
+    return seen
+
+
+def give_time(kind, address, seconds):
+    """Send the time in odd portions until the simulation has gone."""
+    link, now, sent = kind(address), 0, 0
+    print("ready", flush=True)
+    end = time.monotonic() + 120.0
+    with contextlib.suppress(GoneError):
+        for portion in itertools.cycle(PORTIONS):
+            now += portion if now < seconds * 10**9 else 0  # the last time again until it has come
+            link.set_time(now)
+            sent += 1
+            time.sleep(0.005)
+            if time.monotonic() > end:
+                break
+    link.close()
+    return {"sent": sent, "now": now}
+
+
+if __name__ == "__main__":
+    _, name, place, mode, length = sys.argv
+    work = {"drive": drive, "clock": give_time}[mode]
+    print(json.dumps(work(LINKS[name], place, float(length))), flush=True)

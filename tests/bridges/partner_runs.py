@@ -1,0 +1,223 @@
+"""Runs with a robot program in a process of its own, alike for all transports.
+
+    python partner_runs.py loop|kills|deaths|odd TRANSPORT NUMBER FOLDER
+
+It prints one line of JSON; so a run can be in a network of its own.
+"""
+
+import contextlib
+import json
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from bridge_runs import MemoryTransport, Running, endless_trial
+from ros1_master import PYTHON, RosMaster
+
+from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
+from crowdbot.bridges.rosbridge.server import RosbridgeServer
+from crowdbot.core import CrowdbotError
+from crowdbot.recording import read_episode, replay
+from crowdbot.trials import load_trial
+
+HERE = Path(__file__).parent
+NETWORK = """
+ip link set lo up
+ip link add v0 type veth peer name v1
+ip addr add 10.77.0.1/24 dev v0
+ip link set v0 up
+ip link set v1 up
+ip route add 224.0.0.0/4 dev v0
+"""
+"""DDS of rosless needs a network interface that is not the loopback interface."""
+ENDLESS = ("--set", "duration=3600", "--set", "end/collision=false", "--set", "end/goal=false")
+OWN = {name: os.environ[name] for name in ("PYTHONPATH",) if name in os.environ}
+"""Variables that programs of ROS 1 must not have, and the simulation may need."""
+LOCAL = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+MESH = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+
+
+def free_port():
+    """Return a free port of the loopback interface."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait(reached, seconds=60.0, look=0.01):
+    """Wait until something is reached, with some real time [s] between two looks."""
+    end = time.monotonic() + seconds
+    while not reached():
+        if time.monotonic() > end:
+            pytest.fail("it is not reached in time")
+        time.sleep(look)
+
+
+class Meeting(contextlib.ExitStack):
+    """A transport of the simulation, and how programs reach it.
+
+    Args:
+        transport: its name on the command line.
+        folder: a folder for logs.
+    """
+
+    def __init__(self, transport, folder, served=True):
+        super().__init__()
+        self.port = 0 if served else free_port()
+        self.transport, self.words = transport, [sys.executable]
+        self.environment = {**os.environ, "ROS_LOG_DIR": str(folder), **(MESH if transport == "rosless" else LOCAL)}
+        self.master = self.server = None
+        if transport == "ros1":
+            self.master = self.enter_context(RosMaster(folder))
+            self.words, self.environment = [PYTHON], self.master.environment
+        if transport == "rosbridge-client":
+            empty = RobotInterface(endless_trial(1.0), (), (), ())
+            self.server = RosbridgeServer(port=0)
+            self.server.start(empty, Inbox(empty))
+            self.callback(self.server.stop)
+        self.domain = 1 + (os.getpid() * 7 + 50) % 100
+        self.node = open_transport(self.opening) if served else None
+
+    @property
+    def opening(self):
+        """Text that opens the transport."""
+        address = {
+            "ros1": self.master and self.master.url,
+            "rosbridge-client": f"ws://127.0.0.1:{self.server.port}" if self.server else "",
+        }.get(self.transport) or str(self.domain if self.transport in ("ros2", "rosless") else self.port)
+        return f"{self.transport}:{address}"
+
+    @property
+    def address(self):
+        """Where programs find it."""
+        if self.transport in ("ros1", "ros2", "rosless"):
+            return str(self.domain)
+        return f"127.0.0.1:{self.port or (self.server or self.node).port}"
+
+    def open(self, mode, seconds):
+        """Start a program."""
+        words = [*self.words, str(HERE / "partner.py"), self.transport, self.address, mode, str(seconds)]
+        process = subprocess.Popen(
+            words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment
+        )
+        return process
+
+    def start(self, mode, seconds):
+        """Start a program and wait until it is connected."""
+        process = self.open(mode, seconds)
+        if process.stdout.readline() != "ready\n":
+            process.kill()
+            pytest.fail(process.communicate()[1])
+        return process
+
+
+def told(process, seconds):
+    """Return what a program has printed at its end."""
+    out, errors = process.communicate(timeout=seconds)
+    assert process.returncode == 0, errors
+    return json.loads(out.splitlines()[-1])
+
+
+def loop(transport, seconds, folder):
+    """Let a program answer each tick at 20 Hz, and return the numbers of commands and their latency [s]."""
+    with Meeting(transport, folder) as meeting, Running(endless_trial(seconds + 200.0), [meeting.node]) as running:
+        inbox = running.run.port.inbox
+        seen = told(meeting.start("drive", seconds), seconds + 60.0)
+        with contextlib.suppress(BaseException):
+            wait(lambda: inbox.count.received >= seen["sent"], 5.0)
+        latency = inbox.latency.summary()
+        return {**seen, "received": inbox.count.received, **latency._asdict()}
+
+
+def kills(transport, count, folder):
+    """Kill a driving program some times, and return the stops of the robot [s] and what the recording holds."""
+    rng, stops = random.Random(count), []
+    memory = MemoryTransport(topics=("/robot/ground_truth/odom",))
+    with Meeting(transport, folder) as meeting:
+        with Running(endless_trial(3600.0), [meeting.node, memory], out=folder / "out") as running:
+            inbox = running.run.port.inbox
+            for _ in range(count):
+                before = inbox.count.received
+                process = meeting.start("drive", 600.0)
+                wait(lambda before=before: inbox.count.received > before + 5)
+                time.sleep(rng.uniform(0.0, 0.3))
+                process.kill()
+                process.communicate()
+                begin = time.monotonic()
+                wait(lambda: speed(memory) == 0.0, 10.0)
+                stops.append(time.monotonic() - begin)
+                memory.sent[:] = memory.sent[-1:]
+        episode = read_episode(folder / "out" / "episode.mcap")
+    moved = float(abs(episode.velocity[:, episode.robots[0]]).max())
+    return {
+        "stops": stops, "outcome": episode.metadata["outcome"], "speed": moved,
+        "equal": replay(folder / "out" / "episode.mcap").equal,
+    }  # fmt: skip
+
+
+def deaths(transport, count, folder):
+    """Kill the simulation some times, and return what the program has noticed and what the recordings hold."""
+    rng, orders, complete = random.Random(count), [], []
+    with Meeting(transport, folder, served=False) as meeting:
+        words = [sys.executable, "-m", "crowdbot", "run", "frontal", *ENDLESS, "--bridge", meeting.opening, "--out"]
+        program = meeting.open("drive", 3600.0)
+        meeting.callback(program.communicate)
+        meeting.callback(program.kill)
+        for k in range(count):
+            out = folder / f"out{k}"
+            process = subprocess.Popen(
+                [*words, str(out)], env=meeting.environment | OWN, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+            meeting.callback(process.wait)
+            meeting.callback(process.kill)
+            wait(lambda out=out: number_of_orders(out) > 5, 120.0, 0.5)
+            time.sleep(rng.uniform(0.0, 1.0))
+            process.kill()
+            process.wait()
+            time.sleep(1.5)  # as long as the program needs to notice silence
+            episode = read_episode(out / "episode.mcap")
+            orders.append(len(episode.orders))
+            complete.append(episode.complete)
+        program.send_signal(signal.SIGTERM)
+        return {**told(program, 60.0), "orders": orders, "complete": complete}
+
+
+def number_of_orders(folder):
+    """Return the number of orders in a recording that grows."""
+    with contextlib.suppress(CrowdbotError, OSError):
+        return len(read_episode(folder / "episode.mcap").orders)
+    return 0
+
+
+def speed(memory):
+    """Return the latest speed of the robot."""
+    return abs(memory.sent[-1].message.twist.twist.linear.x)
+
+
+def odd(transport, seconds, folder):
+    """Follow the time of a program in odd portions, and return the digests of this run and of a free one."""
+    trial = load_trial("frontal", duration=float(seconds))
+    with Meeting(transport, folder) as meeting, Running(trial, [meeting.node], "follow") as running:
+        process = meeting.start("clock", seconds)
+        done = running.end(120.0)
+        running.run.port.stop()
+        seen = told(process, 150.0)
+    free = run_bridge(trial, [], 0, None, BridgeClock("free"))
+    return {**seen, "steps": done.steps, "digest": done.digest, "free": free.digest}
+
+
+def main():
+    """Run one of them."""
+    name, transport, number, folder = sys.argv[1:]
+    work = {"loop": loop, "kills": kills, "odd": odd, "deaths": deaths}[name]
+    print(json.dumps(work(transport, int(number), Path(folder))))
+
+
+if __name__ == "__main__":
+    main()

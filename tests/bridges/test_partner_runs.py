@@ -1,0 +1,135 @@
+"""Every transport with a robot program in a process of its own: time in odd portions, control loops, and kills."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from partner_runs import MESH, NETWORK, deaths, kills, loop, odd
+
+HERE = Path(__file__).parent
+HERE_ALONE = ("rosbridge", "foxglove", "tcp", "ros2")
+"""Transports that need nothing but packages of Python."""
+OTHERS = ("rosbridge-client", "ros1", "rosless")
+LOOP = pytest.mark.parametrize("seconds", [3, pytest.param(600, marks=pytest.mark.soak)])
+LONG_LOOP = pytest.mark.parametrize(
+    "seconds", [pytest.param(20, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)]
+)
+KILLS = pytest.mark.parametrize(
+    "count", [pytest.param(3, marks=pytest.mark.sweep), pytest.param(20, marks=pytest.mark.soak)]
+)
+
+
+@pytest.fixture(autouse=True)
+def local(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+
+
+def alone(namespaces, work, transport, number, folder):
+    """Run a function of ``partner_runs`` in a network of its own."""
+    words = [sys.executable, str(HERE / "partner_runs.py"), work, transport, str(number), str(folder)]
+    script = f"{NETWORK}\nexec {' '.join(words)}"
+    environment = {**os.environ, **MESH}
+    command = [namespaces, "--net", "bash", "-eu", "-c", script]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300 + 2 * number)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def check_odd(seen):
+    assert seen["steps"] == 40
+    assert seen["digest"] == seen["free"]
+    assert seen["sent"] > 20
+
+
+def check_loop(transport, seconds, seen):
+    print(f"{transport}: {seen['commands']} commands, {1e3 * seen['median']:.2f} ms, {1e3 * seen['p99']:.2f} ms (99 %)")
+    assert seen["received"] == seen["sent"] >= 2 * seconds  # no command is lost; a busy computer is late
+    assert (seen["links"], seen["silences"] <= seconds // 60) == (1, True)
+    assert seen["median"] < (0.05 if seconds > 60 else 0.3)  # tests share the processor
+
+
+def check_kills(count, seen):
+    assert len(seen["stops"]) == count
+    assert max(seen["stops"]) < 4.0  # 0.5 s of simulated time, and braking, on a busy computer
+    assert seen["speed"] > 0.1
+    assert (seen["outcome"], seen["equal"]) == ("interrupted", True)
+
+
+@pytest.mark.parametrize("transport", HERE_ALONE)
+def test_time_in_odd_portions_gives_the_digest_of_a_free_run(transport, tmp_path):
+    check_odd(odd(transport, 2, tmp_path))
+
+
+def test_time_in_odd_portions_over_ros1(ros1, tmp_path):
+    check_odd(odd("ros1", 2, tmp_path))
+
+
+@pytest.mark.sweep
+def test_time_in_odd_portions_over_rosless(namespaces, tmp_path):
+    check_odd(alone(namespaces, "odd", "rosless", 2, tmp_path))
+
+
+@pytest.mark.sweep
+def test_time_in_odd_portions_over_a_server_of_others(tmp_path):
+    check_odd(odd("rosbridge-client", 2, tmp_path))
+
+
+@LOOP
+@pytest.mark.parametrize("transport", HERE_ALONE)
+def test_a_control_loop_of_20_hz_loses_no_command(transport, seconds, tmp_path):
+    check_loop(transport, seconds, loop(transport, seconds, tmp_path))
+
+
+@LOOP
+def test_a_control_loop_over_ros1_loses_no_command(ros1, seconds, tmp_path):
+    check_loop("ros1", seconds, loop("ros1", seconds, tmp_path))
+
+
+@LONG_LOOP
+def test_a_control_loop_over_rosless_loses_no_command(namespaces, seconds, tmp_path):
+    check_loop("rosless", seconds, alone(namespaces, "loop", "rosless", seconds, tmp_path))
+
+
+@LONG_LOOP
+def test_a_control_loop_over_a_server_of_others_loses_no_command(seconds, tmp_path):
+    check_loop("rosbridge-client", seconds, loop("rosbridge-client", seconds, tmp_path))
+
+
+@pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("transport", ["rosbridge", "foxglove", "tcp", pytest.param("ros2", marks=pytest.mark.sweep)])
+def test_a_killed_program_leaves_a_robot_that_stops_and_a_whole_recording(transport, count, tmp_path):
+    check_kills(count, kills(transport, count, tmp_path))
+
+
+@KILLS
+def test_a_program_of_ros1_that_is_killed_leaves_a_robot_that_stops(ros1, count, tmp_path):
+    check_kills(count, kills("ros1", count, tmp_path))
+
+
+@KILLS
+def test_a_killed_program_over_rosless_leaves_a_robot_that_stops(namespaces, count, tmp_path):
+    check_kills(count, alone(namespaces, "kills", "rosless", count, tmp_path))
+
+
+def check_deaths(count, seen):
+    assert len(seen["orders"]) == count
+    assert min(seen["orders"]) > 5  # the program drives each time
+    assert not any(seen["complete"])
+    assert max(seen["links"], seen["silences"]) >= count  # it has noticed each time
+
+
+@KILLS
+@pytest.mark.parametrize("transport", HERE_ALONE)
+def test_a_killed_simulation_is_noticed_and_leaves_a_recording_that_can_be_read(transport, count, tmp_path):
+    check_deaths(count, deaths(transport, count, tmp_path))
+
+
+@KILLS
+def test_a_killed_simulation_of_ros1_is_noticed(ros1, count, tmp_path):
+    check_deaths(count, deaths("ros1", count, tmp_path))

@@ -1,0 +1,124 @@
+"""The TCP protocol of the challenge, with a client of its own that is written from the description."""
+
+from __future__ import annotations
+
+import math
+import socket
+
+import pytest
+from bridge_runs import Running
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crowdbot.bridges import open_transport
+from crowdbot.bridges.tcp.challenge_protocol import format_reply, read_request
+from crowdbot.bridges.tcp.challenge_server import ChallengeServer
+from crowdbot.core import InputError
+from crowdbot.recording import replay
+from crowdbot.trials import load_trial
+
+
+class Client:
+    """A client of the challenge: one request, one reply that ends with @."""
+
+    def __init__(self, port):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=60.0)
+
+    def ask(self, text):
+        self.socket.sendall(text.encode())
+        return self.receive()
+
+    def receive(self):
+        found = b""
+        while not found.endswith(b"@"):
+            part = self.socket.recv(4096)
+            if not part:
+                return None
+            found += part
+        parts = found.decode().split(";")
+        assert parts.pop() == "@"
+        rows = [one.split("=", 1) for one in parts]
+        numbers = {value.split("#", 1)[0] for _, value in rows}
+        assert len(numbers) == 1
+        return {topic: value.split("#", 1)[1] for topic, value in rows}
+
+
+def run_server(trial, out=None):
+    server = ChallengeServer(0)
+    return Running(trial, [server], "follow", out=out), server
+
+
+def numbers(text):
+    return [float(word) for word in text.replace("(", "").replace(")", "").split()]
+
+
+def test_a_client_drives_in_lock_step(tmp_path):
+    trial = load_trial("frontal", duration=2.5)
+    running, server = run_server(trial, tmp_path)
+    with running:
+        client, clock, seen = Client(server.port), 0.0, []
+        while clock < 2.35:
+            answer = client.ask(f"clock={clock};vel_cmd=0.5 20.0;sim_control=i;")
+            assert float(answer["clock"]) == pytest.approx(clock)
+            seen.append(numbers(answer["odom"]))
+            clock = round(clock + 0.1, 3)
+        crowd = numbers(answer["crowd"])
+        assert (crowd[1], len(crowd)) == (trial.people, 2 + 3 * trial.people)
+        client.socket.close()
+        start = trial.robots[0]
+        assert seen[0][1:3] == [start.x, start.y]
+        x, y, theta, dx, dy, turn = seen[-1][1:]
+        assert turn == pytest.approx(20.0, abs=0.5)
+        assert math.hypot(dx, dy) == pytest.approx(0.5, abs=0.02)
+        assert abs(theta - math.degrees(start.heading)) > 25.0
+        assert (x, y) != (start.x, start.y)
+        again = Client(server.port)
+        assert again.ask("stop") is not None
+        again.socket.close()
+        running.end()
+    assert replay(tmp_path / "episode.mcap").equal
+
+
+def test_a_reset_begins_again_and_robots_are_named():
+    running, server = run_server(load_trial("frontal", duration=4.0))
+    with running:
+        client = Client(server.port)
+        assert float(client.ask("clock=1.0;vel_cmd_robot=0.5 0;vel_cmd_pepper=1 0;sim_control=i;")["clock"]) == 1.0
+        assert float(client.ask("clock=0;sim_control=n;")["clock"]) == 0.0
+        assert float(client.ask("clock=0.2;vel_cmd=0 0;")["clock"]) == pytest.approx(0.2)
+        assert client.ask("clock=0.3;nonsense;") is None
+        client.socket.close()
+
+
+@given(st.text(max_size=60))
+def test_a_request_is_read_or_refused_with_a_sentence(text):
+    try:
+        found = read_request(text)
+    except InputError as error:
+        problem = str(error)
+    else:
+        problem = "" if found.control in "inprfls" else found.control
+    assert problem == "" or len(problem) > 10
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("clock=-1;", "clock=-1 must be from 0 to 1e6 s"),
+        ("vel_cmd=1;", "must have 2 finite numbers"),
+        ("vel_cmd=nan 0;", "must have 2 finite numbers"),
+        ("sim_control=x;", "must be one of i, n, p, r, f, l, s"),
+        ("speed=1;", "there is no key 'speed'; keys are clock"),
+    ],
+)
+def test_bad_requests(text, message):
+    with pytest.raises(InputError, match=message):
+        read_request(text)
+
+
+def test_addresses():
+    assert open_transport("tcp:26000").port == 26000
+    assert read_request("vel_cmd=1 180;").commands[""] == (1.0, math.pi)
+    assert format_reply(1, {}) == b"@"
+    with pytest.raises(InputError, match="tcp:here must be tcp or tcp:PORT, such as tcp:25001"):
+        open_transport("tcp:here")

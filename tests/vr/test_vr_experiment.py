@@ -1,0 +1,208 @@
+"""A participant in a headset in the session of an experiment: seats, bodies, recordings, pauses, withdrawal."""
+
+import asyncio
+import dataclasses
+import json
+import threading
+import time
+
+import numpy as np
+import pytest
+from headset_messages import message
+
+from crowdbot.core import InputError
+from crowdbot.experiments import read_log, withdraw
+from crowdbot.navigation import ExternalNavigator
+from crowdbot.recording import read_episode, replay
+from crowdbot.trials import load_trial
+from crowdbot.vr import VR_DESKS, RobotStop, TrialSeats, read_headset_recording
+from crowdbot.web import AppSession, Workspace
+
+EXPERIMENT = """<experiment name="visit"><instructions name="consent" text="Do you take part?">
+<choice name="agree" text="Yes or no?"><option value="yes"/><option value="no" ends="true"/></choice></instructions>
+<block name="main"><trial name="meet" source="meet.xml"/><after name="rating">
+<scale name="comfort" text="How comfortable?" low="1" high="5"/></after></block></experiment>"""
+TRIAL = """<trial name="meet" duration="{duration}"><stage/><crowd type="orca"/>
+<avatar name="guest" source="external" x="1" y="0.5" body="man-30"/>
+<agent x="4" y="1.2" goal="-5,1.2"/><robot name="robot" type="turtlebot2" x="4" y="-1"><goal x="-5" y="-1"/>
+<navigator type="straight" speed="0.5"/></robot><end goal="false" collision="false"/></trial>"""
+
+
+class Headset:
+    """Sends poses of a head at 1.6 m from a thread, with a clock that is 5 s ahead."""
+
+    def __init__(self, desk):
+        self.told, self.head, self.hands = [], (0.1, 0.0, 1.6), {}
+        self.person = desk.arrive(self.told.append)
+        self._ends, self._desk = threading.Event(), desk
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        number, exchange = 0, None
+        while not self._ends.wait(0.015):
+            number += 1
+            more = {} if exchange is None else {"clock": np.array(exchange)}
+            data = message(time.monotonic() + 5.0, head=self.head, number=number, **self.hands, **more)
+            exchange = (*self.person.take(data)["clock"], time.monotonic() + 5.0)
+
+    def stop(self, cut=False):
+        self._ends.set()
+        self._thread.join()
+        self._desk.depart(self.person, cut)
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A session with an experiment of one trial; the duration of the trial is in the file."""
+    folder = tmp_path / "files"
+    folder.mkdir()
+    (folder / "visit.xml").write_text(EXPERIMENT)
+    (folder / "meet.xml").write_text(TRIAL.format(duration=1))
+    desks = tuple(
+        type("SimulatorDesk", (one,), {"first": "meet.xml"}) if one.name == "simulator" else one for one in VR_DESKS
+    )
+    loop = asyncio.new_event_loop()
+    made = AppSession("main", Workspace(folder), desks, loop)
+    yield made
+    made.close()
+    loop.close()
+
+
+def until(check):
+    end = time.monotonic() + 60
+    while not (found := check()):
+        if time.monotonic() > end:
+            raise TimeoutError("nothing happens within 60 s")
+        time.sleep(0.03)
+    return found
+
+
+def phase(desk, *wanted):
+    return until(lambda: (state := desk.greet()) and state["phase"] in wanted and state)
+
+
+def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
+    desk, vr, folder = session.desk("experiments"), session.desk("vr"), session.workspace.folder
+    vr.set({"timeout": 8.0, "pause_when_lost": False})  # a busy machine is not a lost headset
+    desk.open("visit.xml", 1)
+    guest = Headset(vr)
+    assert guest.person.avatar == "guest"
+    index = desk.greet()["index"]
+    desk.draft(index, {"agree": "yes", "other": 1})
+    assert desk.greet()["answers"] == {"agree": "yes"}
+    with pytest.raises(InputError, match="not at the screen of step 7"):
+        desk.finish_screen(7, {"agree": "yes"})
+    bones = {"left": (0.0, 0.70, 1.42), "right": (0.0, -0.70, 1.42)}
+    guest.head, guest.hands = (0.0, 0.0, 1.63), bones
+    until(lambda: len(guest.person.history(40)) == 40 and guest.person.history(40)[0].left is not None)
+    found = vr.take_pose("guest")
+    assert found.pose == "T"
+    guest.head, guest.hands = (0.1, 0.0, 1.6), {}
+    desk.finish_screen(index, {"agree": "yes"})
+    state = phase(desk, "screen")
+    assert [one["name"] for one in state["questions"]] == ["comfort"]
+    guest.head = (0.2, 0.0, 1.6)
+    desk.finish_screen(state["index"], {"comfort": 4})
+    assert phase(desk, "done")
+    one = folder / "experiments" / "visit" / "participant-001"
+    records = read_log(one / "session.jsonl")
+    events = [(record.get("event"), record.get("value")) for record in records if "event" in record]
+    assert events.count(("answered", "yes")) == 1  # the draft is not in the log
+    assert ("answered", 4) in events
+    episode = one / "001-meet" / "episode.mcap"
+    orders = [order for _, order in read_episode(episode).orders]
+    assert {order.avatar for order in orders} == {"guest"}
+    assert replay(episode).equal
+    assert f'height="{found.stature}"' in read_episode(episode).metadata["trial"]
+    raw = list(read_headset_recording(one / "001-meet" / "guest.headset"))
+    assert sum(record.sample is not None for record in raw) > 10
+    steps = [record.note for record in raw if record.note and "step" in record.note]
+    assert steps[0]["pose"][:2] == pytest.approx([orders[0].x, orders[0].y])
+    guest.stop()
+    desk.leave()
+    assert list((folder / ".running").glob("vr-*")) == []
+    withdraw(one.parent, 1)
+    assert not one.exists()
+    assert list(folder.rglob("*.headset")) == []
+
+
+def test_losses_pause_the_session_and_stops_hold_the_robot(session):
+    folder = session.workspace.folder
+    (folder / "meet.xml").write_text(TRIAL.format(duration=300))
+    desk, vr = session.desk("experiments"), session.desk("vr")
+    vr.set({"timeout": 3.0})
+    session.desk("simulator").greet()  # a window opens the first trial
+    guest = Headset(vr)  # in the trial of the simulator first
+    desk.open("visit.xml", 1)
+    until(lambda: vr.state()["experiment"])
+    assert session.desk("simulator").run.loop.paused
+    assert "guest" not in session.desk("simulator").run.controls
+    desk.finish_screen(desk.greet()["index"], {"agree": "yes"})
+    until(lambda: vr.state()["participants"][0]["steps"] > 3)
+    run = desk._run
+    assert vr.stop_robots() == ["robot"]
+
+    def speed():
+        scene = run.simulation.world.environment_scene(0)
+        return float(np.hypot(*scene.velocity[0, run.simulation.robots[0].agent]))
+
+    until(lambda: speed() < 1e-6)
+    vr.release_robots()
+    until(lambda: speed() > 0.1)
+    vr.limit_room("robot", [[-50, -50], [50, -50], [50, -0.9], [-50, -0.9]])  # the robot is 0.1 m inside
+    until(lambda: "robots are stopped" in vr.state()["warnings"])
+    guest.person.take = lambda data: {"clock": [0.0, 0.0, 0.0]}  # a headset that sleeps
+    state = phase(desk, "pause")
+    assert state["reason"] == "tracking of guest was lost"
+    del guest.person.take
+    vr.resume()
+    assert phase(desk, "running")
+    until(lambda: not any("tracking" in one for one in vr.state()["warnings"]))
+    guest.stop(cut=True)
+    assert phase(desk, "pause")["reason"] == "guest is gone"
+    again = Headset(vr)  # the net is back: the same avatar, another file
+    vr.resume()
+    before = again.person.summary()["steps"]
+    until(lambda: again.person.summary()["steps"] > before + 3)
+    vr.pause()
+    assert desk.greet()["phase"] == "pause"
+    again.stop()
+    desk.abort("the test is over")
+    until(lambda: not vr.state()["experiment"])
+    names = sorted(one.name for one in folder.rglob("participant-001/*/*.headset"))
+    assert names == ["guest-2.headset", "guest.headset"]
+
+
+def test_a_robot_with_a_connection_of_its_own_is_refused(tmp_path):
+    class Driven(ExternalNavigator):
+        source = "module:function"
+
+    path = tmp_path / "meet.xml"
+    path.write_text(TRIAL.format(duration=1))
+    trial = load_trial(path)
+    trial = dataclasses.replace(trial, robots=(dataclasses.replace(trial.robots[0], navigator=Driven()),))
+    with pytest.raises(InputError, match="robot 'robot' is driven over a connection of its navigator"):
+        TrialSeats(trial, tmp_path, RobotStop(), lambda _: False)
+
+
+def test_rooms_are_saved_and_loaded(session):
+    vr = session.desk("vr")
+    for x, y in ((0, 0), (2, 0), (2, 3)):
+        vr.add_pair("person", [x, y, 1], [x + 5, y - 1, 1])
+    vr.calibrate("person")
+    vr.limit_room("robot", [[0, 0], [4, 0], [4, 3]])
+    assert vr.save_rooms("lab") == "lab.json"
+    before = json.loads(json.dumps(vr.rooms.record()))
+    vr.clear_points("person")
+    vr.limit_room("robot", [])
+    vr.load_rooms("lab")
+    assert json.loads(json.dumps(vr.rooms.record())) == before
+    assert vr.rooms.rooms["person"].fit.rms < 1e-9
+    file = session.workspace.folder / "lab.json"
+    for text, word in (("{", "is not JSON"), ('{"hall": {}}', "must have the keys"), ('{"robot": {"x": 1}}', "damaged"),
+                       ('{"robot": 3}', "damaged")):  # fmt: skip
+        file.write_text(text)
+        with pytest.raises(InputError, match=word):
+            vr.load_rooms("lab")
+    assert json.loads(json.dumps(vr.rooms.record())) == before

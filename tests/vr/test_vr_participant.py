@@ -1,0 +1,185 @@
+"""A participant in a simulation: the crowd and the sensors see limbs, contacts are felt, recordings replay."""
+
+import numpy as np
+import pytest
+from headset_messages import message
+
+from crowdbot.core import InputError
+from crowdbot.recording import open_run, read_episode, replay
+from crowdbot.sensors import Lidar2D
+from crowdbot.simulation import Simulation, SimulationRun
+from crowdbot.trials import parse_trial
+from crowdbot.vr import (
+    BodyEstimator,
+    BodySize,
+    HeadsetRecorder,
+    RigidTransform,
+    SharedRooms,
+    VrParticipant,
+    read_headset_recording,
+)
+from crowdbot.vr.vr_participant import avatar_body
+from crowdbot.world import worlds_of
+
+OFFSET = 431.5
+AVATAR = '<avatar name="guest" source="external" x="1.5" y="0" heading="3.14159265" body="man-20"/>'
+SCAN = """<trial name="scan" duration="5" bodies="{bodies}"><stage/><crowd type="orca"/>{avatar}
+<robot name="robot" type="cuybot" default-sensors="false" x="0" y="0"><goal x="9" y="9"/><navigator type="external"/>
+<sensor type="lidar2d" name="scan" z="1.2" rays="360" field-of-view="6.265732" rate="20"/></robot>
+<end goal="false" collision="false"/></trial>"""
+CROWD = """<trial name="meet" duration="8" world="{world}"><stage/><crowd type="orca"/>{avatar}{others}
+<end goal="false" collision="false"/></trial>"""
+
+
+class Player:
+    """A headset and a simulation on one simulated clock."""
+
+    def __init__(self, trial, head, right=None, recorder=None, sources=()):
+        self.now, self.head, self.right = 1000.0, head, right
+        rooms = SharedRooms()
+        rooms.rooms["person"].place = RigidTransform.at(1.5, 0.0, np.pi)
+        self.felt = []
+        self.person = VrParticipant(
+            "guest", rooms, recorder=recorder, clock=lambda: self.now, tell=lambda one: self.felt.append(one["touch"])
+        )
+        self.run = SimulationRun(Simulation(trial, posed=True))
+        self.number, self.exchange = 0, None
+
+    def poses(self):
+        """Send 4 messages in the time of a step."""
+        for _ in range(4):
+            self.now += 0.0125
+            self.number += 1
+            more = {} if self.exchange is None else {"clock": np.array(self.exchange)}
+            right = None if self.right is None else self.right(self.now - 1000.0)
+            data = message(self.now + OFFSET, self.head(self.now - 1000.0), right=right, number=self.number, **more)
+            answer = self.person.take(data)["clock"]
+            self.exchange = (*answer, self.now + OFFSET)
+
+    def step(self, run=None):
+        self.poses()
+        run = run or self.run
+        return run.step(self.person.orders(run.simulation))
+
+
+@pytest.mark.parametrize("bodies", ["limbs", "skins"])
+def test_the_beams_of_a_scanner_end_on_the_arm_within_2_cm(bodies):
+    """The right arm reaches to the robot: beams of 360 end on it, as far as capsules or skin are like vertices."""
+    trial = parse_trial(SCAN.format(avatar=AVATAR, bodies=bodies))
+    assert isinstance(trial.robots[0].sensors[0].sensor, Lidar2D)
+    hand = np.array([0.33, -0.25, 1.2])
+    player = Player(trial, lambda _: (0.0, 0.0, 1.58), lambda _: hand)
+    for _ in range(12):
+        player.step()
+    simulation = player.run.simulation
+    reading = next(one for _, _, one in simulation.new_readings())
+    people = worlds_of(simulation.world)[0].people
+    wrist = people.posture().position[0, 16]
+    true = player.person.rooms.rooms["person"].place.apply(hand)
+    assert np.linalg.norm(wrist - true) < 0.01
+    elbow = people.posture().position[0, 15]
+    angles = trial.robots[0].sensors[0].sensor.angles
+    ranges = reading.ranges[0]
+    ends = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.full(len(angles), 1.2)], 1)
+    ends = ends[np.isfinite(ranges) & (ranges < 5.0)]
+    fingers = true - [0.19, 0.0, 0.0]  # a hand is 19 cm long
+    near = np.abs(ends[:, 1] - true[1]) < 0.09
+    assert near.sum() >= 3
+    skin = people.skin(0)[0]
+    gaps = [np.linalg.norm(skin - end, axis=1).min() for end in ends[near]]
+    assert np.median(gaps) < 0.02
+    assert max(gaps) < (0.02 if bodies == "skins" else 0.03)
+    assert ends[near][:, 0].min() == pytest.approx(fingers[0], abs=0.06)
+    assert elbow[0] > wrist[0]
+
+
+def test_people_go_around_a_participant_who_stands_in_their_way():
+    others = '<agent x="-4" y="0" goal="6,0"/>'
+    trial = parse_trial(CROWD.format(world="planar", avatar=AVATAR, others=others))
+    player = Player(trial, lambda time: (0.0, 0.1 * np.sin(time), 1.58))
+    least = np.inf
+    walker = next(k for k in range(2) if player.run.simulation.people.owner[k] == 0)
+    for _ in range(150):
+        player.step()
+        scene = player.run.simulation.world.scene
+        least = min(least, float(np.hypot(*(scene.position[0, 0] - scene.position[0, 1]))))
+    assert least > 0.45
+    assert player.run.simulation.world.scene.position[0, walker, 0] > 3.0
+    assert player.person.summary()["motion_median"] == pytest.approx(20.0, abs=0.1)
+    assert player.person.stream.clock.offset == pytest.approx(-OFFSET)
+
+
+def test_a_push_against_a_robot_is_felt_with_its_force_and_side():
+    robot = """<robot name="robot" type="turtlebot2" x="0.6" y="0"><goal x="9" y="9"/>
+    <navigator type="external"/></robot>"""
+    trial = parse_trial(CROWD.format(world="physics", avatar=AVATAR, others=robot))
+    player = Player(trial, lambda time: (min(0.6 * time, 1.2), 0.0, 1.58))
+    for _ in range(40):
+        player.step()
+    assert player.felt
+    first = player.felt[0]
+    assert first["begins"]
+    assert first["kind"] == "robot"
+    assert first["force"] > 0.0
+    assert 0.25 <= first["strength"] <= 1.0
+    assert first["limb"]
+    assert sum(one["begins"] for one in player.felt) < len(player.felt)
+
+
+def test_a_recorded_participant_replays_without_a_headset(tmp_path):
+    """The episode replays to the byte, and the raw messages give the same orders again."""
+    trial = parse_trial(CROWD.format(world="planar", avatar=AVATAR, others='<agent x="-4" y="0" goal="6,0"/>'))
+    with HeadsetRecorder(tmp_path / "raw.headset") as recorder, open_run(trial, out=tmp_path / "one") as run:
+        hand = lambda time: (0.4, -0.2, 1.1 + 0.1 * time)  # noqa: E731
+        player = Player(trial, lambda time: (0.3 * time, 0.0, 1.58), hand, recorder)
+        for _ in range(60):
+            player.step(run)
+    assert replay(tmp_path / "one/episode.mcap").equal
+    orders = [order for _, order in read_episode(tmp_path / "one/episode.mcap").orders]
+    assert len(orders) > 50
+    people, number, _ = avatar_body(Simulation(trial), "guest")
+    stream, estimator = type(player.person.stream)(), BodyEstimator(BodySize.of(people, number))
+    again = []
+    for one in read_headset_recording(tmp_path / "raw.headset"):
+        if one.sample is not None:
+            stream.add(one.sample, one.time)
+        elif "step" in one.note:
+            again.append(estimator.update(stream.at(one.time), player.person.rooms.rooms["person"].place))
+    assert [one.row().tolist() for one in again] == [one.pose.row().tolist() for one in orders] or np.allclose(
+        [one.row() for one in again], [one.pose.row() for one in orders], equal_nan=True, atol=1e-12
+    )
+
+
+def test_tracking_that_is_lost_leaves_the_avatar_where_it_was():
+    trial = parse_trial(CROWD.format(world="planar", avatar=AVATAR, others='<agent x="-4" y="3" goal="6,3"/>'))
+    player = Player(trial, lambda time: (0.5 * time, 0.0, 1.58) if time < 1.0 else None)
+    for _ in range(60):
+        player.step()
+    assert player.person.is_lost()
+    scene = player.run.simulation.world.scene
+    assert scene.active[0, 1]
+    assert scene.velocity[0, 1].tolist() == [0.0, 0.0]
+    assert player.person.summary()["lost_tracking"]
+
+
+def test_a_headset_on_a_cupboard_is_no_person_and_damaged_recordings_are_refused(tmp_path):
+    trial = parse_trial(CROWD.format(world="planar", avatar=AVATAR, others='<agent x="-4" y="3" goal="6,3"/>'))
+    player = Player(trial, lambda _: (0.0, 0.0, 6.0))
+    for _ in range(5):
+        player.step()
+    assert player.person.refused > 0
+    assert "high" in player.person.reason
+    with pytest.raises(InputError, match="not a recording of a headset"):
+        list(read_headset_recording(__file__))
+    path = tmp_path / "one.headset"
+    with HeadsetRecorder(path) as recorder:
+        recorder.message(1.0, message(1.0))
+        recorder.note(2.0, {"a": 1})
+    data = path.read_bytes()
+    path.write_bytes(data[:-3])
+    assert len(list(read_headset_recording(path))) == 1
+    path.write_bytes(data[:6] + b"\x09" + data[7:])
+    with pytest.raises(InputError, match="damaged"):
+        list(read_headset_recording(path))
+    with pytest.raises(InputError, match="no avatar 'gest'"):
+        avatar_body(Simulation(trial), "gest")

@@ -1,0 +1,115 @@
+"""Habits of the page: the keyboard alone, reduced motion, and a link that shows the same."""
+
+import re
+
+import pytest
+
+TABS = ("prediction", "editor", "evaluation", "experiments", "jobs")
+CONTROLS = (
+    "button:not([disabled]):not([tabindex='-1']), select:not([disabled]), input:not([disabled]):not([type=radio]), "
+    "textarea:not([disabled]), a[href], [tabindex='0']"
+)
+
+
+def show(page, tab):
+    page.get_by_role("tab", name=re.compile(tab, re.IGNORECASE)).click()
+    page.wait_for_function("tab => crowdbot.tab(tab) !== undefined", arg=tab)
+    page.wait_for_load_state("networkidle")
+    if tab == "editor":
+        page.wait_for_function("() => document.querySelector('.editor textarea').value.includes('trial')")
+
+
+STILL_SHOWN = """(i) => {
+  const one = document.querySelector(`[data-control="${i}"]:not(:disabled)`);
+  return one?.checkVisibility() ? one.outerHTML.slice(0, 120) : null;
+}"""
+"""The text of a control, unless it has been disabled or hidden meanwhile."""
+
+
+@pytest.mark.parametrize(
+    "tab", ["prediction", "jobs", *(pytest.param(one, marks=pytest.mark.sweep) for one in TABS[1:4])]
+)
+def test_every_control_is_reached_with_the_tab_key_and_shows_it(page, tab):
+    show(page, tab)
+    page.evaluate("document.activeElement.blur()")
+    count = page.evaluate(
+        """(controls) => {
+          const shown = [...document.querySelectorAll(controls)].filter((one) => one.checkVisibility());
+          shown.forEach((one, i) => (one.dataset.control = i));
+          return shown.length;
+        }""",
+        CONTROLS,
+    )
+    reached, without = set(), []
+    for _ in range(2 * count + 10):  # after the last control the focus leaves the page and comes back
+        page.keyboard.press("Tab")
+        number, outline, name = page.evaluate(
+            """() => {
+              const one = document.activeElement;
+              return [one.dataset.control, getComputedStyle(one).outlineStyle, one.outerHTML.slice(0, 120)];
+            }"""
+        )
+        reached.add(number)
+        if outline == "none" and not name.startswith("<body"):
+            without.append(name)
+        if len(reached - {None}) == count:
+            break
+    missed = [page.evaluate(STILL_SHOWN, i) for i in range(count) if str(i) not in reached]
+    assert [one for one in missed if one is not None] == []
+    assert without == []
+
+
+def test_tabs_and_a_job_by_keyboard_alone(page):
+    page.evaluate("document.getElementById('tab-simulator').focus()")
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_function("() => crowdbot.keys.active === 'jobs'")
+    page.get_by_role("button", name="Search for failures").focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("form", name="Search for failures").get_by_label("Name of the results").focus()
+    page.keyboard.press("Control+A")
+    page.keyboard.type("../a")
+    page.keyboard.press("Enter")
+    page.get_by_text("file '../a' is outside the folder of the app").wait_for()
+    assert page.locator(".job").count() == 0
+    page.keyboard.press("Escape")
+
+
+def test_nothing_moves_with_reduced_motion(page):
+    for tab in TABS:
+        show(page, tab)
+        assert page.evaluate("document.getAnimations().length") == 0
+        assert (
+            page.evaluate(
+                "[...document.querySelectorAll('progress:indeterminate')].filter((e) => e.checkVisibility()).length"
+            )
+            == 0
+        )
+
+
+def test_a_link_shows_the_same(page, browser, app):
+    show(page, "editor")
+    page.evaluate("crowdbot.connection.call('editor.start', {trial: 'frontal'})")
+    page.get_by_role("listbox", name="Elements").get_by_role("option", name="robot").click()
+    page.wait_for_function("() => location.hash.includes('element=')")
+    other = browser.new_page()
+    other.goto(page.url)
+    other.locator(".inspector h3").get_by_text("<robot>").wait_for()
+
+    show(page, "prediction")
+    page.evaluate("crowdbot.connection.call('prediction.example', {name: 'bottleneck'})")
+    page.wait_for_function("() => crowdbot.tab('prediction').store.frame !== null")
+    page.get_by_label("Jump to frame").fill("17")
+    page.get_by_label("Jump to frame").press("Enter")
+    page.locator("canvas.scene[data-frame='10']").wait_for()
+    other.goto("about:blank")
+    other.goto(page.url)
+    other.locator("canvas.scene[data-frame='10']").wait_for()
+
+    show(page, "jobs")
+    page.get_by_role("button", name="Generate data").click()
+    other.goto("about:blank")
+    other.goto(page.url)
+    other.get_by_role("form", name="Generate data").wait_for()
+    assert other.evaluate("crowdbot.keys.active") == "jobs"
+    other.close()

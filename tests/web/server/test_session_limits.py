@@ -1,0 +1,159 @@
+"""A class of thirty: sandboxes, limits with sentences, sessions that end when nobody uses them."""
+
+import asyncio
+import io
+
+import aiohttp
+import pytest
+from job_functions import count
+
+from crowdbot.cli import main
+from crowdbot.core import InputError
+from crowdbot.web import CLASSROOM, AppServer, Desk, SessionLimits, Workspace, command
+from crowdbot.web.jobs import JobWork
+
+
+class Notebook(Desk):
+    """Writes files and starts jobs."""
+
+    name = "notes"
+
+    @command
+    def write(self, text: str) -> list:  # type: ignore[type-arg]
+        self.session.workspace.writable("note.txt").write_text(text)
+        return [self.session.workspace.readable("note.txt").read_text(), self.session.workspace.files()]
+
+    @command
+    def work(self, steps: int) -> int:
+        return self.session.jobs.submit(JobWork("count", "counts", count, (steps, 0.01))).record.number
+
+
+def serve(folder, talk, **options):
+    """Run ``talk(server, client)`` against a server and return its result."""
+
+    async def main():
+        server = AppServer((Notebook,), folder, port=0, **options)
+        async with server.running(), aiohttp.ClientSession() as client:
+            return await asyncio.wait_for(talk(server, client), 120)
+
+    return asyncio.run(main())
+
+
+async def ask(socket, call, **arguments):
+    await socket.send_json({"id": 1, "call": call, "args": arguments})
+    while "id" not in (answer := await socket.receive_json()):
+        pass
+    return answer
+
+
+def test_thirty_students_share_a_server(tmp_path):
+    async def student(server, client, number):
+        async with client.ws_connect(server.url + f"api/student-{number}/socket") as socket:
+            await socket.receive_json()
+            own = await ask(socket, "notes.write", text=f"I am {number}")
+            job = await ask(socket, "notes.work", steps=5)
+            async with client.post(
+                server.url + f"api/student-{number}/upload?name=large.csv", data=io.BytesIO(bytes(3000))
+            ) as answer:
+                refusal = (answer.status, await answer.text())
+            return own["result"], job["result"], refusal
+
+    async def talk(server, client):
+        found = await asyncio.gather(*(student(server, client, number) for number in range(30)))
+        while any(one.jobs.active for one in server.sessions.values()):
+            await asyncio.sleep(0.05)
+        return found, [one.jobs.records[0].state for one in server.sessions.values()]
+
+    limits = SessionLimits(jobs=1, upload=2000.0)
+    found, states = serve(tmp_path, talk, limits=limits, most_sessions=30)
+    sentence = "large.csv is larger than 0.002 MB, the largest file that is taken\n"
+    assert found == [([f"I am {number}", ["note.txt"]], 1, (413, sentence)) for number in range(30)]
+    assert states == ["done"] * 30
+
+
+def test_each_limit_is_refused_with_a_sentence(tmp_path):
+    async def talk(server, client):
+        async with client.ws_connect(server.url + "api/one/socket") as socket:
+            await socket.receive_json()
+            answers = [await ask(socket, "notes.work", steps=10_000) for _ in range(3)]
+            texts = []
+            for path in ("one", "two"):
+                async with client.get(server.url + f"api/{path}/socket") as answer:
+                    texts.append((answer.status, await answer.text()))
+            async with client.post(server.url + "api/one/upload?name=a.csv", data=io.BytesIO(bytes(9000))) as answer:
+                texts.append((answer.status, await answer.text()))
+            return answers, texts
+
+    limits = SessionLimits(jobs=1, waiting=1, windows=1, disk=8000.0)
+    answers, texts = serve(tmp_path, talk, limits=limits, most_sessions=1)
+    assert [one.get("result") for one in answers] == [1, 2, None]
+    assert answers[2]["error"] == "1 jobs are waiting, the limit of a session; wait, or cancel one of them"
+    assert texts[0] == (503, "session one has 1 windows, its limit; close one of them\n")
+    assert texts[1] == (503, "1 sessions are open, the limit of this server; try again later\n")
+    assert texts[2][0] == 400
+    assert texts[2][1].startswith("your folder is full: 0 of 0 MB are used; remove jobs")
+
+
+def test_a_session_that_nobody_uses_ends_and_keeps_its_files(tmp_path):
+    async def talk(server, client):
+        async with client.ws_connect(server.url + "api/one/socket") as socket:
+            await socket.receive_json()
+            await ask(socket, "notes.write", text="kept")
+            await asyncio.sleep(0.6)
+            during = list(server.sessions)
+        while server.sessions:
+            await asyncio.sleep(0.05)
+        async with client.ws_connect(server.url + "api/one/socket") as socket:
+            await socket.receive_json()
+            return during, (await ask(socket, "notes.write", text="more"))["result"]
+
+    during, (text, files) = serve(tmp_path, talk, limits=SessionLimits(idle=0.3))
+    assert (during, text, files) == (["one"], "more", ["note.txt"])
+
+
+def test_the_first_session_does_not_see_the_files_of_others(tmp_path):
+    space = Workspace(tmp_path)
+    other = Workspace(tmp_path / "sessions" / "anna")
+    other.writable("secret.xml").write_text("<trial/>")
+    assert other.files() == ["secret.xml"]
+    assert space.files() == []
+    assert space.size() == 0
+    for act in (space.readable, space.writable):
+        with pytest.raises(InputError, match="outside the folder of the app"):
+            act("sessions/anna/secret.xml")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--jobs", "0"], "--jobs = 0: expected a positive number"),
+        (["--disk-space", "nan"], "--disk-space = nan: expected a positive number"),
+        (["--sessions", "0"], "--sessions = 0: expected at least 1"),
+    ],
+)
+def test_wrong_limits_of_the_command_line(capsys, words, sentence):
+    assert main(["app", "--no-browser", "--port", "0", *words]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_limits_of_the_command_line_reach_the_server(monkeypatch, tmp_path):
+    from crowdbot.cli import app
+
+    servers = []
+
+    async def stop(server, browser, vr):
+        servers.append(server)
+
+    monkeypatch.setattr(app, "_serve", stop)
+    folder = ["--folder", str(tmp_path), "--no-browser"]
+    assert main(["app", *folder]) == 0
+    assert main(["app", *folder, "--host", "0.0.0.0", "--disk-space", "500", "--idle-time", "5"]) == 0
+    assert servers[0].limits == SessionLimits()
+    assert servers[1].limits.disk == 500e6
+    assert servers[1].limits.idle == 300.0
+    assert servers[1].limits.cpu == CLASSROOM.cpu
+
+
+def test_a_limit_is_positive():
+    with pytest.raises(InputError, match="limit jobs = 0 must be positive"):
+        SessionLimits(jobs=0)

@@ -1,0 +1,236 @@
+"""Jobs: progress, log, cancel, limits, the list after a restart, and results equal to those of the command line."""
+
+import json
+import re
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from job_functions import burn, count, die, fail, fill_disk, fill_memory, fill_memory_of_a_child
+
+from crowdbot.core import InputError
+from crowdbot.web import JobBoard, SessionLimits, Workspace, call_command
+from crowdbot.web.jobs import JobWork
+from crowdbot.web.jobs.job_desk import JobDesk
+from crowdbot.web.prediction import PredictionDesk
+
+
+class Windows:
+    """A session without windows."""
+
+    name = "main"
+
+    def __init__(self, folder, limits=None):
+        limits = limits or SessionLimits()
+        self.workspace, self.events = Workspace(folder, limit=limits.disk), []
+        self.jobs = JobBoard(self.workspace, limits, self.tell)
+
+    def tell(self, event, data):
+        self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
+
+
+def wait(board, seconds=120):
+    end = time.monotonic() + seconds
+    while board.active:
+        if time.monotonic() > end:
+            raise TimeoutError(board.records)
+        time.sleep(0.02)
+    return board.records[-1]
+
+
+@pytest.fixture
+def session(tmp_path):
+    one = Windows(tmp_path / "files")
+    yield one
+    one.jobs.close()
+
+
+def test_a_job_reports_and_is_listed_after_a_restart(session, tmp_path):
+    seen, ended = [], threading.Event()
+    session.jobs.submit(
+        JobWork("count", "to five", count, (5,)), lambda *message: seen.append(message), lambda job: ended.set()
+    )
+    assert wait(session.jobs).state == "done"
+    assert ended.wait(10)
+    assert seen == [("number", number) for number in range(5)]
+    again = Windows(tmp_path / "files")
+    assert again.jobs.facts()["jobs"][0] == session.jobs.records[0].values
+    assert again.jobs.records[0].cpu > 0.0
+    assert again.jobs.submit(JobWork("count", "more", count, (1,))).record.number == 2
+    wait(again.jobs)
+
+
+@pytest.mark.parametrize(
+    ("target", "arguments", "problem"),
+    [
+        (fail, ("the value is wrong",), "the value is wrong"),
+        (fail, ("",), "ZeroDivisionError: a bug; this is a bug in crowdbot or in your code"),
+        (die, (), "the worker process has died (out of memory?)"),
+    ],
+)
+def test_a_failure_is_listed_with_its_sentence(session, target, arguments, problem):
+    session.jobs.submit(JobWork("fail", "fails", target, arguments))
+    found = wait(session.jobs)
+    assert (found.state, found.problem) == ("failed", problem)
+
+
+def runs(process):
+    """Whether a process exists and is not a zombie, which init reaps."""
+    try:
+        return "\nState:\tZ" not in Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize("target", [fill_memory, fill_memory_of_a_child])
+def test_a_job_that_takes_too_much_memory_ends(tmp_path, target):
+    session, seen = Windows(tmp_path, SessionLimits(memory=400e6)), []
+    session.jobs.submit(JobWork("fill", "takes", target, (600,)), lambda *message: seen.append(message))
+    found = wait(session.jobs)
+    assert found.state == "failed"
+    used, limit = re.fullmatch(
+        r"the job uses (\d+) MB of memory; the limit of a job is (\d+) MB \(--memory\); it has ended", found.problem
+    ).groups()
+    assert (400 < int(used) < 2000, int(limit)) == (True, 400)
+    for _, child in seen:
+        end = time.monotonic() + 60.0
+        while runs(child) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert not runs(child)
+
+
+def test_jobs_wait_for_their_turn_and_are_cancelled(tmp_path):
+    session = Windows(tmp_path, SessionLimits(jobs=1, waiting=2))
+    for title in ("first", "second", "third"):
+        session.jobs.submit(JobWork("count", title, count, (10_000, 0.01)))
+    assert [one.state for one in session.jobs.records] == ["running", "waiting", "waiting"]
+    with pytest.raises(InputError, match="2 jobs are waiting, the limit of a session"):
+        session.jobs.submit(JobWork("count", "fourth", count, (1,)))
+    session.jobs.cancel(2)
+    assert [one.state for one in session.jobs.records] == ["running", "cancelled", "waiting"]
+    session.jobs.cancel(1)
+    assert [one.state for one in session.jobs.records] == ["cancelled", "cancelled", "running"]
+    with pytest.raises(InputError, match="job 3 is running; cancel it first"):
+        session.jobs.remove(3)
+    session.jobs.close()
+    assert [one.state for one in Windows(tmp_path).jobs.records] == ["cancelled", "cancelled", "interrupted"]
+
+
+def test_a_job_ends_when_the_processor_time_is_used(tmp_path):
+    session = Windows(tmp_path, SessionLimits(cpu=1.0))
+    session.jobs.submit(JobWork("burn", "burns", burn))
+    found = wait(session.jobs)
+    assert (found.state, found.problem) == ("failed", "the processor time of the jobs is used up")
+    with pytest.raises(InputError, match=r"used up \(1 s\); ask the person who runs the server"):
+        session.jobs.submit(JobWork("count", "more", count, (1,)))
+
+
+def test_a_job_ends_when_the_folder_is_full(tmp_path):
+    session = Windows(tmp_path / "files", SessionLimits(disk=20e6))
+    session.jobs.submit(JobWork("fill", "fills", fill_disk, (str(tmp_path / "files" / "large.bin"),)))
+    assert wait(session.jobs).problem.startswith("your folder is full: ")
+    with pytest.raises(InputError, match="your folder is full"):
+        session.workspace.writable("more.txt")
+
+
+@pytest.mark.parametrize("text", ["", "[", "[7]", '[{"number": 1}]', '{"a": 1}'])
+def test_a_damaged_list_is_an_empty_one(tmp_path, text):
+    folder = tmp_path / ".crowdbot-jobs"
+    folder.mkdir()
+    (folder / "jobs.json").write_text(text)
+    assert Windows(tmp_path).jobs.records == []
+
+
+class TestDesk:
+    """The commands of the jobs tab."""
+
+    @pytest.fixture
+    def call(self, session):
+        desk = JobDesk(session)
+
+        def call(name, **arguments):
+            return json.loads(json.dumps(call_command(desk, name, arguments), allow_nan=False))
+
+        call.desk = desk
+        return call
+
+    def test_generated_data_are_those_of_the_command_line(self, session, call, tmp_path):
+        from crowdbot.generation import GenerationPlan, generate
+        from crowdbot.trials import load_trial, trial_xml
+
+        path = session.workspace.writable("short.xml")
+        path.write_text(trial_xml(load_trial("frontal", duration=1.0)))
+        values = {"sources": ["short.xml"], "seeds": "0:2", "sensors": "sick-tim571", "name": "mine"}
+        words = call("words", kind="generate", values=values)
+        assert words.startswith("crowdbot generate short.xml --seeds=0:2 --sensors=sick-tim571 --format=npz --out")
+        number = call("begin", kind="generate", values=values)
+        assert wait(session.jobs, 300).problem == ""
+        same = generate(GenerationPlan([load_trial(str(path))], range(2), ["sick-tim571"]), tmp_path / "same")
+        names = [one["name"] for one in call("files", number=number)]
+        assert "README.md" in names
+        for name in same.files:
+            data = call.desk.resource(f"{number}/files/{name}", {}).data
+            assert data == (tmp_path / "same" / name).read_bytes()
+        assert call.desk.resource(f"{number}/all.zip", {}).data[:2] == b"PK"
+        assert "generate" in call("log", number=number)
+        assert any(event.startswith("jobs.") for event, _ in session.events)
+        call("remove", number=number, results=True)
+        assert not (session.workspace.folder / "generated" / "mine").exists()
+
+    def test_a_trained_network_predicts(self, session, call):
+        number = call("begin", kind="train", values={"data": ["example:bottleneck"], "epochs": 1, "name": "net"})
+        assert wait(session.jobs, 300).problem == ""
+        assert (session.workspace.folder / "trainings/net/best.npz").is_file()
+        assert "update" in call("log", number=number)
+        assert session.jobs.records[-1].share == 1.0
+        desk = PredictionDesk(session)
+        call_command(desk, "example", {"name": "bottleneck"})
+        (weights,) = call_command(desk, "weights", {})
+        values = {"predictor": "anchor-net", "samples": 20, "weights": weights}
+        call_command(desk, "add", {"settings": values})
+        call_command(desk, "run", {})
+        assert wait(session.jobs, 300).problem == ""
+        assert desk.greet()["predictors"][0]["results"]["clean"]["state"] == "done"
+        assert "trainings/net/best.npz" in call_command(desk, "command_line", {})
+        with pytest.raises(InputError, match="outside the folder"):
+            call_command(desk, "add", {"settings": {**values, "weights": "/etc/passwd"}})
+
+    @pytest.mark.sweep  # test_jobs_page.py does this in the page
+    def test_failures_are_searched(self, session, call):
+        values = {"trial": "frontal", "navigator": "straight", "search": "plain", "runs": 4, "name": "f"}
+        number = call("begin", kind="falsify", values=values)
+        assert wait(session.jobs, 300).problem == ""
+        report = call.desk.resource(f"{number}/files/report.html", {})
+        assert report.sandbox
+        assert b"<html" in report.data
+
+    def test_a_command_that_fails_says_why_and_runs_again(self, session, call):
+        number = call("begin", kind="falsify", values={"trial": "frontal", "navigator": "orka", "name": "f"})
+        assert "orka" in wait(session.jobs, 300).problem
+        assert call("again", number=number) == number + 1
+        wait(session.jobs, 300)
+
+    @pytest.mark.parametrize(
+        ("kind", "values", "sentence"),
+        [
+            ("generat", {}, "kind of job 'generat' does not exist, did you mean 'generate'"),
+            ("generate", {"sources": []}, "Trials or a recipe: choose at least one"),
+            ("generate", {"sources": ["../x.xml"]}, "is not a value of this setting"),
+            ("generate", {"sources": ["frontal"], "name": "../a"}, "Name of the results: file '../a' is outside"),
+            ("generate", {"sources": ["frontal"], "colour": 1}, "has no setting 'colour'"),
+            ("falsify", {"navigator": "/etc/evil.py:Mine"}, "is outside the folder of the app"),
+            ("falsify", {"navigator": "policy file=../../x.npz"}, "is outside the folder of the app"),
+            ("falsify", {"runs": 0}, "Runs = 0: expected 1 to"),
+            ("falsify", {"runs": True}, "is not a value of this setting"),
+            ("train", {"data": ["example:none"]}, "is not a value of this setting"),
+        ],
+    )
+    def test_wrong_forms_are_refused(self, call, kind, values, sentence):
+        with pytest.raises(InputError, match=sentence.replace("(", r"\(")):
+            call("begin", kind=kind, values=values)
+
+    @pytest.mark.parametrize("path", ["x", "1", "1/files/../../secret", "9999999999/all.zip"])
+    def test_files_elsewhere_are_not_read(self, call, path):
+        with pytest.raises((KeyError, InputError)):
+            call.desk.resource(path, {})

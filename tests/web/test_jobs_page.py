@@ -1,0 +1,64 @@
+"""A person's path through the jobs tab: start a search for failures, reload, see its results, remove it."""
+
+import pytest
+
+TAB = "#tab=jobs"
+
+
+@pytest.fixture
+def done(page):
+    """The tab with a search that has ended."""
+    page.get_by_role("button", name="Search for failures").click()
+    form = page.get_by_role("form", name="Search for failures")
+    form.get_by_label("Navigator").fill("straight")
+    form.locator("select[name=search]").select_option("plain")
+    form.get_by_label("Runs").fill("4")
+    form.get_by_label("Name of the results").fill("tries")
+    form.get_by_role("button", name="Start").click()
+    page.locator(".job.running").wait_for()
+    page.reload()
+    page.locator(".job.done").wait_for(timeout=300_000)
+    return page
+
+
+def test_a_job_survives_a_reload_and_gives_its_results(done, app, axe):
+    page = done
+    job = page.get_by_role("listitem").filter(has_text="tries")
+    assert "crowdbot falsify frontal --navigator=straight" in job.inner_text()
+    page.get_by_role("button", name="Log tries").click()
+    assert "4 runs in" in page.get_by_role("region", name="Log").inner_text()
+    assert axe(page) == []
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Results tries").click()
+    page.get_by_role("link", name="report.html").wait_for()
+    with page.expect_download() as saved:
+        page.get_by_role("link", name="result.json").click()
+    assert saved.value.path().read_bytes() == (app.folder / "falsifications/tries/result.json").read_bytes()
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Remove tries").click()
+    page.get_by_role("button", name="Remove with results").click()
+    page.get_by_text("No job yet").wait_for()
+    assert not (app.folder / "falsifications/tries").exists()
+
+
+def test_errors_are_shown_at_the_job_and_the_work_is_cancelled(page, axe):
+    page.get_by_role("button", name="Generate data").click()
+    page.get_by_role("form").get_by_role("button", name="Start").click()
+    page.get_by_text("Trials or a recipe: choose at least one").wait_for()
+    page.get_by_role("button", name="Search for failures").click()
+    page.get_by_label("Navigator").fill("orka")
+    page.get_by_role("form").get_by_role("button", name="Start").click()
+    page.locator(".job.failed .problem").get_by_text("orka").wait_for(timeout=300_000)
+    page.get_by_role("button", name="Remove first").click()
+    page.get_by_role("button", name="Remove from the list").click()
+    page.get_by_role("button", name="Generate data").click()
+    page.get_by_label("Trials or a recipe").select_option("frontal")
+    page.get_by_label("Sensors").fill("sick-tim571")
+    page.get_by_label("Seeds").fill("0:100000")
+    page.get_by_role("form").get_by_role("button", name="Start").click()
+    page.get_by_role("tab", name="Jobs (1)").wait_for()
+    page.get_by_role("button", name="Cancel first").click()
+    page.locator(".job.cancelled").wait_for()
+    for theme in ("light", "dark"):
+        page.evaluate("theme => document.documentElement.dataset.theme = theme", theme)
+        assert axe(page) == []

@@ -1,0 +1,165 @@
+"""The picture of an episode from its records equals that of its simulation, and needs no simulation."""
+
+import numpy as np
+import pytest
+from simulator_session import ready, simulator, wait_until
+
+from crowdbot.core import EpisodeError
+from crowdbot.recording import RecordedSimulation, read_episode, record
+from crowdbot.trials import load_trial, parse_trial
+from crowdbot.web.scene import LAYERS, RecordedScene, WalkingBodies, instant_frame, scene_frame, simulation_reason
+
+HALL = """
+<trial name="hall" duration="2" world="physics">
+  <stage walkable="-6,-4 6,-4 6,4 -6,4"/><crowd type="orca"/>
+  <spawner count="4" zone="1,-2 3,-2 3,2 1,2" goal="-4,-3 -5,-3 -5,3 -4,3"/>
+  <robot name="pepper" type="pepper" x="-3" y="0"><goal x="5" y="0"/><navigator type="straight"/></robot>
+  <robot name="turtle" type="turtlebot2" x="-3" y="2"><goal x="5" y="2"/><navigator type="straight"/></robot>
+</trial>
+"""
+
+
+@pytest.fixture(scope="module")
+def hall(tmp_path_factory):
+    """An episode of a robot with joints among people in the physics world."""
+    path = tmp_path_factory.mktemp("hall") / "hall.mcap"
+    record(parse_trial(HALL), 1, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def opened(hall):
+    """The recorded scene and the simulation of the episode."""
+    with RecordedSimulation(hall) as recorded:
+        episode, simulation = read_episode(hall), recorded.trial_simulation()
+        assert simulation_reason(simulation, episode, recorded.changes()) == ""
+        yield RecordedScene(simulation, episode), recorded
+
+
+def test_people_robots_and_scans_are_those_of_the_simulation(opened):
+    scene, recorded = opened
+    for seconds in (0.7, 0.1, 1.6):
+        simulation = recorded.at(seconds)
+        bodies = WalkingBodies(simulation)
+        found = instant_frame(scene.at(seconds), LAYERS).arrays
+        expected = scene_frame(simulation, LAYERS, bodies.motion).arrays
+        assert set(found) == set(expected)
+        for name, tolerance in (("ids", 0), ("who", 0), ("place", 2e-5), ("botplace", 2e-5), ("bots", 0)):
+            assert np.allclose(found[name], expected[name], rtol=0, atol=tolerance), (name, seconds)
+        assert np.abs(found["links"][:, :3] - expected["links"][:, :3]).max() < 0.02  # the body tilts a little
+        scans = [name for name in expected if name.startswith("scan")]
+        assert scans
+        for name in scans:
+            assert np.abs(found[name].astype(int) - expected[name].astype(int)).max() <= 1
+        assert np.abs(found["goals"] - expected["goals"]).max() < 1e-5
+
+
+def test_people_who_come_out_of_a_portal_are_those_of_the_simulation(tmp_path):
+    record(load_trial("two-way", duration=8.0, density=0.2), 3, tmp_path / "flow.mcap")
+    with RecordedSimulation(tmp_path / "flow.mcap") as recorded:
+        episode, first = read_episode(tmp_path / "flow.mcap"), recorded.trial_simulation()
+        assert len(episode.ids) > first.world.ids.shape[1]  # somebody has passed a portal
+        scene = RecordedScene(first, episode)
+        for seconds in (7.9, 4.0):
+            simulation = recorded.at(seconds)
+            found = scene.at(seconds)
+            there = simulation.world.scene.active[0]
+            assert np.array_equal(found.scene.active[0], there)
+            assert np.array_equal(found.ids[there], simulation.world.ids[0][there])  # the same bodies, too
+            assert np.allclose(found.scene.position[0, there], simulation.world.scene.position[0, there], atol=1e-5)
+
+
+def test_the_joints_of_a_robot_move_as_recorded(opened):
+    scene, _ = opened
+    assert np.ptp(scene.episode.joints["turtle"]["wheel_left_joint"]) > 0.1
+    first, second = (instant_frame(scene.at(at)).arrays["links"][:, 3:] for at in (0.2, 1.4))
+    assert np.abs(first - second).max() > 0.05
+
+
+def test_an_instant_does_not_depend_on_the_way_to_it(opened):
+    scene, _ = opened
+    scene.at(0.0)
+    there = instant_frame(scene.at(1.43), ["scans"]).encode()
+    scene.at(0.2)
+    assert instant_frame(scene.at(1.43), ["scans"]).encode() == there
+
+
+def test_people_walk_between_records(opened):
+    scene, _ = opened
+    scene.at(1.0)
+    frames = [instant_frame(scene.at(1.0 + 0.02 * k)).arrays for k in range(11)]
+    ways = np.diff([one["place"][:, 0] for one in frames], axis=0)
+    assert (ways < 0.0).all()  # in each of the steps, although only every fifth instant is recorded
+    assert max(np.abs(np.diff(ways, axis=0)).max(axis=0)) < 0.01
+    bones = np.abs(np.diff([one["bones"].astype(int) for one in frames], axis=0)).max(axis=(1, 2))
+    assert (bones > 0).all()
+
+
+def test_seeking_and_playing_simulate_nothing_and_the_inspector_sees_the_instant(hall):
+    with simulator(hall.parent) as desk:
+        desk.open_episode(hall.name)
+        assert ready(desk)["state"] == "paused"
+        for seconds in (1.5, 0.2, 1.0):
+            desk.seek(seconds)
+            assert desk.session.frames[-1].time == desk._status()["time"] == seconds
+        desk.step(4)
+        wait_until(lambda: desk._status()["time"] == pytest.approx(1.2))
+        people = desk.people()
+        assert desk._player._run is None
+        one = next(row for row in people if row["kind"] == "person")
+        seen = desk.inspect(one["id"])
+        assert desk._player._run.simulation.world.clock.time == pytest.approx(1.2)
+        assert (seen["x"], seen["y"]) == (pytest.approx(one["x"], abs=0.02), pytest.approx(one["y"], abs=0.02))
+        desk.speed(None)
+        desk.play()
+        wait_until(lambda: desk._status()["state"] == "ended")
+        assert desk._status()["time"] == desk._status()["duration"]
+
+
+def test_an_episode_that_does_not_replay_is_still_shown(hall, monkeypatch):
+    def refuse(self, seconds):
+        raise EpisodeError("the episode differs from its replay")
+
+    monkeypatch.setattr(RecordedSimulation, "run_from", refuse)
+    with simulator(hall.parent) as desk:
+        desk.open_episode(hall.name)
+        assert ready(desk)["state"] == "paused"
+        desk.seek(1.5)
+        assert desk.session.frames[-1].time == 1.5
+        with pytest.raises(EpisodeError, match="differs from its replay"):
+            desk.inspect(0)
+
+
+@pytest.mark.parametrize(
+    ("inside", "reason"),
+    [
+        ('<stage><cube x="1" y="1" size="0.4" mass="5"/></stage>', "doors or props move"),
+        ('<source zone="1,1 2,1 2,2 1,2" goal="-5,0 -4,0 -4,1 -5,1" rate="1"/>', ""),
+        ('<spawner count="2" zone="1,1 2,1 2,2 1,2" goal="-5,0 -4,0 -4,1 -5,1"/>', ""),
+    ],
+)
+def test_what_is_not_in_the_records_is_named(tmp_path, inside, reason):
+    stage = inside if "stage" in inside else ""
+    rest = "" if stage else inside
+    world = 'world="physics"' if stage else ""
+    trial = f'<trial name="small" duration="4" {world}>{stage}<crowd type="orca"/>{rest}</trial>'
+    record(parse_trial(trial), 0, tmp_path / "small.mcap")
+    with RecordedSimulation(tmp_path / "small.mcap") as recorded:
+        episode = read_episode(tmp_path / "small.mcap")
+        found = simulation_reason(recorded.trial_simulation(), episode, recorded.changes())
+    assert reason in found
+    assert bool(found) == bool(reason)
+
+
+def test_doors_are_simulated(tmp_path):
+    trial = parse_trial(
+        '<trial name="door" duration="0.5"><stage walkable="-6,-4 6,-4 6,4 -6,4">'
+        '<door name="hall" points="3,-1 3,1" opening="schedule" times="0.2"/></stage><crowd type="orca"/></trial>'
+    )
+    record(trial, 0, tmp_path / "door.mcap")
+    with simulator(tmp_path) as desk:
+        desk.open_episode("door.mcap")
+        assert ready(desk)["state"] == "paused"
+        desk.seek(0.4)
+        assert desk.session.frames[-1].arrays["doors"].shape == (1,)
+        assert desk._player._run is not None
