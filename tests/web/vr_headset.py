@@ -66,7 +66,7 @@ def wait(page, expression, seconds=90.0):
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         if time.monotonic() > end:
-            state = page.evaluate("JSON.stringify([crowdbotVr.state, crowdbotVr.experiment, crowdbotVr.board.problem])")
+            state = page.evaluate("JSON.stringify([crowdbotVr.scene.info(), crowdbotVr.state, crowdbotVr.experiment, crowdbotVr.board.problem])")
             raise TimeoutError(f"{expression}: {state}")
         page.wait_for_timeout(40)
 

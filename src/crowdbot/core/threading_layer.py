@@ -26,6 +26,9 @@ LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, 
 PATIENCE = 10.0
 """Maximum time [s] that a fork waits for kernels in other threads."""
 
+REST = 0.05
+"""Time [s] in which idle threads of oneTBB fall asleep."""
+
 _entry = threading.RLock()
 _compiling: Any = compiler_lock.global_compiler_lock
 _layer: Any = parallel.threading_layer
@@ -92,6 +95,10 @@ def _before_fork() -> None:
     while _running and time.monotonic() < end:
         time.sleep(0.0005)
     _compiling.acquire()
+    if threading.current_thread() is not threading.main_thread() and _is_thread_safe():
+        # numba ends the threads of oneTBB before a fork in the main thread only. In other threads, the child gets a
+        # copy of their state, which works if they sleep and may hang if they hold a lock.
+        time.sleep(REST)
 
 
 def _after_fork_in_parent() -> None:

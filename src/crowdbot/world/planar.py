@@ -325,9 +325,8 @@ class PlanarWorld(PlanarLiveChanges):
 
     def environment_scene(self, environment: int) -> Scene:
         """Return the scene of one environment with its own number of agents."""
-        if len(self.slots) == 1:
-            return self.scene
-        one, slots = self.scene.environment(environment), int(self.slots[environment])
+        slots = int(self.slots[environment])
+        one = self.scene if len(self.slots) == 1 else self.scene.environment(environment)
         return one if slots == one.shape[1] else trim_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
