@@ -33,7 +33,7 @@ def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):
     with serve(folder, desks("full.xml"), VrServer) as app, emulated_headsets(browser, app, modules) as headset:
         page = headset()
         enter(page, app)
-        wait(page, "crowdbotVr.scene.info().people === 50 && crowdbotVr.scene.info().robots === 1", 300.0)  # kernels are compiled
+        wait(page, "crowdbotVr.scene.info().people === 50 && crowdbotVr.scene.info().robots === 1")
         assert page.evaluate("crowdbotVr.scene.info().calls") < MOST_CALLS
         assert page.evaluate("crowdbotVr.scene.state.frame.arrays.bones.length") == 50 * 112
         works = []

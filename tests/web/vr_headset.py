@@ -61,12 +61,12 @@ def emulated_headsets(browser, app, modules):
     assert [one for one in faults if not any(word in one for word in CUT)] == []
 
 
-def wait(page, expression, seconds=90.0):
+def wait(page, expression, seconds=240.0):
     """Wait until an expression of the page is true."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         if time.monotonic() > end:
-            state = page.evaluate("JSON.stringify([crowdbotVr.scene.info(), crowdbotVr.state, crowdbotVr.experiment, crowdbotVr.board.problem])")
+            state = page.evaluate("JSON.stringify([crowdbotVr.state, crowdbotVr.experiment, crowdbotVr.board.problem])")
             raise TimeoutError(f"{expression}: {state}")
         page.wait_for_timeout(40)
 
