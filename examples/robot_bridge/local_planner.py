@@ -1,7 +1,7 @@
-"""A small reference planner: laser scan and goal in, velocity out. It needs NumPy and SciPy only, no ROS.
+"""A small reference planner: laser scan and goal in, velocity out. It needs the standard library only.
 
-A costmap of 6 x 6 m around the robot is made from each scan. Dijkstra's algorithm finds the cheapest path to the goal,
-or to the edge of the costmap towards it; cells near obstacles cost more. The robot follows the path by pure pursuit.
+A costmap of 6 x 6 m around the robot is made from each scan. A* finds the cheapest path to the goal, or to the edge
+of the costmap towards it; cells near obstacles cost more. The robot follows the path by pure pursuit.
 """
 
 from __future__ import annotations
@@ -9,9 +9,6 @@ from __future__ import annotations
 import heapq
 import math
 from dataclasses import dataclass
-
-import numpy as np
-from scipy.ndimage import distance_transform_edt
 
 CELL, HALF = 0.1, 30
 """Size of a cell [m], and cells from the robot to the edge of the costmap."""
@@ -44,7 +41,7 @@ class LocalPlanner:
 
     def command(self, ranges, angle_min, increment, goal):
         """Return speed [m/s] and turn rate [rad/s] for a scan and a goal (x, y) [m] in the frame of the robot."""
-        clearance = self.clearance(np.asarray(ranges, dtype=float), angle_min, increment)
+        clearance = self.clearance(ranges, angle_min, increment)
         path = self.path(clearance, goal)
         if path is None:
             return 0.0, 0.6  # look for a way
@@ -53,50 +50,65 @@ class LocalPlanner:
         x, y = goal if distance < self.ahead else (CELL * target[0], CELL * target[1])
         bearing = math.atan2(y, x)
         turn = max(-self.max_turn, min(self.max_turn, 1.8 * bearing))
-        free = min(float(clearance[HALF + k, HALF]) for k in range(1, 8)) - self.radius
+        free = min(clearance.get((k, 0), math.inf) for k in range(1, 8)) - self.radius
         speed = self.max_speed * max(0.0, math.cos(bearing)) ** 2 * max(0.0, min(1.0, free / 0.4))
         if speed < 0.05 and abs(turn) < 0.2:
             turn = math.copysign(0.4, bearing or 1.0)
         return min(speed, distance), turn
 
     def clearance(self, ranges, angle_min, increment):
-        """Return the distance [m] from each cell ``[2 * HALF + 1, 2 * HALF + 1]`` to the nearest point of the scan."""
-        angles = angle_min + increment * np.arange(len(ranges))
-        hit = np.isfinite(ranges) & (ranges < CELL * HALF * 1.5)
-        rows = np.round(ranges[hit] * np.cos(angles[hit]) / CELL).astype(int) + HALF
-        columns = np.round(ranges[hit] * np.sin(angles[hit]) / CELL).astype(int) + HALF
-        inside = (rows >= 0) & (rows <= 2 * HALF) & (columns >= 0) & (columns <= 2 * HALF)
-        free = np.ones((2 * HALF + 1, 2 * HALF + 1), dtype=bool)
-        free[rows[inside], columns[inside]] = False
-        if free.all():
-            return np.full(free.shape, np.inf)
-        return CELL * distance_transform_edt(free)
+        """Return the distance [m] to the nearest point of the scan, by cell (x, y), for cells that are near to one.
+
+        Cells that are further away than the radius and the margin of the robot are left out.
+        """
+        hits = set()
+        for k, distance in enumerate(ranges):
+            if 0.0 < distance < CELL * HALF * 1.5:  # false for NaN
+                angle = angle_min + k * increment
+                hits.add((round(distance * math.cos(angle) / CELL), round(distance * math.sin(angle) / CELL)))
+        hits = [cell for cell in hits if max(map(abs, cell)) <= HALF]
+        reach = math.ceil((self.radius + self.margin) / CELL)
+        disc = [(CELL * math.hypot(x, y), x, y) for x in range(-reach, reach + 1) for y in range(-reach, reach + 1)]
+        found = {}
+        for distance, dx, dy in sorted(disc, reverse=True):  # nearer points replace farther ones
+            if distance <= self.radius + self.margin:
+                found.update({(x + dx, y + dy): distance for x, y in hits})
+        return found
+
+    def costs(self, clearance):
+        """Return what cells near obstacles cost, infinity where the robot would touch; all others cost 1."""
+        found = {}
+        for cell, distance in clearance.items():
+            touches = distance < self.radius and max(abs(cell[0]), abs(cell[1])) > 2
+            found[cell] = (
+                math.inf if touches else 1.0 + 6.0 * min(1.0, 1.0 - (distance - self.radius) / self.margin) ** 2
+            )
+        return found
 
     def path(self, clearance, goal):
         """Return the cells (x, y) of the cheapest path, or None if there is none."""
         scale = min(1.0, CELL * (HALF - 1) / max(abs(goal[0]), abs(goal[1]), 1e-9))
         end = (round(goal[0] * scale / CELL), round(goal[1] * scale / CELL))
-        cost = 1.0 + 6.0 * np.clip(1.0 - (clearance - self.radius) / self.margin, 0.0, 1.0) ** 2
-        closed = clearance < self.radius
-        closed[HALF - 2 : HALF + 3, HALF - 2 : HALF + 3] = False
-        best, before, queue = {(0, 0): 0.0}, {}, [(0.0, (0, 0))]
+        costs = self.costs(clearance)
+        best, before, queue = {(0, 0): 0.0}, {}, [(math.dist((0, 0), end), 0.0, (0, 0))]
         nearest, gap = (0, 0), math.dist((0, 0), end)
         while queue:
-            price, cell = heapq.heappop(queue)
+            _, price, cell = heapq.heappop(queue)
             if price > best[cell]:
                 continue
             if math.dist(cell, end) < gap:
                 nearest, gap = cell, math.dist(cell, end)
             if cell == end:
                 break
+            x, y = cell
             for dx, dy, length in STEPS:
-                x, y = cell[0] + dx, cell[1] + dy
-                if max(abs(x), abs(y)) > HALF or closed[x + HALF, y + HALF]:
+                near = x + dx, y + dy
+                if not (-HALF <= near[0] <= HALF and -HALF <= near[1] <= HALF):
                     continue
-                new = price + length * cost[x + HALF, y + HALF]
-                if new < best.get((x, y), math.inf):
-                    best[x, y], before[x, y] = new, cell
-                    heapq.heappush(queue, (new, (x, y)))
+                new = price + length * costs.get(near, 1.0)
+                if new < best.get(near, math.inf):
+                    best[near], before[near] = new, cell
+                    heapq.heappush(queue, (new + math.dist(near, end), new, near))  # the rest costs at least this
         if nearest == (0, 0):
             return None
         cells = [nearest]

@@ -1,6 +1,6 @@
 """A navigation node over rosbridge: scan and odometry in, velocity out, as a process of its own.
 
-    crowdbot run circle-crossing --bridge rosbridge --out driven
+    crowdbot run examples/robot_bridge/pillar.xml --bridge rosbridge --out driven
     python examples/robot_bridge/navigate_rosbridge.py --goal 4,0
 
 As the navigator of a trial, scored by crowdbot evaluate:
@@ -17,22 +17,20 @@ import math
 import threading
 
 import roslibpy
-from local_planner import LocalPlanner, in_robot_frame
+from scan_driver import ScanDriver, add_options, goal_of, heading_of
 
 
 class NavigationNode:
-    """Answers every scan with a command until the robot is at the goal, as soon as it knows the pose of that time.
+    """Connects a driver to the topics of a robot.
 
     Args:
         ros: connection.
         robot: name space of the robot.
-        goal: x, y in the map [m]; None: as sent on ``/ROBOT/goal``.
-        planner: makes the commands.
+        driver: makes the commands.
     """
 
-    def __init__(self, ros, robot, goal, planner):
-        self.ros, self.goal, self.planner, self.pose, self.scan = ros, goal, planner, None, None
-        self.arrived, self.commands, self.fixed = threading.Event(), 0, goal is not None
+    def __init__(self, ros, robot, driver):
+        self.driver = driver
         self.out = roslibpy.Topic(ros, f"/{robot}/cmd_vel", "geometry_msgs/Twist", queue_size=1)
         self.out.advertise()
         roslibpy.Topic(ros, f"/{robot}/goal", "geometry_msgs/PoseStamped").subscribe(self.take_goal)
@@ -40,40 +38,23 @@ class NavigationNode:
         roslibpy.Topic(ros, f"/{robot}/scan", "sensor_msgs/LaserScan").subscribe(self.take_scan)
 
     def take_goal(self, message):
-        """Drive to another goal, if none was given at the start."""
-        if self.fixed:
-            return
-        place = message["pose"]["position"]
-        self.goal = place["x"], place["y"]
-        self.arrived.clear()
+        """Drive to another goal."""
+        self.driver.take_goal(message["pose"]["position"]["x"], message["pose"]["position"]["y"])
 
     def take_odometry(self, message):
-        """Keep the pose; without an odometry sensor, the frame odom is the map."""
+        """Take the pose; without an odometry sensor, the frame odom is the map."""
         place, turn = message["pose"]["pose"]["position"], message["pose"]["pose"]["orientation"]
-        pose = place["x"], place["y"], 2.0 * math.atan2(turn["z"], turn["w"])
-        self.pose = stamp(message), pose
-        self.answer()
+        self.send(self.driver.take_pose(stamp(message), place["x"], place["y"], heading_of(turn["z"], turn["w"])))
 
     def take_scan(self, message):
-        """Keep the scan until it is answered."""
-        self.scan = message
-        self.answer()
-
-    def answer(self):
-        """Answer the scan with a command."""
-        message = self.scan
-        if message is None or self.pose is None or self.goal is None or self.pose[0] < stamp(message):
-            return
-        self.scan = None
-        goal = in_robot_frame(self.pose[1], self.goal)
-        if math.hypot(*goal) < 0.2:
-            self.arrived.set()
+        """Take a scan."""
         ranges = [math.inf if one is None else one for one in message["ranges"]]  # JSON has no infinity
-        speed, turn = self.planner.command(ranges, message["angle_min"], message["angle_increment"], goal)
-        if self.arrived.is_set():
-            speed, turn = 0.0, 0.0
-        self.out.publish(roslibpy.Message({"linear": {"x": speed}, "angular": {"z": turn}}))
-        self.commands += 1
+        self.send(self.driver.take_scan(stamp(message), ranges, message["angle_min"], message["angle_increment"]))
+
+    def send(self, command):
+        """Send a command, if there is one."""
+        if command is not None:
+            self.out.publish(roslibpy.Message({"linear": {"x": command[0]}, "angular": {"z": command[1]}}))
 
 
 def stamp(message):
@@ -87,20 +68,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--port", type=int, default=9090)
-    parser.add_argument("--robot", default="robot", help="name space of the robot")
-    parser.add_argument("--goal", help="goal x,y in the map [m] (default: as the simulation sends)")
-    parser.add_argument("--seconds", type=float, default=3600.0, help="longest real time")
+    add_options(parser)
     options = parser.parse_args()
     ros = roslibpy.Ros(options.host, options.port)
-    ros.run(timeout=30)
+    ros.run(timeout=60)
     gone = threading.Event()
     ros.on("close", lambda *_: gone.set())
-    goal = tuple(float(one) for one in options.goal.split(",")) if options.goal else None
-    node = NavigationNode(ros, options.robot, goal, LocalPlanner())
-    for _ in range(round(10 * options.seconds)):
-        if gone.wait(0.1) or (node.fixed and node.arrived.is_set()):
-            break
-    print(f"{'arrived' if node.arrived.is_set() else 'stopped'} after {node.commands} commands")
+    driver = ScanDriver(goal_of(options))
+    NavigationNode(ros, options.robot, driver)
+    while not gone.wait(0.1) and not driver.done:
+        pass
+    print(driver.summary())
     ros.terminate()
 
 

@@ -1,7 +1,8 @@
 """A fake NAOqi robot with the real ``qi``: service directory, memory that it rewrites in each cycle, and motion.
 
-    python naoqi_robot.py PORT
+    python naoqi_robot.py PORT [still|idle]
 
+With "idle", it has no program of its own; with "still", no motion either.
 Its own sensors see nothing (3 m, 0). A program on the robot, over a connection of its own, drives forward while the
 front laser of the memory is free for 1 m, and stops otherwise. A line on its input asks for one line of JSON on its
 output: reads of the program, those with virtual values, the cycle, and the least distance that it has seen.
@@ -48,13 +49,25 @@ class Motion:
     """ALMotion of a base that follows at once."""
 
     def __init__(self):
-        self.velocity = [0.0, 0.0, 0.0]
+        self.velocity, self.pose, self.moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], time.monotonic()
 
     def move(self, x, y, turn):
+        self.getRobotPosition(True)
         self.velocity = [x, y, turn]
+
+    def stopMove(self):  # noqa: N802
+        self.move(0.0, 0.0, 0.0)
 
     def getRobotVelocity(self):  # noqa: N802
         return self.velocity
+
+    def getRobotPosition(self, use_sensors):  # noqa: N802
+        seconds, self.moment = time.monotonic() - self.moment, time.monotonic()
+        (x, y, heading), (forward, left, turn) = self.pose, self.velocity
+        cos, sin = math.cos(heading), math.sin(heading)
+        x, y = x + seconds * (cos * forward - sin * left), y + seconds * (sin * forward + cos * left)
+        self.pose = [x, y, heading + seconds * turn]
+        return self.pose
 
 
 class Program:
@@ -101,7 +114,7 @@ def main():
         session.registerService("ALMotion", motion)
     threading.Thread(target=rewrite, args=(memory,), daemon=True).start()
     program = Program(url, memory)
-    if "still" not in sys.argv:
+    if len(sys.argv) == 2:
         threading.Thread(target=program.run, daemon=True).start()
     print("ready", flush=True, file=out)
     for _ in sys.stdin:

@@ -1,21 +1,33 @@
-"""The reference navigation node of the examples: its planner, and the node as a process over rosbridge."""
+"""The reference navigation node of the examples: its planner, its driver, and its programs over each transport."""
 
+from __future__ import annotations
+
+import functools
+import json
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from bridge_runs import serve
+from bridge_runs import MemoryTransport, Running
+from navigation_runs import EXAMPLES, navigate
+from partner_runs import MESH, NETWORK
+from test_naoqi import FakeRobot
 
+from crowdbot.bridges import BridgeClock, run_bridge
+from crowdbot.bridges.naoqi import NaoqiBridge
 from crowdbot.trials import load_trial
 
-FOLDER = Path(__file__).parents[2] / "examples" / "robot_bridge"
-sys.path.insert(0, str(FOLDER))
-from local_planner import CELL, HALF, LocalPlanner  # noqa: E402
+sys.path.insert(0, str(EXAMPLES))
+from local_planner import CELL, LocalPlanner
+from scan_driver import ScanDriver, heading_of
 
+HERE = Path(__file__).parent
 ANGLES = np.linspace(-math.pi, math.pi, 361)
+FREE = [math.inf] * 361
 
 
 def scan_of(points):
@@ -27,11 +39,28 @@ def scan_of(points):
     return ranges
 
 
+@pytest.fixture
+def local(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+
+
 @pytest.mark.parametrize(("goal", "sign"), [((5.0, 0.0), 0), ((2.0, 2.0), 1), ((2.0, -2.0), -1)])
 def test_without_obstacles_it_drives_to_the_goal(goal, sign):
-    speed, turn = LocalPlanner().command(np.full(361, np.inf), -math.pi, math.radians(1), goal)
+    speed, turn = LocalPlanner().command(FREE, -math.pi, math.radians(1), goal)
     assert speed > 0.2
     assert np.sign(round(turn, 1)) == sign
+
+
+def test_clearance_is_the_distance_to_the_nearest_point():
+    points = [(1.0, 0.2), (1.3, -0.4), (-0.5, 0.9)]
+    found = LocalPlanner().clearance(scan_of(points), -math.pi, math.radians(1))
+    cells = [(round(x / CELL), round(y / CELL)) for x, y in points]
+    for x in range(-20, 31):
+        for y in range(-20, 31):
+            distance = CELL * min(math.dist((x, y), cell) for cell in cells)
+            assert found.get((x, y), math.inf) == (pytest.approx(distance) if distance <= 1.0 else math.inf)
+    assert LocalPlanner().clearance([math.nan, 0.0, math.inf, 9.0], 0.0, 0.1) == {}
 
 
 def test_the_path_goes_around_a_wall():
@@ -41,7 +70,7 @@ def test_the_path_goes_around_a_wall():
     path = planner.path(clearance, (2.8, 0.0))
     assert path[-1] == (28, 0)
     assert min(y for _, y in path) * CELL < -1.0
-    assert all(clearance[x + HALF, y + HALF] >= planner.radius - CELL for x, y in path[3:])
+    assert all(clearance.get(cell, math.inf) >= planner.radius for cell in path[3:])
 
 
 def test_a_closed_ring_has_no_path():
@@ -51,16 +80,113 @@ def test_a_closed_ring_has_no_path():
     assert turn != 0.0
 
 
-def test_the_node_drives_a_robot_through_people_over_rosbridge(tmp_path):
-    trial = load_trial("frontal", duration=40.0)
-    running, server = serve(trial, rate=2.0, out=tmp_path)
+def test_a_scan_is_answered_once_and_when_its_pose_is_known():
+    driver = ScanDriver()
+    assert driver.take_pose(5, 0.0, 0.0, 0.0) is None
+    assert driver.take_scan(5, FREE, -math.pi, math.radians(1)) is None  # no goal
+    driver.take_goal(3.0, 0.0)
+    assert driver.take_scan(10, FREE, -math.pi, math.radians(1)) is None  # the pose is older
+    assert driver.take_pose(10, 0.0, 0.0, math.pi / 2)[1] < 0.0  # the goal is to the right
+    assert driver.take_pose(11, 0.0, 0.0, 0.0) is None
+    assert driver.take_scan(11, FREE, -math.pi, math.radians(1))[0] == pytest.approx(0.8)
+    assert (driver.commands, driver.arrived) == (2, False)
+
+
+def test_a_robot_at_its_goal_stays_there_until_another_one_comes():
+    driver = ScanDriver()
+    driver.take_goal(1.0, 0.0)
+    driver.take_scan(1, FREE, -math.pi, math.radians(1))
+    assert driver.take_pose(1, 0.9, 0.1, 0.0) == (0.0, 0.0)
+    driver.take_scan(2, FREE, -math.pi, math.radians(1))
+    assert driver.take_pose(2, 0.7, 0.1, 0.0) == (0.0, 0.0)
+    assert (driver.arrived, driver.done, driver.summary()) == (True, False, "arrived after 2 commands")
+    driver.take_goal(3.0, 0.0)
+    driver.take_scan(3, FREE, -math.pi, math.radians(1))
+    assert driver.take_pose(3, 0.7, 0.1, 0.0)[0] > 0.0
+    fixed = ScanDriver((1.0, 0.0))
+    fixed.take_goal(9.0, 0.0)
+    fixed.take_scan(1, FREE, -math.pi, math.radians(1))
+    assert fixed.take_pose(1, 1.0, 0.0, 0.0) == (0.0, 0.0)
+    assert fixed.done
+
+
+class Driver(MemoryTransport):
+    """The driver of the nodes in memory."""
+
+    def start(self, interface, inbox):
+        super().start(interface, inbox)
+        goal = interface.trial.robots[0].goal
+        self.driver = ScanDriver((goal.x, goal.y))
+
+    def publish(self, messages):
+        for one in messages:
+            command, message = None, one.message
+            if one.topic == "/robot/odom":
+                place, turn = message.pose.pose.position, message.pose.pose.orientation
+                command = self.driver.take_pose(one.nanoseconds, place.x, place.y, heading_of(turn.z, turn.w))
+            elif one.topic == "/robot/scan":
+                ranges = message.ranges.tolist()
+                command = self.driver.take_scan(one.nanoseconds, ranges, message.angle_min, message.angle_increment)
+            if command is not None:
+                twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
+                self.inbox.receive("/robot/cmd_vel", twist, "memory")
+
+
+@functools.cache
+def reference():
+    """Return the metrics of the run in which nothing lies between the driver and the simulation."""
+    done = run_bridge(load_trial(str(EXAMPLES / "pillar.xml")), [Driver()], 0, None, BridgeClock("free"))
+    assert done.outcome == "success"
+    return done.metrics
+
+
+def check(seen):
+    """It has driven around the pillar to the goal, on the way of the reference, and touched nothing."""
+    assert (seen["outcome"], seen["collision"]) == ("success", 0.0), seen
+    assert seen["path_length"] == reference()["path_length"] > 4.1
+    assert "commands" in seen["printed"]
+
+
+@pytest.mark.usefixtures("local")
+@pytest.mark.parametrize(
+    ("transport", "program"),
+    [
+        ("rosbridge", "navigate_rosbridge.py"),
+        ("ros2", "navigate_ros2.py"),
+        ("foxglove", "navigate_foxglove.py"),
+        pytest.param("rosbridge-client", "navigate_rosbridge.py", marks=pytest.mark.sweep),
+    ],
+)
+def test_a_node_drives_a_robot_around_a_pillar_to_its_goal(transport, program, tmp_path):
+    check(navigate(transport, program, tmp_path))
+
+
+@pytest.mark.usefixtures("ros1")
+def test_a_node_of_ros1_drives_a_robot_around_a_pillar_to_its_goal(tmp_path):
+    check(navigate("ros1", "navigate_ros1.py", tmp_path))
+
+
+@pytest.mark.sweep
+@pytest.mark.parametrize(
+    ("transport", "program"),
+    [("rosless", "navigate_ros2.py"), ("rosless", "navigate_rosless.py"), ("ros2", "navigate_rosless.py")],
+)
+def test_a_node_without_ros_and_one_of_rclpy_drive_to_the_goal(transport, program, namespaces, tmp_path):
+    words = [sys.executable, str(HERE / "navigation_runs.py"), transport, program, str(tmp_path)]
+    command = [namespaces, "--net", "bash", "-eu", "-c", f"{NETWORK}\nexec {' '.join(words)}"]
+    done = subprocess.run(command, env={**os.environ, **MESH}, capture_output=True, text=True, timeout=200)
+    assert done.returncode == 0, done.stderr
+    check(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_a_program_on_a_pepper_drives_around_a_virtual_person_to_its_goal(tmp_path):
+    trial = load_trial(str(EXAMPLES / "pepper.xml"))
     goal = trial.robots[0].goal
-    command = [sys.executable, FOLDER / "navigate_rosbridge.py", "--port", str(server.port or 0)]
-    with running:
-        command[-1] = str(server.port)
-        done = subprocess.run(
-            [*command, "--goal", f"{goal.x},{goal.y}"], capture_output=True, text=True, timeout=100, check=True
-        )
-        summary = running.end()
-    assert summary.outcome == "success", (done.stdout, summary.metrics)
-    assert "commands" in done.stdout
+    with FakeRobot("idle") as robot, Running(trial, [NaoqiBridge(robot.url)], out=tmp_path) as running:
+        words = [sys.executable, str(EXAMPLES / "navigate_naoqi.py"), robot.url, "--goal", f"{goal.x},{goal.y}"]
+        process = subprocess.run(words, capture_output=True, text=True, timeout=100)
+        done = running.end(100.0)
+    assert process.returncode == 0, process.stderr
+    assert "arrived after" in process.stdout
+    assert (done.outcome, done.metrics["collision"]) == ("success", 0.0)
+    assert done.metrics["path_length"] > 2.6
