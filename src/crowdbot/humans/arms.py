@@ -25,7 +25,7 @@ CHEST, HEAD = 3, 5
 """Bones."""
 
 
-@kernel
+@kernel(inline=True)
 def _arm_angles(g: Gaits, i: int, side: int, vigour: float, style: Floats) -> Angles:
     """Return shoulder flexion and abduction, elbow flexion, inward turn of the upper arm, and hand twist [rad].
 
@@ -57,7 +57,7 @@ def _arm_angles(g: Gaits, i: int, side: int, vigour: float, style: Floats) -> An
     return flexion, abduction, elbow, inward, twist
 
 
-@kernel
+@kernel(inline=True)
 def _arm_direction(flexion: float, abduction: float, inward: float, side: float, R: Floats) -> tuple[Vector, Vector]:
     """Return upper arm direction and elbow hinge in world coordinates; ``side`` is 1 for left, -1 for right."""
     sf, cf = math.sin(flexion), math.cos(flexion)
@@ -127,7 +127,7 @@ def _mix(a: Vector, b: Vector, share: float) -> Vector:
     return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
-@kernel
+@kernel(inline=True)
 def pose_arm(
     g: Gaits, i: int, side: int, vigour: float, lengths: Floats, frame: Floats, style: Floats, seat: Floats,
     R: Floats, P: Floats,
@@ -160,7 +160,7 @@ def pose_arm(
     _pose_fingers(g, i, side, lower, hinge, frame, R)
 
 
-@kernel
+@kernel(inline=True)
 def _pose_fingers(g: Gaits, i: int, side: int, lower: Vector, hinge: Vector, frame: Floats, R: Floats) -> None:
     """Write the rotations of fingers and thumb for a hand with these directions."""
     sign = 1.0 - 2.0 * side

@@ -88,7 +88,7 @@ def _neutral_foot(g: Gaits, i: int, f: int, x: float, y: float, yaw: float, styl
     return x - side * width * math.sin(yaw), y + side * width * math.cos(yaw), yaw + side * style[3]
 
 
-@kernel
+@kernel(inline=True)
 def _plan_landing(g: Gaits, i: int, f: int, left: float, ahead: float, style: Floats, leg: float) -> None:
     """Set the landing position of foot ``f`` in ``left`` [s]: below the body position ``ahead`` [s] after landing."""
     tau = left + ahead
@@ -106,7 +106,7 @@ def _plan_landing(g: Gaits, i: int, f: int, left: float, ahead: float, style: Fl
     g.goal[i, f, 2] = toward
 
 
-@kernel
+@kernel(inline=True)
 def _placement_error(g: Gaits, i: int, f: int, style: Floats, leg: float) -> float:
     """Return the placement error of foot ``f`` for a standing body: 1 is 0.12 m or 35 degrees."""
     x, y, yaw = _neutral_foot(g, i, f, g.position[i, 0], g.position[i, 1], g.yaw[i], style, leg)
@@ -120,7 +120,7 @@ def _row(table: Floats, i: int, f: int) -> Vector:
     return table[i, f, 0], table[i, f, 1], table[i, f, 2]
 
 
-@kernel
+@kernel(inline=True)
 def foot_now(g: Gaits, i: int, f: int, time: float, support: float, vigour: float, size: Floats) -> Foot:
     """Return the current foot ``f``; cycle time [s], duty factor and vigour are those of :func:`cycle`."""
     psi = (g.phase[i] + 0.5 * f) % 1.0
@@ -137,7 +137,7 @@ def foot_now(g: Gaits, i: int, f: int, time: float, support: float, vigour: floa
     )  # fmt: skip
 
 
-@kernel
+@kernel(inline=True)
 def _raise_heel(dx: float, dy: float, foot: Vector, found: Foot, size: Floats) -> Foot:
     """Return a planted foot behind the body with its heel raised about its ball until the leg reaches it."""
     c, s = math.cos(foot[2]), math.sin(foot[2])
@@ -235,7 +235,7 @@ def _pivot(g: Gaits, i: int, f: int, at: float) -> None:
     _write((x - at * math.cos(yaw), y - at * math.sin(yaw), yaw), g.foot, i, f)
 
 
-@kernel
+@kernel(inline=True)
 def _cadence_factor(g: Gaits, i: int, leg: float) -> float:
     """Return the cadence factor for feet that lag behind the position or heading of the body."""
     most, sum_, twist = 0.0, 0.0, 0.0
@@ -250,7 +250,7 @@ def _cadence_factor(g: Gaits, i: int, leg: float) -> float:
     return 1.0 + 16.0 * min(max(stretch - 0.72, 0.0), 0.25) + 7.0 * min(max(twist - 0.6, 0.0), 0.7)
 
 
-@kernel
+@kernel(inline=True)
 def _move_feet(g: Gaits, i: int, dt: float, style: Floats, size: Floats) -> None:
     leg = size[5]
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
@@ -322,7 +322,7 @@ def advance(
                 _move_feet(g, i, h, style[i], size[i])
 
 
-@kernel
+@kernel(inline=True)
 def _smooth_motion(g: Gaits, i: int, vx: float, vy: float, heading: float, h: float, keep: float, lag: float) -> None:
     """Advance smoothed velocity, trunk heading and activity blend by ``h`` [s]; ``keep`` and ``lag`` are the factors
     of the filters in this time."""

@@ -45,7 +45,7 @@ class Posture(NamedTuple):
     position: Floats
 
 
-@kernel
+@kernel(inline=True)
 def _pose_trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: float, R: Floats) -> None:
     """Write the rotations of pelvis, spine, neck, head and collar bones (bones 0 to 6 and 13)."""
     wave = 2.0 * math.pi * g.phase[i]
@@ -115,7 +115,7 @@ def _leg_limit(hip: Vector, foot: Foot, x: float, y: float, longest: float) -> f
     return float(foot[2] + math.sqrt(max(longest**2 - dx * dx - dy * dy, (0.5 * longest) ** 2)) - hip[2])
 
 
-@kernel
+@kernel(inline=True)
 def _walking_height(phase: float, speed: float, way: float, vigour: float, length: float, size: Floats) -> float:
     """Return the height [m] of the hips in walking: a wave above the height that the leading leg permits.
 
@@ -151,7 +151,7 @@ def bend_leg(
     write_frame(frame, 2 + f, rotate(hinge, at_ankle, axis), hinge, R, bone + 1)
 
 
-@kernel
+@kernel(inline=True)
 def _pose_leg(
     hip: Vector, foot: Foot, thigh: float, shank: float, trunk: float, frame: Floats, f: int, R: Floats, P: Floats
 ) -> None:
@@ -174,7 +174,7 @@ def place_chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P
             P[b, r] = P[p, r] + R[p, r, 0] * x + R[p, r, 1] * y + R[p, r, 2] * z
 
 
-@kernel
+@kernel(inline=True)
 def _pose_one(
     g: Gaits, i: int, lengths: Floats, head: Floats, frame: Floats, style: Floats, size: Floats, seat: Floats,
     parents: Ints, R: Floats, P: Floats,

@@ -56,14 +56,14 @@ TIPPED = math.radians(35.0)
 """Pitch of the toes at toe-off [rad], at a relative speed of 0.9."""
 
 
-@kernel
+@kernel(inline=True)
 def smooth(x: float) -> float:
     """Return the smooth step from 0 to 1."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
-@kernel
+@kernel(inline=True)
 def wrap_angle(angle: float) -> float:
     """Return the angle [rad] in -pi to pi."""
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
@@ -97,7 +97,7 @@ def cycle(vx: float, vy: float, yaw: float, leg: float, longer: float) -> tuple[
     return time, support, LEAD + (0.5 - LEAD) * away, strong * strong / (strong + 0.05)
 
 
-@kernel
+@kernel(inline=True)
 def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
     """Return the distance [m] of the ankle of a pitched foot ahead of and above the ankle's point on the floor.
 
@@ -112,7 +112,7 @@ def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
     return x + tip + (ball_x - tip) * c + ball_z * s, z + (tip - ball_x) * s + ball_z * c
 
 
-@kernel
+@kernel(inline=True)
 def lowest(pitch: float, toes: float, size: Floats) -> float:
     """Return the height [m] of the lowest point of the sole above the ankle (negative) for these pitches [rad]."""
     sn, c = math.sin(pitch), math.cos(pitch)
@@ -122,7 +122,7 @@ def lowest(pitch: float, toes: float, size: Floats) -> float:
     return float(min(heel, ball - size[2], tip))
 
 
-@kernel
+@kernel(inline=True)
 def planted_foot(u: float, flat: Vector, strike: float, vigour: float, size: Floats) -> Foot:
     """Return ankle x, y, z [m], yaw, pitch and toe pitch [rad] of a planted foot.
 
@@ -142,7 +142,7 @@ def planted_foot(u: float, flat: Vector, strike: float, vigour: float, size: Flo
     return flat[0] + ahead * math.cos(flat[2]), flat[1] + ahead * math.sin(flat[2]), above, flat[2], pitch, toes
 
 
-@kernel
+@kernel(inline=True)
 def swinging_foot(
     u: float, lift: Foot, goal: Vector, strike: float, push_x: float, push_y: float, size: Floats
 ) -> Foot:
