@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, smooth, wrap_angle
+from .stride import (
+    LANDED,
+    STRIKE,
+    TIPPING,
+    Foot,
+    ankle_over,
+    cycle,
+    planted_foot,
+    smooth,
+    swinging_foot,
+    wrap_angle,
+)
+from .vectors import Vector
 
 __all__ = ["Gaits", "advance", "foot_now"]
 
@@ -67,20 +79,16 @@ class Gaits(NamedTuple):
     wish: Floats
 
 
-@kernel
-def _neutral_foot(
-    g: Gaits, i: int, f: int, x: float, y: float, yaw: float, style: Floats, leg: float, out: Floats
-) -> None:
-    """Write the neutral x, y, yaw of foot ``f`` for a body at x, y, yaw: half the stance width aside, toes out."""
+@kernel(inline=True)
+def _neutral_foot(g: Gaits, i: int, f: int, x: float, y: float, yaw: float, style: Floats, leg: float) -> Vector:
+    """Return the neutral x, y, yaw of foot ``f`` for a body at x, y, yaw: half the stance width aside, toes out."""
     side = 1.0 - 2.0 * f
     pace = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
     width = leg * (0.1 - 0.045 * min(pace, 1.0)) * style[7]
-    out[0] = x - side * width * math.sin(yaw)
-    out[1] = y + side * width * math.cos(yaw)
-    out[2] = yaw + side * style[3]
+    return x - side * width * math.sin(yaw), y + side * width * math.cos(yaw), yaw + side * style[3]
 
 
-@kernel
+@kernel(inline=True)
 def _plan_landing(g: Gaits, i: int, f: int, left: float, ahead: float, style: Floats, leg: float) -> None:
     """Set the landing position of foot ``f`` in ``left`` [s]: below the body position ``ahead`` [s] after landing."""
     tau = left + ahead
@@ -89,51 +97,55 @@ def _plan_landing(g: Gaits, i: int, f: int, left: float, ahead: float, style: Fl
     x = g.position[i, 0] + tau * (c * g.drift[i, 0] - s * g.drift[i, 1])
     y = g.position[i, 1] + tau * (s * g.drift[i, 0] + c * g.drift[i, 1])
     yaw = g.yaw[i] + min(max(g.turn[i] * tau, -0.7), 0.7)
-    goal = g.goal[i, f]
-    _neutral_foot(g, i, f, x, y, yaw, style, leg, goal)
-    other = g.foot[i, 1 - f]
+    x, y, toward = _neutral_foot(g, i, f, x, y, yaw, style, leg)
     side = 1.0 - 2.0 * f
-    aside = side * (-math.sin(yaw) * (goal[0] - other[0]) + math.cos(yaw) * (goal[1] - other[1]))
+    aside = side * (-math.sin(yaw) * (x - g.foot[i, 1 - f, 0]) + math.cos(yaw) * (y - g.foot[i, 1 - f, 1]))
     more = max(0.08 * leg - aside, 0.0)  # feet do not cross
-    goal[0] -= side * more * math.sin(yaw)
-    goal[1] += side * more * math.cos(yaw)
+    g.goal[i, f, 0] = x - side * more * math.sin(yaw)
+    g.goal[i, f, 1] = y + side * more * math.cos(yaw)
+    g.goal[i, f, 2] = toward
 
 
-@kernel
+@kernel(inline=True)
 def _placement_error(g: Gaits, i: int, f: int, style: Floats, leg: float) -> float:
     """Return the placement error of foot ``f`` for a standing body: 1 is 0.12 m or 35 degrees."""
-    home = np.empty(3)
-    _neutral_foot(g, i, f, g.position[i, 0], g.position[i, 1], g.yaw[i], style, leg, home)
-    away = math.sqrt((g.foot[i, f, 0] - home[0]) ** 2 + (g.foot[i, f, 1] - home[1]) ** 2)
-    return float(max(away / 0.12, abs(wrap_angle(g.foot[i, f, 2] - home[2])) / 0.61))
+    x, y, yaw = _neutral_foot(g, i, f, g.position[i, 0], g.position[i, 1], g.yaw[i], style, leg)
+    away = math.sqrt((g.foot[i, f, 0] - x) ** 2 + (g.foot[i, f, 1] - y) ** 2)
+    return float(max(away / 0.12, abs(wrap_angle(g.foot[i, f, 2] - yaw)) / 0.61))
 
 
-@kernel
-def foot_now(g: Gaits, i: int, f: int, style: Floats, size: Floats, out: Floats) -> None:
-    """Write the current ankle x, y, z [m], yaw, pitch and toe pitch [rad] of foot ``f``."""
-    time, support, _, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], size[5], style[1])
+@kernel(inline=True)
+def _row(table: Floats, i: int, f: int) -> Vector:
+    """Return x, y and yaw of foot ``f`` in a table ``[N, 2, 3]``."""
+    return table[i, f, 0], table[i, f, 1], table[i, f, 2]
+
+
+@kernel(inline=True)
+def foot_now(g: Gaits, i: int, f: int, time: float, support: float, vigour: float, size: Floats) -> Foot:
+    """Return the current foot ``f``; cycle time [s], duty factor and vigour are those of :func:`cycle`."""
     psi = (g.phase[i] + 0.5 * f) % 1.0
-    planted = g.planted[i, f] > 0.0
-    u = psi / support if planted else (psi - support) / (1.0 - support)
+    if g.planted[i, f] > 0.0:
+        flat = _row(g.foot, i, f)
+        found = planted_foot(psi / support, flat, g.strike[i, f], vigour, size)
+        return _raise_heel(g.position[i, 0] - flat[0], g.position[i, 1] - flat[1], flat, found, size)
+    lift = g.lift
+    at = lift[i, f, 0], lift[i, f, 1], lift[i, f, 2], lift[i, f, 3], lift[i, f, 4], lift[i, f, 5]
     swing = PUSH_SPEED * (1.0 - support) * time
-    foot = g.foot[i, f]
-    foot_pose(
-        u, planted, foot, g.lift[i, f], g.goal[i, f], g.strike[i, f], STRIKE * vigour, vigour, swing * g.drift[i, 0],
-        swing * g.drift[i, 1], size, out,
+    return swinging_foot(
+        (psi - support) / (1.0 - support), at, _row(g.goal, i, f), STRIKE * vigour, swing * g.drift[i, 0],
+        swing * g.drift[i, 1], size,
     )  # fmt: skip
-    if planted:
-        _raise_heel(g.position[i, 0] - foot[0], g.position[i, 1] - foot[1], foot, size, out)
 
 
-@kernel
-def _raise_heel(dx: float, dy: float, foot: Floats, size: Floats, out: Floats) -> None:
-    """Raise the heel of a planted foot behind the body about its ball until the leg reaches it."""
+@kernel(inline=True)
+def _raise_heel(dx: float, dy: float, foot: Vector, found: Foot, size: Floats) -> Foot:
+    """Return a planted foot behind the body with its heel raised about its ball until the leg reaches it."""
     c, s = math.cos(foot[2]), math.sin(foot[2])
     ahead, aside = dx * c + dy * s, dy * c - dx * s
-    low, high = max(out[4], 0.0), STEEPEST
-    if ahead < -0.08 or low >= high or _reach_excess(ahead, aside, low, out[5], size) <= 0.0:
-        return
-    toes = max(out[5], 0.0)
+    low, high = max(found[4], 0.0), STEEPEST
+    if ahead < -0.08 or low >= high or _reach_excess(ahead, aside, low, found[5], size) <= 0.0:
+        return found
+    toes = max(found[5], 0.0)
     for _ in range(10):
         middle = 0.5 * (low + high)
         if _reach_excess(ahead, aside, middle, toes, size) > 0.0:
@@ -141,15 +153,28 @@ def _raise_heel(dx: float, dy: float, foot: Floats, size: Floats, out: Floats) -
         else:
             high = middle
     x, z = ankle_over(high, toes, size)
-    out[0], out[1], out[2], out[4], out[5] = foot[0] + x * c, foot[1] + x * s, z, high, toes
+    return foot[0] + x * c, foot[1] + x * s, z, found[3], high, toes
 
 
-@kernel
+@kernel(inline=True)
 def _reach_excess(ahead: float, aside: float, pitch: float, toes: float, size: Floats) -> float:
     """Return the distance [m] by which the ankle of a pitched foot exceeds the reach of a hip at walking height."""
     x, z = ankle_over(pitch, toes, size)
     far = (ahead - x) ** 2 + 0.8 * aside**2 + (HIP_HEIGHT * size[5] - z) ** 2
     return float(math.sqrt(far) - 0.99 * size[6])
+
+
+@kernel(inline=True)
+def _write(values: Vector, table: Floats, i: int, f: int) -> None:
+    """Write x, y and yaw of foot ``f`` to a table ``[N, 2, 3]``."""
+    table[i, f, 0], table[i, f, 1], table[i, f, 2] = values
+
+
+@kernel(inline=True)
+def _lift_off(values: Foot, lift: Floats, i: int, f: int) -> None:
+    """Write the foot at toe-off."""
+    for k in range(6):
+        lift[i, f, k] = values[k]
 
 
 @kernel
@@ -167,11 +192,12 @@ def _reset_feet(g: Gaits, i: int, style: Floats, size: Floats) -> None:
         gone = time * max(psi - support, 0.0) if walking else 0.0
         x = g.position[i, 0] + g.drift[i, 0] * (ahead - gone)
         y = g.position[i, 1] + g.drift[i, 1] * (ahead - gone)
-        _neutral_foot(g, i, f, x, y, g.yaw[i], style, leg, g.foot[i, f])
-        g.goal[i, f] = g.foot[i, f]
+        flat = _neutral_foot(g, i, f, x, y, g.yaw[i], style, leg)
+        _write(flat, g.foot, i, f)
+        _write(flat, g.goal, i, f)
         g.strike[i, f] = STRIKE * vigour if walking else 0.0
         g.planted[i, f] = 1.0
-        foot_pose(1.0, True, g.foot[i, f], g.lift[i, f], g.goal[i, f], 0.0, 0.0, vigour, 0.0, 0.0, size, g.lift[i, f])
+        _lift_off(planted_foot(1.0, flat, 0.0, vigour, size), g.lift, i, f)
         if walking and psi > support:
             g.planted[i, f] = 0.0
     for f in range(2):
@@ -199,17 +225,17 @@ def _start_stepping(g: Gaits, i: int, support: float, style: Floats, leg: float)
 @kernel
 def _pivot(g: Gaits, i: int, f: int, at: float) -> None:
     """Pivot a planted foot about the point ``at`` [m] ahead if the trunk has turned beyond the twist limit."""
-    foot = g.foot[i, f]
-    wrong = wrap_angle(g.yaw[i] - foot[2])
+    x, y, yaw = _row(g.foot, i, f)
+    wrong = wrap_angle(g.yaw[i] - yaw)
     turn = wrong - TWIST if wrong > TWIST else min(wrong + TWIST, 0.0)
     if turn == 0.0:
         return
-    x, y = foot[0] + at * math.cos(foot[2]), foot[1] + at * math.sin(foot[2])
-    foot[2] = wrap_angle(foot[2] + turn)
-    foot[0], foot[1] = x - at * math.cos(foot[2]), y - at * math.sin(foot[2])
+    x, y = x + at * math.cos(yaw), y + at * math.sin(yaw)
+    yaw = wrap_angle(yaw + turn)
+    _write((x - at * math.cos(yaw), y - at * math.sin(yaw), yaw), g.foot, i, f)
 
 
-@kernel
+@kernel(inline=True)
 def _cadence_factor(g: Gaits, i: int, leg: float) -> float:
     """Return the cadence factor for feet that lag behind the position or heading of the body."""
     most, sum_, twist = 0.0, 0.0, 0.0
@@ -224,13 +250,15 @@ def _cadence_factor(g: Gaits, i: int, leg: float) -> float:
     return 1.0 + 16.0 * min(max(stretch - 0.72, 0.0), 0.25) + 7.0 * min(max(twist - 0.6, 0.0), 0.7)
 
 
-@kernel
+@kernel(inline=True)
 def _move_feet(g: Gaits, i: int, dt: float, style: Floats, size: Floats) -> None:
     leg = size[5]
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
     time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], leg, style[1])
     walking = speed > CREEP
-    wrong = max(_placement_error(g, i, 0, style, leg), _placement_error(g, i, 1, style, leg))
+    wrong = 0.0
+    if not walking or g.moving[i] == 0.0:  # nothing else needs it
+        wrong = max(_placement_error(g, i, 0, style, leg), _placement_error(g, i, 1, style, leg))
     if g.moving[i] == 0.0:
         if not walking and wrong < 1.0:
             return
@@ -252,10 +280,10 @@ def _move_feet(g: Gaits, i: int, dt: float, style: Floats, size: Floats) -> None
                 g.strike[i, f] = 0.0
                 done += 1
             elif g.planted[i, 1 - f] > 0.0 and psi < 0.5 * (1.0 + support):
-                foot_now(g, i, f, style, size, g.lift[i, f])
+                _lift_off(foot_now(g, i, f, time, support, vigour, size), g.lift, i, f)
                 g.planted[i, f] = 0.0
         elif psi < 0.5:
-            g.foot[i, f] = g.goal[i, f]
+            _write(_row(g.goal, i, f), g.foot, i, f)
             g.planted[i, f] = 1.0
             g.strike[i, f] = STRIKE * vigour
             continue
@@ -272,6 +300,7 @@ def advance(
     """Move all people to ``position [N, 2]`` [m] in ``dt`` [s], in place; ``fresh`` people are repositioned."""
     parts = max(1, math.ceil(dt / STEP - 1e-9))
     h = dt / parts
+    keep, lag = math.exp(-h / FILTER), math.exp(-h / TURN_LAG)
     for i in range(len(fresh)):
         x0, y0 = g.position[i, 0], g.position[i, 1]
         far = math.sqrt((position[i, 0] - x0) ** 2 + (position[i, 1] - y0) ** 2)
@@ -285,7 +314,7 @@ def advance(
             share = (part + 1) / parts
             g.position[i, 0] = x0 + share * (position[i, 0] - x0)
             g.position[i, 1] = y0 + share * (position[i, 1] - y0)
-            _smooth_motion(g, i, velocity[i], heading[i], h)
+            _smooth_motion(g, i, velocity[i, 0], velocity[i, 1], heading[i], h, keep, lag)
             if g.blend[i, SITTING] > 0.5:
                 g.drift[i, 0], g.drift[i, 1] = 0.0, 0.0
                 _reset_feet(g, i, style[i], size[i])
@@ -293,14 +322,14 @@ def advance(
                 _move_feet(g, i, h, style[i], size[i])
 
 
-@kernel
-def _smooth_motion(g: Gaits, i: int, velocity: Floats, heading: float, h: float) -> None:
-    """Advance smoothed velocity, trunk heading and activity blend by ``h`` [s]."""
-    keep = math.exp(-h / FILTER)
-    g.drift[i, 0] = velocity[0] + keep * (g.drift[i, 0] - velocity[0])
-    g.drift[i, 1] = velocity[1] + keep * (g.drift[i, 1] - velocity[1])
+@kernel(inline=True)
+def _smooth_motion(g: Gaits, i: int, vx: float, vy: float, heading: float, h: float, keep: float, lag: float) -> None:
+    """Advance smoothed velocity, trunk heading and activity blend by ``h`` [s]; ``keep`` and ``lag`` are the factors
+    of the filters in this time."""
+    g.drift[i, 0] = vx + keep * (g.drift[i, 0] - vx)
+    g.drift[i, 1] = vy + keep * (g.drift[i, 1] - vy)
     free = 1.0 - smooth(g.blend[i, SITTING])  # sitting people turn with the seat
-    rate = wrap_angle(heading - g.yaw[i]) * (1.0 - free * math.exp(-h / TURN_LAG)) / h
+    rate = wrap_angle(heading - g.yaw[i]) * (1.0 - free * lag) / h
     limit = TURN_LIMIT / max(free, 1e-6)
     rate = min(max(rate, -limit), limit)
     g.yaw[i] = wrap_angle(g.yaw[i] + rate * h)

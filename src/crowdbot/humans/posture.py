@@ -14,8 +14,8 @@ from .arms import pose_arm
 from .asset import shapes
 from .feet import Gaits, foot_now
 from .measures import Measures
-from .stride import STRIKE, ankle_over, cycle, smooth
-from .turns import about, align_frame, cross, turn_zxy, unit
+from .stride import STRIKE, Foot, ankle_over, cycle, smooth
+from .vectors import Vector, cross_product, normalize, rotate, write_frame, write_turn
 
 __all__ = ["Posture", "bend_leg", "place_chain", "posture"]
 
@@ -45,7 +45,7 @@ class Posture(NamedTuple):
     position: Floats
 
 
-@kernel
+@kernel(inline=True)
 def _pose_trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: float, R: Floats) -> None:
     """Write the rotations of pelvis, spine, neck, head and collar bones (bones 0 to 6 and 13)."""
     wave = 2.0 * math.pi * g.phase[i]
@@ -59,28 +59,32 @@ def _pose_trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recl
     for b in range(4):
         share = b / 3.0
         pitch = lean * (0.4 + 0.6 * share) - sit * max(0.12 * (1.0 - share), recline)
-        turn_zxy(g.yaw[i] + yaw + share * (chest - yaw), roll * (1.0 - share), pitch, R[b])
-    R[6], R[13] = R[3], R[3]
+        write_turn(g.yaw[i] + yaw + share * (chest - yaw), roll * (1.0 - share), pitch, R, b)
+    for r in range(3):
+        for c in range(3):
+            R[6, r, c] = R[13, r, c] = R[3, r, c]
     look = 0.14 * talk * math.sin(1.3 * beat) + 0.05 * math.sin(0.31 * beat) - 0.12 * phone
     nod = 0.06 * talk * math.sin(2.9 * beat) + 0.42 * text + 0.3 * lean
-    turn_zxy(g.yaw[i] + 0.5 * (look + chest), -0.06 * phone, 0.5 * lean + 0.4 * nod, R[4])
-    turn_zxy(g.yaw[i] + look, -0.15 * phone, nod, R[5])
+    write_turn(g.yaw[i] + 0.5 * (look + chest), -0.06 * phone, 0.5 * lean + 0.4 * nod, R, 4)
+    write_turn(g.yaw[i] + look, -0.15 * phone, nod, R, 5)
 
 
-@kernel
-def _hip_offset(head: Floats, b: int, R: Floats, out: Floats) -> None:
-    """Write the hip joint relative to the pelvis joint."""
-    for r in range(3):
-        out[r] = 0.0
-        for c in range(3):
-            out[r] += R[0, r, c] * (head[b, c] - head[0, c])
+@kernel(inline=True)
+def _hip_offset(head: Floats, b: int, R: Floats) -> Vector:
+    """Return the hip joint relative to the pelvis joint."""
+    x, y, z = head[b, 0] - head[0, 0], head[b, 1] - head[0, 1], head[b, 2] - head[0, 2]
+    return (
+        R[0, 0, 0] * x + R[0, 0, 1] * y + R[0, 0, 2] * z,
+        R[0, 1, 0] * x + R[0, 1, 1] * y + R[0, 1, 2] * z,
+        R[0, 2, 0] * x + R[0, 2, 1] * y + R[0, 2, 2] * z,
+    )
 
 
 @kernel
 def _seated_ankle(
-    g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats, out: Floats
-) -> None:
-    """Write ankle x, y, z [m] and pitch [rad] of foot ``f`` of a sitting person, on the foot rest or the floor."""
+    g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats
+) -> tuple[float, float, float, float]:
+    """Return ankle x, y, z [m] and pitch [rad] of foot ``f`` of a sitting person, on the foot rest or the floor."""
     side, thigh, shank = 1.0 - 2.0 * f, lengths[0], lengths[1]
     ahead, aside, pitch = seat[1] + thigh + 0.02, side * 0.11 * size[5], 0.0
     height = max(size[0], hip - shank * 0.995)
@@ -90,35 +94,28 @@ def _seated_ankle(
         if math.sqrt((x - seat[1]) ** 2 + (z - hip) ** 2) < 0.995 * (thigh + shank):
             ahead, aside, height, pitch = x, side * seat[6], z, -seat[3]
     c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
-    out[0] = g.position[i, 0] + c * ahead - s * aside
-    out[1] = g.position[i, 1] + s * ahead + c * aside
-    out[2], out[3] = height, pitch
+    return g.position[i, 0] + c * ahead - s * aside, g.position[i, 1] + s * ahead + c * aside, height, pitch
 
 
 @kernel
-def _blend_ankles(
-    g: Gaits, i: int, sit: float, hip: float, lengths: Floats, style: Floats, size: Floats, seat: Floats, out: Floats
-) -> None:
-    """Write both feet as :func:`foot_now` does, blended with their sitting positions by ``sit``."""
-    rest = np.empty(4)
-    for f in range(2):
-        foot_now(g, i, f, style, size, out[f])
-        if sit > 0.0:
-            _seated_ankle(g, i, f, hip, lengths, size, seat, rest)
-            for k in range(3):
-                out[f, k] += sit * (rest[k] - out[f, k])
-            out[f, 4] += sit * (rest[3] - out[f, 4])
-            out[f, 5] += sit * (rest[3] - out[f, 5])
+def _sit_down(foot: Foot, rest: tuple[float, float, float, float], sit: float) -> Foot:
+    """Return a foot between its place in walking and that in sitting."""
+    x, y, z = (
+        foot[0] + sit * (rest[0] - foot[0]),
+        foot[1] + sit * (rest[1] - foot[1]),
+        foot[2] + sit * (rest[2] - foot[2]),
+    )
+    return x, y, z, foot[3], foot[4] + sit * (rest[3] - foot[4]), foot[5] + sit * (rest[3] - foot[5])
 
 
-@kernel
-def _leg_limit(hip: Floats, foot: Floats, x: float, y: float, longest: float) -> float:
+@kernel(inline=True)
+def _leg_limit(hip: Vector, foot: Foot, x: float, y: float, longest: float) -> float:
     """Return the height [m] of the pelvis joint at which this leg has the length ``longest`` [m]."""
     dx, dy = foot[0] - x - hip[0], foot[1] - y - hip[1]
     return float(foot[2] + math.sqrt(max(longest**2 - dx * dx - dy * dy, (0.5 * longest) ** 2)) - hip[2])
 
 
-@kernel
+@kernel(inline=True)
 def _walking_height(phase: float, speed: float, way: float, vigour: float, length: float, size: Floats) -> float:
     """Return the height [m] of the hips in walking: a wave above the height that the leading leg permits.
 
@@ -132,10 +129,9 @@ def _walking_height(phase: float, speed: float, way: float, vigour: float, lengt
     return float(min(bottom + bob, top) - bob * (0.5 - 0.5 * math.cos(4.0 * math.pi * (phase - HIGHEST))))
 
 
-@kernel
-def _pelvis_height(hips: Floats, feet: Floats, x: float, y: float, longest: float, tallest: float) -> float:
+@kernel(inline=True)
+def _lowest_height(left: float, right: float, tallest: float) -> float:
     """Return the height of the pelvis joint [m]: a smooth minimum of the reach of both legs and ``tallest`` [m]."""
-    left, right = _leg_limit(hips[0], feet[0], x, y, longest), _leg_limit(hips[1], feet[1], x, y, longest)
     low = min(left, right, tallest)
     far = math.exp((low - left) / SOFT) + math.exp((low - right) / SOFT) + math.exp((low - tallest) / SOFT)
     return low - SOFT * math.log(far)
@@ -143,34 +139,29 @@ def _pelvis_height(hips: Floats, feet: Floats, x: float, y: float, longest: floa
 
 @kernel
 def bend_leg(
-    hip: Floats, ankle: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
-    work: Floats,
-) -> None:  # fmt: skip
+    hip: Vector, ankle: Vector, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int
+) -> None:
     """Write the rotations of thigh and shank that take the ankle to its place; the knee bends forward."""
-    axis, hinge, ahead, turned = work[0], work[1], work[2], work[3]
-    for k in range(3):
-        axis[k] = ankle[k] - hip[k]
-    reach = min(max(unit(axis), abs(thigh - shank) + 0.05), 0.9999 * (thigh + shank))
-    ahead[0], ahead[1], ahead[2] = math.cos(yaw), math.sin(yaw), 0.2
-    cross(ahead, axis, hinge)
-    unit(hinge)
+    axis, far = normalize((ankle[0] - hip[0], ankle[1] - hip[1], ankle[2] - hip[2]))
+    reach = min(max(far, abs(thigh - shank) + 0.05), 0.9999 * (thigh + shank))
+    hinge, _ = normalize(cross_product((math.cos(yaw), math.sin(yaw), 0.2), axis))
     at_hip = math.acos(min(max((thigh**2 + reach**2 - shank**2) / (2.0 * thigh * reach), -1.0), 1.0))
     at_ankle = math.acos(min(max((shank**2 + reach**2 - thigh**2) / (2.0 * shank * reach), -1.0), 1.0))
-    about(hinge, -at_hip, axis, turned)
-    align_frame(frame[f], turned, hinge, R[bone])
-    about(hinge, at_ankle, axis, turned)
-    align_frame(frame[2 + f], turned, hinge, R[bone + 1])
+    write_frame(frame, f, rotate(hinge, -at_hip, axis), hinge, R, bone)
+    write_frame(frame, 2 + f, rotate(hinge, at_ankle, axis), hinge, R, bone + 1)
 
 
-@kernel
+@kernel(inline=True)
 def _pose_leg(
-    hip: Floats, foot: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
-    work: Floats,
-) -> None:  # fmt: skip
-    """Write the rotations of thigh, shank, foot and toes for an ankle at ``foot``; the knee bends forward."""
-    bend_leg(hip, foot, thigh, shank, yaw, frame, f, R, bone, work)
-    turn_zxy(foot[3], 0.0, foot[4], R[bone + 2])
-    turn_zxy(foot[3], 0.0, foot[5], R[bone + 3])
+    hip: Vector, foot: Foot, thigh: float, shank: float, trunk: float, frame: Floats, f: int, R: Floats, P: Floats
+) -> None:
+    """Write the rotations of thigh, shank, foot and toes; ``hip`` is relative to the pelvis with yaw ``trunk``."""
+    bone = 20 + 4 * f
+    ahead = trunk + 0.5 * math.atan2(math.sin(foot[3] - trunk), math.cos(foot[3] - trunk))
+    joint = hip[0] + P[0, 0], hip[1] + P[0, 1], hip[2] + P[0, 2]
+    bend_leg(joint, (foot[0], foot[1], foot[2]), thigh, shank, ahead, frame, f, R, bone)
+    write_turn(foot[3], 0.0, foot[4], R, bone + 2)
+    write_turn(foot[3], 0.0, foot[5], R, bone + 3)
 
 
 @kernel
@@ -178,13 +169,12 @@ def place_chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P
     """Place bones ``first`` to ``last`` at the ends of their parents."""
     for b in range(first, last):
         p = parents[b]
+        x, y, z = head[b, 0] - head[p, 0], head[b, 1] - head[p, 1], head[b, 2] - head[p, 2]
         for r in range(3):
-            P[b, r] = P[p, r]
-            for c in range(3):
-                P[b, r] += R[p, r, c] * (head[b, c] - head[p, c])
+            P[b, r] = P[p, r] + R[p, r, 0] * x + R[p, r, 1] * y + R[p, r, 2] * z
 
 
-@kernel
+@kernel(inline=True)
 def _pose_one(
     g: Gaits, i: int, lengths: Floats, head: Floats, frame: Floats, style: Floats, size: Floats, seat: Floats,
     parents: Ints, R: Floats, P: Floats,
@@ -194,28 +184,26 @@ def _pose_one(
     time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], size[5], style[1])
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
     _pose_trunk(g, i, vigour, style, sit, seat[2], R)
-    work, hips, feet = np.empty((8, 3)), np.empty((2, 3)), np.empty((2, 6))
-    _hip_offset(head, 20, R, hips[0])
-    _hip_offset(head, 24, R, hips[1])
+    hip_l, hip_r = _hip_offset(head, 20, R), _hip_offset(head, 24, R)
     sat = seat[0] + SEAT_FLESH * stature
-    _blend_ankles(g, i, sit, sat, lengths, style, size, seat, feet)
+    foot_l, foot_r = foot_now(g, i, 0, time, support, vigour, size), foot_now(g, i, 1, time, support, vigour, size)
+    if sit > 0.0:
+        foot_l = _sit_down(foot_l, _seated_ankle(g, i, 0, sat, lengths, size, seat), sit)
+        foot_r = _sit_down(foot_r, _seated_ankle(g, i, 1, sat, lengths, size, seat), sit)
     sway = SWAY * size[5] * min(speed / 0.6, 1.0) * math.sin(2.0 * math.pi * g.phase[i] - 0.3)
     x = g.position[i, 0] - sway * math.sin(g.yaw[i]) + sit * seat[1] * math.cos(g.yaw[i])
     y = g.position[i, 1] + sway * math.cos(g.yaw[i]) + sit * seat[1] * math.sin(g.yaw[i])
-    rest = 0.5 * (hips[0, 2] + hips[1, 2])
+    rest = 0.5 * (hip_l[2] + hip_r[2])
     tallest = _walking_height(g.phase[i], speed, lead * support * time * speed, vigour, thigh + shank, size) - rest
-    height = _pelvis_height(hips, feet, x, y, STRAIGHT * (thigh + shank), tallest)
-    height += sit * (sat - rest - height)
-    P[0, 0], P[0, 1], P[0, 2] = x, y, height
-    for f in range(2):
-        for k in range(3):
-            hips[f, k] += P[0, k]
-        ahead = g.yaw[i] + 0.5 * math.atan2(math.sin(feet[f, 3] - g.yaw[i]), math.cos(feet[f, 3] - g.yaw[i]))
-        _pose_leg(hips[f], feet[f], thigh, shank, ahead, frame, f, R, 20 + 4 * f, work)
+    longest = STRAIGHT * (thigh + shank)
+    height = _lowest_height(_leg_limit(hip_l, foot_l, x, y, longest), _leg_limit(hip_r, foot_r, x, y, longest), tallest)
+    P[0, 0], P[0, 1], P[0, 2] = x, y, height + sit * (sat - rest - height)
+    _pose_leg(hip_l, foot_l, thigh, shank, g.yaw[i], frame, 0, R, P)
+    _pose_leg(hip_r, foot_r, thigh, shank, g.yaw[i], frame, 1, R, P)
     place_chain(1, 8, head, parents, R, P)
     place_chain(13, 15, head, parents, R, P)
     for f in range(2):
-        pose_arm(g, i, f, vigour, sit, lengths, frame, style, seat, R, P, work)
+        pose_arm(g, i, f, vigour, lengths, frame, style, seat, R, P)
     place_chain(8, 13, head, parents, R, P)
     place_chain(15, 28, head, parents, R, P)
 

@@ -13,9 +13,24 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "smooth", "wrap_angle"]
+from .vectors import Vector
+
+__all__ = [
+    "LANDED",
+    "STRIKE",
+    "Foot",
+    "ankle_over",
+    "cycle",
+    "lowest",
+    "planted_foot",
+    "smooth",
+    "swinging_foot",
+    "wrap_angle",
+]
 
 Floats = NDArray[np.float64]
+Foot = tuple[float, float, float, float, float, float]
+"""Ankle x, y, z [m], yaw, pitch and toe pitch [rad]."""
 RESTING_CYCLE = 1.15
 """Cycle time of stepping on the spot [s]."""
 EASY = 0.3
@@ -41,14 +56,14 @@ TIPPED = math.radians(35.0)
 """Pitch of the toes at toe-off [rad], at a relative speed of 0.9."""
 
 
-@kernel
+@kernel(inline=True)
 def smooth(x: float) -> float:
     """Return the smooth step from 0 to 1."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
-@kernel
+@kernel(inline=True)
 def wrap_angle(angle: float) -> float:
     """Return the angle [rad] in -pi to pi."""
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
@@ -82,7 +97,7 @@ def cycle(vx: float, vy: float, yaw: float, leg: float, longer: float) -> tuple[
     return time, support, LEAD + (0.5 - LEAD) * away, strong * strong / (strong + 0.05)
 
 
-@kernel
+@kernel(inline=True)
 def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
     """Return the distance [m] of the ankle of a pitched foot ahead of and above the ankle's point on the floor.
 
@@ -97,7 +112,7 @@ def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
     return x + tip + (ball_x - tip) * c + ball_z * s, z + (tip - ball_x) * s + ball_z * c
 
 
-@kernel
+@kernel(inline=True)
 def lowest(pitch: float, toes: float, size: Floats) -> float:
     """Return the height [m] of the lowest point of the sole above the ankle (negative) for these pitches [rad]."""
     sn, c = math.sin(pitch), math.cos(pitch)
@@ -107,45 +122,50 @@ def lowest(pitch: float, toes: float, size: Floats) -> float:
     return float(min(heel, ball - size[2], tip))
 
 
-@kernel
-def foot_pose(
-    u: float, planted: bool, flat: Floats, lift: Floats, goal: Floats, strike: float, next_strike: float, vigour: float,
-    push_x: float, push_y: float, size: Floats, out: Floats,
-) -> None:  # fmt: skip
-    """Write ankle x, y, z [m], yaw, pitch and toe pitch [rad] of one foot.
+@kernel(inline=True)
+def planted_foot(u: float, flat: Vector, strike: float, vigour: float, size: Floats) -> Foot:
+    """Return ankle x, y, z [m], yaw, pitch and toe pitch [rad] of a planted foot.
 
     Args:
-        u: progress of the support if planted, otherwise of the swing, 0 to 1.
-        planted: whether the foot is planted.
+        u: progress of the support, from 0 to 1.
         flat: x, y, yaw of the planted foot.
-        lift: output values of the foot at toe-off.
-        goal: x, y, yaw of the next landing.
-        strike, next_strike: toes-up angle of the last and of the next landing [rad].
+        strike: toes-up angle of the last landing [rad].
         vigour: vigour of the walk, 0 when standing.
-        push_x, push_y: velocity of the ankle at toe-off times the swing time [m].
         size: ankle height, ball (ahead, above), heel ahead, toe ahead, leg, thigh plus shank [m].
     """
-    if planted:
-        pitch = -strike * max(1.0 - u / LANDED, 0.0)
-        toes = pitch
-        if u > ROLLING:
-            pitch = PUSH * min(vigour, 1.1) * ((min(u, 1.0) - ROLLING) / (1.0 - ROLLING)) ** 1.35
-            toes = TIPPED * min(vigour, 1.1) * (max(min(u, 1.0) - TIPPING, 0.0) / (1.0 - TIPPING)) ** 1.5
-        ahead, above = ankle_over(pitch, toes, size)
-        out[0] = flat[0] + ahead * math.cos(flat[2])
-        out[1] = flat[1] + ahead * math.sin(flat[2])
-        out[2], out[3], out[4], out[5] = above, flat[2], pitch, toes
-        return
+    pitch = -strike * max(1.0 - u / LANDED, 0.0)
+    toes = pitch
+    if u > ROLLING:
+        pitch = PUSH * min(vigour, 1.1) * ((min(u, 1.0) - ROLLING) / (1.0 - ROLLING)) ** 1.35
+        toes = TIPPED * min(vigour, 1.1) * (max(min(u, 1.0) - TIPPING, 0.0) / (1.0 - TIPPING)) ** 1.5
+    ahead, above = ankle_over(pitch, toes, size)
+    return flat[0] + ahead * math.cos(flat[2]), flat[1] + ahead * math.sin(flat[2]), above, flat[2], pitch, toes
+
+
+@kernel(inline=True)
+def swinging_foot(
+    u: float, lift: Foot, goal: Vector, strike: float, push_x: float, push_y: float, size: Floats
+) -> Foot:
+    """Return ankle x, y, z [m], yaw, pitch and toe pitch [rad] of a foot in the air.
+
+    Args:
+        u: progress of the swing.
+        lift: the foot at toe-off.
+        goal: x, y, yaw of the next landing.
+        strike: toes-up angle of the next landing [rad].
+        push_x, push_y: velocity of the ankle at toe-off times the swing time [m].
+        size: as for :func:`planted_foot`.
+    """
     s = min(max(u, 0.0), 1.0)
-    ahead, above = ankle_over(-next_strike, -next_strike, size)
+    ahead, above = ankle_over(-strike, -strike, size)
     over, start = s * s * (3.0 - 2.0 * s), s * (1.0 - s) * (1.0 - s)
     pushed = start - 0.7 * s * s * (1.0 - s)
-    out[0] = lift[0] + over * (goal[0] + ahead * math.cos(goal[2]) - lift[0]) + pushed * push_x
-    out[1] = lift[1] + over * (goal[1] + ahead * math.sin(goal[2]) - lift[1]) + pushed * push_y
-    out[3] = lift[3] + over * wrap_angle(goal[2] - lift[3])
-    pitch = lift[4] * (1.0 - smooth(s / 0.75)) - next_strike * smooth((s - 0.45) / 0.5)
-    out[4] = pitch
-    out[5] = lift[5] + (pitch - lift[5]) * smooth(s / 0.4)
+    x = lift[0] + over * (goal[0] + ahead * math.cos(goal[2]) - lift[0]) + pushed * push_x
+    y = lift[1] + over * (goal[1] + ahead * math.sin(goal[2]) - lift[1]) + pushed * push_y
+    yaw = lift[3] + over * wrap_angle(goal[2] - lift[3])
+    pitch = lift[4] * (1.0 - smooth(s / 0.75)) - strike * smooth((s - 0.45) / 0.5)
+    toes = lift[5] + (pitch - lift[5]) * smooth(s / 0.4)
     hop = HOP * size[5] * start * 6.75
     z = lift[2] + over * (above - lift[2]) + hop
-    out[2] = max(z, 0.012 * math.sin(math.pi * s) - lowest(pitch, out[5], size))
+    z = max(z, 0.012 * math.sin(math.pi * s) - lowest(pitch, toes, size))
+    return x, y, z, yaw, pitch, toes

@@ -9,19 +9,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["about", "align_frame", "cross", "turn_zxy", "unit"]
+__all__ = ["about", "align_frame", "cross", "unit"]
 
 Floats = NDArray[np.float64]
-
-
-@kernel
-def turn_zxy(yaw: float, roll: float, pitch: float, out: Floats) -> None:
-    """Write ``Rz(yaw) Rx(roll) Ry(pitch)``: a positive pitch bends forward, a positive roll raises the left side."""
-    cz, sz, cx, sx = math.cos(yaw), math.sin(yaw), math.cos(roll), math.sin(roll)
-    cy, sy = math.cos(pitch), math.sin(pitch)
-    out[0, 0], out[0, 1], out[0, 2] = cz * cy - sz * sx * sy, -sz * cx, cz * sy + sz * sx * cy
-    out[1, 0], out[1, 1], out[1, 2] = sz * cy + cz * sx * sy, cz * cx, sz * sy - cz * sx * cy
-    out[2, 0], out[2, 1], out[2, 2] = -cx * sy, sx, cx * cy
 
 
 @kernel

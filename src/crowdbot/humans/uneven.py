@@ -32,7 +32,7 @@ def _raise(
     R: Floats, P: Floats,
 ) -> None:  # fmt: skip
     """Raise the feet of one person, and the pelvis by the mean, or less if a leg is too short."""
-    work, ankle = np.empty((8, 3)), np.empty((2, 3))
+    ankle = np.empty((2, 3))
     lift = 0.5 * (up[0] + up[1])
     low, limit = lift, np.empty(2)
     longest = STRAIGHT * (thigh + shank)
@@ -51,7 +51,9 @@ def _raise(
     for b in range(len(P)):
         P[b, 2] += lift
     for f in range(2):
-        bend_leg(P[first[f]], ankle[f], thigh, shank, yaw, frame, f, R, first[f], work)
+        b = first[f]
+        hip = P[b, 0], P[b, 1], P[b, 2]
+        bend_leg(hip, (ankle[f, 0], ankle[f, 1], ankle[f, 2]), thigh, shank, yaw, frame, f, R, b)
         place_chain(first[f] + 1, first[f] + 4, head, parents, R, P)
 
 
