@@ -34,7 +34,7 @@ def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):
         page = headset()
         enter(page, app)
         wait(page, "crowdbotVr.scene.info().people === 50 && crowdbotVr.scene.info().robots === 1")
-        assert page.evaluate("crowdbotVr.scene.info().calls") < MOST_CALLS
+        plain = page.evaluate("crowdbotVr.scene.info().calls")
         assert page.evaluate("crowdbotVr.scene.state.frame.arrays.bones.length") == 50 * 112
         works = []
         for _ in range(20):
@@ -48,7 +48,9 @@ def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):
         wait(page, "crowdbotVr.mirror.shown && crowdbotVr.mirror.reflections > 1")
         assert page.evaluate("crowdbotVr._bodyShown()")
         assert page.evaluate("crowdbotVr.body._dressed.size > 0")
-        assert page.evaluate("crowdbotVr.scene.info().calls") < 2 * MOST_CALLS  # the scene is drawn twice
+        mirrored = page.evaluate("crowdbotVr.scene.info().calls")
+        print(f"draw calls: {plain}, with the mirror {mirrored}")
+        assert 0 < plain < mirrored < MOST_CALLS
         call(app, "vr.show", mirror=False)
         wait(page, "!crowdbotVr.mirror.shown")
 

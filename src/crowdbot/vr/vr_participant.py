@@ -97,6 +97,8 @@ class VrParticipant:
             if pose is None:
                 return []
             parts = {name: getattr(pose, name) for name in ("head", "left_hand", "right_hand")}
+            if sample.gaze is not None and pose.head is not None:
+                parts["gaze"] = tuple(sample.gaze.tolist())
             order = AvatarOrder(
                 avatar=self.avatar, time=at, x=pose.x, y=pose.y, heading=pose.heading, source=SOURCE, **parts
             )
@@ -146,6 +148,7 @@ class VrParticipant:
                 "refused": self.refused, "reason": self.reason, "offset": clock.offset if clock else None,
                 "round_trip": round(1e3 * clock.delay, 3) if clock else None,
                 "steps": self.stream.latency.count("motion"),
+                "gaze": getattr(sample, "gaze", None) is not None,
                 "hands": [name for name in ("left", "right") if getattr(sample, name, None) is not None],
             }  # fmt: skip
             if sample is not None and sample.head is not None:
