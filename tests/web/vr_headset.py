@@ -7,7 +7,7 @@ import time
 from crowdbot.vr import VR_DESKS
 
 DEVICE = """() => {
-  const device = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: false });
+  const device = new IWER.XRDevice(IWER.MODEL, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   device.position.set(0, 1.6, 0);
   window.device = device;
@@ -49,12 +49,12 @@ def emulated_headsets(browser, app, modules):
     script = (modules / "node_modules/iwer/build/iwer.min.js").read_text()
     contexts, faults = [], []
 
-    def open_page():
+    def open_page(model="metaQuest3"):
         context = browser.new_context(viewport={"width": 320, "height": 180})
         contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(300_000)
-        page.add_init_script(script + f";({DEVICE})();")
+        page.add_init_script(script + f";({DEVICE.replace('MODEL', model)})();")
         page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
         page.on("pageerror", lambda one: faults.append(str(one)))
         page.goto(app.vr_url)
@@ -84,6 +84,7 @@ def call(app, command, **arguments):
 def enter(page, app):
     """Enter; pictures take long without a graphics card, so they have no shadows, and late poses pause nothing."""
     wait(page, "crowdbotVr.connection.open && crowdbotVr.state !== null")
+    wait(page, "crowdbotVr.status && crowdbotVr.status.state !== 'preparing'", 900)  # kernels are compiled before pictures
     call(app, "vr.set", settings={"timeout": 8.0, "pause_when_lost": False})
     call(app, "vr.show", own_body=False)
     page.evaluate("crowdbotVr.scene.setLayer('shadows', false)")

@@ -54,7 +54,7 @@ export class VrPage {
     this.board = new Board({ draft: (answers) => this._draft(answers), finish: (answers) => this._finish(answers) });
     this.pointers = new Pointers(this.board);
     this.body = new OwnBody(this.scene.engine);
-    this.mirror = new Mirror(this.body);
+    this.mirror = new Mirror(this.body, [this.board.mesh, this.pointers.group]);
     this.room.rig.add(this.board.mesh, this.pointers.group, this.mirror.group);
     this._measureDrawing();
   }
