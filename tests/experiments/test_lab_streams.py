@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import shutil
@@ -30,8 +31,9 @@ from crowdbot.experiments import (
     view_track,
     withdraw,
 )
+from crowdbot.experiments.comparison import looking_shares
 from crowdbot.experiments.streams import lab_streaming_layer
-from crowdbot.recording import read_episode
+from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder
 from crowdbot.trials import parse_trial
 
@@ -245,6 +247,44 @@ def test_a_gaze_stream_turns_with_the_head(tmp_path):
     assert plain is not None
     assert plain.kind == "head"
     np.testing.assert_allclose(plain.direction[:, 1], np.sin(math.pi - plain.time), atol=1e-9)
+
+
+class Glance(Nod):
+    """Nods, and looks to the left in the head; the eyes are closed between 0.5 s and 1 s."""
+
+    def orders(self, simulation):
+        """Return the pose at the next step."""
+        (order,) = super().orders(simulation)
+        closed = 0.5 < order.time < 1.0
+        return [order if closed else dataclasses.replace(order, gaze=(0.0, 2.0, 0.0))]
+
+
+def test_the_gaze_of_a_headset_is_in_the_episode_and_closed_eyes_are_unknown(tmp_path):
+    trial, folder = parse_trial(MEETING), tmp_path / "001-meet"
+    folder.mkdir()
+    BackgroundRun(trial, 0, folder / "episode.mcap", sources=[Glance()]).result()
+    recorded = RecordedTrial(trial, read_episode(folder / "episode.mcap"), folder, 0.0)
+    assert replay(folder / "episode.mcap").equal
+    view = view_track(recorded, "guide")
+    assert view is not None
+    assert view.kind == "gaze"
+    closed = np.isnan(view.direction[:, 0])
+    np.testing.assert_array_equal(closed, (view.time > 0.5 + 1e-9) & (view.time < 1.0 - 1e-9))
+    yaw = math.pi - view.time + 0.5 * math.pi
+    np.testing.assert_allclose(
+        view.direction[~closed], np.column_stack([np.cos(yaw), np.sin(yaw), 0.0 * yaw])[~closed], atol=1e-9
+    )
+    shares, kind = looking_shares(recorded)
+    assert kind == "gaze"
+    assert 0.0 <= shares["looking"] <= 1.0
+
+
+@pytest.mark.parametrize("gaze", [(1.0, 0.0), (0.0, 0.0, 0.0), (math.nan, 0.0, 1.0), "ahead"])
+def test_a_gaze_that_is_no_direction_is_refused(gaze):
+    with pytest.raises(InputError, match="gaze"):
+        AvatarOrder(avatar="guide", x=0.0, y=0.0, head=(0.0, 0.0, 1.6, 1.0, 0.0, 0.0, 0.0), gaze=gaze)
+    with pytest.raises(InputError, match="frame of the head"):
+        AvatarOrder(avatar="guide", x=0.0, y=0.0, gaze=(1.0, 0.0, 0.0))
 
 
 def test_the_command_sends_and_records_and_a_withdrawal_deletes_the_streams(tmp_path, capsys):

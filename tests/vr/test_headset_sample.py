@@ -102,3 +102,17 @@ def test_samples_are_blended():
     assert axes(half.head) == pytest.approx(turn_z(0.3), abs=1e-3)
     assert half.right is not None
     assert pose(np.zeros(3)).shape == (7,)
+
+
+def test_the_gaze_is_in_the_frame_of_the_head_and_missing_while_the_eyes_are_closed():
+    """The eyes look 0.3 rad to the left of a head that is turned by 0.5 rad."""
+    ray = pose(np.array([0.0, 0.0, 1.6]), turn_z(0.8))
+    found = sample(turn=turn_z(0.5), gaze=ray)
+    assert found.gaze == pytest.approx([np.cos(0.3), np.sin(0.3), 0.0], abs=1e-6)
+    assert sample(turn=turn_z(0.5)).gaze is None
+    assert sample(turn=turn_z(0.5), gaze=ray, flags=1 | 2).gaze is None  # the head is not tracked
+    closed = sample()
+    assert found.blend(closed, 0.4).gaze is found.gaze  # eyes jump: the latest one counts
+    assert found.blend(closed, 1.0).gaze is None
+    with pytest.raises(InputError, match="7 finite numbers 'gaze'"):
+        sample(gaze=np.zeros(3, dtype=np.float32))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from headset_messages import message
+from headset_messages import message, pose
 
 from crowdbot.core import InputError
 from crowdbot.recording import open_run, read_episode, replay
@@ -16,6 +16,7 @@ from crowdbot.vr import (
     RigidTransform,
     SharedRooms,
     VrParticipant,
+    read_headset_clock,
     read_headset_recording,
 )
 from crowdbot.vr.vr_participant import avatar_body
@@ -34,14 +35,15 @@ CROWD = """<trial name="meet" duration="8" world="{world}"><stage/><crowd type="
 class Player:
     """A headset and a simulation on one simulated clock."""
 
-    def __init__(self, trial, head, right=None, recorder=None, sources=()):
-        self.now, self.head, self.right = 1000.0, head, right
+    def __init__(self, trial, head, right=None, recorder=None, gaze=None):
+        self.now, self.head, self.right, self.gaze = 1000.0, head, right, gaze
         rooms = SharedRooms()
         rooms.rooms["person"].place = RigidTransform.at(1.5, 0.0, np.pi)
         self.felt = []
         self.person = VrParticipant(
-            "guest", rooms, recorder=recorder, clock=lambda: self.now, tell=lambda one: self.felt.append(one["touch"])
-        )
+            "guest", rooms, recorder=recorder, clock=lambda: self.now, tell=lambda one: self.felt.append(one["touch"]),
+            utc=lambda: self.now + 1e9,
+        )  # fmt: skip
         self.run = SimulationRun(Simulation(trial, posed=True))
         self.number, self.exchange = 0, None
 
@@ -51,6 +53,8 @@ class Player:
             self.now += 0.0125
             self.number += 1
             more = {} if self.exchange is None else {"clock": np.array(self.exchange)}
+            if self.gaze is not None:
+                more["gaze"] = self.gaze(self.now - 1000.0)
             right = None if self.right is None else self.right(self.now - 1000.0)
             data = message(self.now + OFFSET, self.head(self.now - 1000.0), right=right, number=self.number, **more)
             answer = self.person.take(data)["clock"]
@@ -148,6 +152,38 @@ def test_a_recorded_participant_replays_without_a_headset(tmp_path):
     assert [one.row().tolist() for one in again] == [one.pose.row().tolist() for one in orders] or np.allclose(
         [one.row() for one in again], [one.pose.row() for one in orders], equal_nan=True, atol=1e-12
     )
+
+
+def test_gaze_and_clocks_of_a_headset_are_in_the_episode_and_in_its_recording(tmp_path):
+    """The eyes look 0.25 rad to the left of the head; the clock of the headset is 431.5 s ahead."""
+    trial = parse_trial(CROWD.format(world="planar", avatar=AVATAR, others='<agent x="-4" y="3" goal="6,3"/>'))
+    c, s = np.cos(0.25), np.sin(0.25)
+    ray = pose(np.array([0.0, 0.0, 1.6]), np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
+    with HeadsetRecorder(tmp_path / "raw.headset") as recorder, open_run(trial, out=tmp_path / "one") as run:
+        player = Player(trial, lambda _: (0.0, 0.0, 1.58), recorder=recorder, gaze=lambda _: ray)
+        for _ in range(60):
+            player.step(run)
+    assert player.person.summary()["gaze"]
+    assert replay(tmp_path / "one/episode.mcap").equal
+    orders = [order for _, order in read_episode(tmp_path / "one/episode.mcap").orders]
+    assert len(orders) > 50
+    assert np.array([order.gaze for order in orders]) == pytest.approx(np.array([[c, s, 0.0]] * len(orders)), abs=1e-6)
+    samples = [one for one in read_headset_recording(tmp_path / "raw.headset") if one.sample is not None]
+    assert all(one.sample.gaze == pytest.approx([c, s, 0.0], abs=1e-6) for one in samples)
+    clock = read_headset_clock(tmp_path / "raw.headset")
+    assert len(clock.server) == 3  # 60 steps of 50 ms, one estimate in a second
+    assert clock.offset == pytest.approx(-OFFSET, abs=1e-9)
+    assert clock.round_trip == pytest.approx(0.0, abs=1e-9)
+    assert clock.utc - clock.server == pytest.approx(1e9)
+    times = np.array([one.sample.time for one in samples])
+    assert clock.to_server(times) == pytest.approx(np.array([one.time for one in samples]), abs=1e-9)
+
+
+def test_a_recording_without_compared_clocks_says_so(tmp_path):
+    with HeadsetRecorder(tmp_path / "raw.headset") as recorder:
+        recorder.message(5.0, message(1.0))
+    with pytest.raises(InputError, match="clocks were not compared"):
+        read_headset_clock(tmp_path / "raw.headset")
 
 
 def test_tracking_that_is_lost_leaves_the_avatar_where_it_was():

@@ -86,7 +86,7 @@ def test_a_trial_is_paused_continued_and_repeated(desk):
 def test_a_session_is_closed_and_continued(desk):
     desk.open("robot-speed", 1)
     desk.answer({"age": 30, "robots": "often"})
-    assert desk.leave() == {"open": False}
+    assert desk.leave() == {"open": False, "streams": {"send": False, "record": []}}
     with pytest.raises(EpisodeError, match="already has a session"):
         desk.open("robot-speed", 1)
     state = desk.open("robot-speed", 1, resume=True)

@@ -7,8 +7,8 @@ from vr_headset import call, desks, emulated_headsets, enter, wait
 
 from crowdbot.vr import VrServer
 
-AGENTS = "".join(
-    f'<agent x="{1.5 * i - 5.25:g}" y="{1.5 * j - 4.5:g}" goal="{5.25 - 1.5 * i:g},{4.5 - 1.5 * j:g}"/>'
+AGENTS = "".join(  # slow, so that nobody reaches a goal before the first picture
+    f'<agent x="{1.5 * i - 5.25:g}" y="{1.5 * j - 4.5:g}" speed="0.1" goal="{8 if i < 3 else -8:g},{4.5 - 1.5 * j:g}"/>'
     for i in range(7)
     for j in range(7)
 )
@@ -34,7 +34,7 @@ def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):
         page = headset()
         enter(page, app)
         wait(page, "crowdbotVr.scene.info().people === 50 && crowdbotVr.scene.info().robots === 1")
-        assert page.evaluate("crowdbotVr.scene.info().calls") < MOST_CALLS
+        plain = page.evaluate("crowdbotVr.scene.info().calls")
         assert page.evaluate("crowdbotVr.scene.state.frame.arrays.bones.length") == 50 * 112
         works = []
         for _ in range(20):
@@ -48,7 +48,9 @@ def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):
         wait(page, "crowdbotVr.mirror.shown && crowdbotVr.mirror.reflections > 1")
         assert page.evaluate("crowdbotVr._bodyShown()")
         assert page.evaluate("crowdbotVr.body._dressed.size > 0")
-        assert page.evaluate("crowdbotVr.scene.info().calls") < 2 * MOST_CALLS  # the scene is drawn twice
+        mirrored = page.evaluate("crowdbotVr.scene.info().calls")
+        print(f"draw calls: {plain}, with the mirror {mirrored}")
+        assert 0 < plain < mirrored < MOST_CALLS
         call(app, "vr.show", mirror=False)
         wait(page, "!crowdbotVr.mirror.shown")
 

@@ -7,7 +7,7 @@ import time
 from crowdbot.vr import VR_DESKS
 
 DEVICE = """() => {
-  const device = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: false });
+  const device = new IWER.XRDevice(IWER.MODEL, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   device.position.set(0, 1.6, 0);
   window.device = device;
@@ -25,6 +25,11 @@ AIM = """([text, kind]) => {
   tool.position.set(from.x, from.y, from.z);
   tool.quaternion.set(dy / size, -dx / size, 0, (1 - dz) / size);
 }"""
+NUMBERS = """JSON.stringify({
+  scene: crowdbotVr.scene.info(), pictures: crowdbotVr.pictures, work: crowdbotVr.work, dropped: crowdbotVr.dropped,
+  reflections: crowdbotVr.mirror.reflections, note: crowdbotVr.note.textContent, said: crowdbotVr.room.said,
+  status: crowdbotVr.status, problem: crowdbotVr.board.problem, state: crowdbotVr.state, experiment: crowdbotVr.experiment,
+}, null, 1)"""
 PRESS = """([hand, value]) => {
   if (hand) device.hands.right.updatePinchValue(value);
   else device.controllers.right.updateButtonValue("trigger", value);
@@ -44,12 +49,12 @@ def emulated_headsets(browser, app, modules):
     script = (modules / "node_modules/iwer/build/iwer.min.js").read_text()
     contexts, faults = [], []
 
-    def open_page():
+    def open_page(model="metaQuest3"):
         context = browser.new_context(viewport={"width": 320, "height": 180})
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(180_000)
-        page.add_init_script(script + f";({DEVICE})();")
+        page.set_default_timeout(300_000)
+        page.add_init_script(script + f";({DEVICE.replace('MODEL', model)})();")
         page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
         page.on("pageerror", lambda one: faults.append(str(one)))
         page.goto(app.vr_url)
@@ -61,13 +66,12 @@ def emulated_headsets(browser, app, modules):
     assert [one for one in faults if not any(word in one for word in CUT)] == []
 
 
-def wait(page, expression, seconds=240.0):
-    """Wait until an expression of the page is true."""
+def wait(page, expression, seconds=300.0):
+    """Wait until an expression of the page is true; the first picture waits for kernels that are compiled."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         if time.monotonic() > end:
-            state = page.evaluate("JSON.stringify([crowdbotVr.state, crowdbotVr.experiment, crowdbotVr.board.problem])")
-            raise TimeoutError(f"{expression}: {state}")
+            raise TimeoutError(f"not true after {seconds:g} s: {expression}\n{page.evaluate(NUMBERS)}")
         page.wait_for_timeout(40)
 
 
@@ -80,6 +84,7 @@ def call(app, command, **arguments):
 def enter(page, app):
     """Enter; pictures take long without a graphics card, so they have no shadows, and late poses pause nothing."""
     wait(page, "crowdbotVr.connection.open && crowdbotVr.state !== null")
+    wait(page, "crowdbotVr.status && crowdbotVr.status.state !== 'preparing'", 900)  # kernels are compiled before pictures
     call(app, "vr.set", settings={"timeout": 8.0, "pause_when_lost": False})
     call(app, "vr.show", own_body=False)
     page.evaluate("crowdbotVr.scene.setLayer('shadows', false)")

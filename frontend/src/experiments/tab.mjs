@@ -5,6 +5,12 @@ import { pageNodes } from "./page_nodes.mjs";
 import { makeQuestions } from "./questions.mjs";
 import { Picture } from "../simulator/picture.mjs";
 
+/** Says which streams of the Lab Streaming Layer a session sends and records. */
+function streamsNote({ send, record = [] }) {
+  const parts = [send ? "events and poses are sent" : "", record.length ? `recorded: ${record.join(", ")}` : ""].filter(Boolean);
+  return parts.length ? h("p", { class: "note" }, `Lab Streaming Layer: ${parts.join("; ")}`) : null;
+}
+
 class ExperimentsTab {
   constructor(root, app) {
     Object.assign(this, { root, app, state: { open: false }, form: null });
@@ -51,8 +57,16 @@ class ExperimentsTab {
     const number = h("input", { type: "number", min: 1, value: 1 });
     const rate = h("input", { type: "number", min: 0.1, max: 100, step: "any", value: 1 });
     const resume = h("input", { type: "checkbox" });
-    const start = () =>
-      this.call("open", { experiment: choice.value, participant: Number(number.value), resume: resume.checked, rate: Number(rate.value) });
+    const { send, record } = this.state.streams ?? {};
+    const sends = h("input", { type: "checkbox", checked: Boolean(send) });
+    const records = h("input", { type: "text", value: (record ?? []).join(", "), placeholder: "pulse, type=EEG" });
+    const start = () => {
+      const streams = records.value.split(",").map((one) => one.trim()).filter(Boolean);
+      return this.call("open", {
+        experiment: choice.value, participant: Number(number.value), resume: resume.checked, rate: Number(rate.value),
+        send_streams: sends.checked, record_streams: streams,
+      });
+    };
     fill(
       this.screen,
       h("h2", {}, "Start a session"),
@@ -61,6 +75,8 @@ class ExperimentsTab {
       field("Participant", number),
       field("Speed of the trials (1: real time)", rate),
       h("label", { class: "option" }, resume, "Continue an interrupted session"),
+      h("label", { class: "option" }, sends, "Send events and poses (Lab Streaming Layer)"),
+      field("Streams to record (Lab Streaming Layer)", records),
       h("p", {}, h("button", { type: "button", class: "main", onclick: start }, "Start")),
     );
   }
@@ -125,6 +141,7 @@ class ExperimentsTab {
       ),
       h("p", {}, h("a", { href: this.participantAddress(), target: "_blank", rel: "noopener" }, "Window for the participant")),
       h("p", { class: "note" }, `Files: ${state.folder}`),
+      streamsNote(state.streams),
     );
   }
 

@@ -1,97 +1,121 @@
-// Robots: meshes of links, moved by the link poses of a frame.
+// Robots: all links of all robots of a kind in one draw call for each texture, moved by the link poses of a frame.
 import * as THREE from "three";
-import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { moveLinks } from "./robot_shader.mjs";
 import { imageOfFaces } from "./textures.mjs";
 
 const CREASE = 0.6;
+/** Numbers of a link in the texture of poses: position and a spare one, quaternion x, y, z, w. */
+const POSE = 8;
 
 export class Robots {
   constructor() {
     this.group = new THREE.Group();
     this._robots = [];
+    this._kinds = [];
     this._parts = new Map();
-    this._materials = new Map();
   }
 
   /** Sets the robots of a description; meshes by key are {arrays, textures}: a decoded frame and its images. */
   build(robots, meshes) {
-    this._disposeArrows();
-    this.group.clear();
+    this._clear();
+    const kinds = new Map();
     this._robots = robots.map((robot) => {
-      const links = this._links(robot.key, meshes.get(robot.key)).map((parts) => {
-        const link = new THREE.Group();
-        for (const { geometry, texture } of parts) {
-          const mesh = new THREE.Mesh(geometry, this._material(robot.ghost, texture));
-          mesh.castShadow = !robot.ghost;
-          mesh.receiveShadow = true;
-          link.add(mesh);
-        }
-        return link;
-      });
-      const group = new THREE.Group();
-      if (links.length) group.add(...links);
+      const name = `${robot.ghost} ${robot.key}`;
+      if (!kinds.has(name)) kinds.set(name, { robots: [], key: robot.key, ghost: robot.ghost });
+      const kind = kinds.get(name);
       const arrow = robot.type === "cylinder" ? aheadArrow(robot) : null;
-      if (arrow) group.add(arrow);
-      this.group.add(group);
-      return { id: robot.id, group, links, arrow };
+      if (arrow) this.group.add(arrow);
+      return { id: robot.id, kind, slot: kind.robots.push(robot) - 1, arrow };
     });
+    this._kinds = [...kinds.values()];
+    for (const kind of this._kinds) {
+      const { parts, links } = this._mesh(kind.key, meshes.get(kind.key));
+      kind.links = links;
+      kind.poses = new THREE.DataTexture(new Float32Array(POSE * Math.max(1, links) * kind.robots.length), 2 * Math.max(1, links), kind.robots.length, THREE.RGBAFormat, THREE.FloatType);
+      kind.meshes = parts.map((part) => instances(part, kind));
+      if (kind.meshes.length) this.group.add(...kind.meshes);
+    }
   }
 
   /** Moves the links to those of a state. */
   update(state, hidden = null) {
     const { bots, botplace, links } = state.frame.arrays;
-    for (const robot of this._robots) robot.group.visible = false;
+    const drawn = new Map(this._kinds.map((kind) => [kind, []]));
+    for (const { arrow } of this._robots) if (arrow) arrow.visible = false;
     let at = 0;
     bots.forEach((row, k) => {
-      const robot = this._robots[row];
-      if (robot.arrow) {
-        robot.arrow.position.set(botplace[5 * k], botplace[5 * k + 1], robot.arrow.position.z);
-        robot.arrow.rotation.z = botplace[5 * k + 2];
+      const { id, kind, slot, arrow } = this._robots[row];
+      if (arrow) {
+        arrow.position.set(botplace[5 * k], botplace[5 * k + 1], arrow.position.z);
+        arrow.rotation.z = botplace[5 * k + 2];
+        arrow.visible = id !== hidden;
       }
-      robot.group.visible = robot.id !== hidden;
-      for (const mesh of robot.links) {
-        mesh.position.set(links[at], links[at + 1], links[at + 2]);
-        mesh.quaternion.set(links[at + 4], links[at + 5], links[at + 6], links[at + 3]).normalize();
-        at += 7;
+      if (id !== hidden) drawn.get(kind).push(slot);
+      for (let link = 0; link < kind.links; link++, at += 7) {
+        const [x, y, z, w, a, b, c] = links.subarray(at, at + 7);
+        const size = Math.hypot(w, a, b, c) || 1;
+        kind.poses.image.data.set([x, y, z, 0, a / size, b / size, c / size, w / size], POSE * (slot * kind.links + link));
       }
     });
+    for (const [kind, slots] of drawn) {
+      kind.poses.needsUpdate = true;
+      for (const mesh of kind.meshes) {
+        mesh.geometry.attributes.slot.array.set(slots);
+        mesh.geometry.attributes.slot.needsUpdate = true;
+        mesh.geometry.instanceCount = slots.length;
+        mesh.visible = slots.length > 0;
+      }
+    }
   }
 
   set shadows(on) {
-    for (const robot of this._robots) for (const link of robot.links) for (const mesh of link.children) mesh.castShadow = on;
+    for (const { meshes, ghost } of this._kinds) for (const mesh of meshes) mesh.castShadow = on && !ghost;
   }
 
   dispose() {
-    for (const links of this._parts.values()) {
-      for (const { geometry, texture } of links.flat()) {
+    this._clear();
+    for (const { parts } of this._parts.values()) {
+      for (const { geometry, texture } of parts) {
         geometry.dispose();
         texture?.dispose();
       }
     }
-    for (const material of this._materials.values()) material.dispose();
-    this._disposeArrows();
   }
 
-  _disposeArrows() {
+  _clear() {
     for (const { arrow } of this._robots) {
       arrow?.geometry.dispose();
       arrow?.material.dispose();
     }
-  }
-
-  _material(ghost, texture) {
-    const key = `${ghost} ${texture?.uuid}`;
-    if (!this._materials.has(key)) {
-      const look = ghost ? { roughness: 0.6, transparent: true, opacity: 0.45 } : { roughness: 0.62, metalness: 0.05 };
-      this._materials.set(key, new THREE.MeshStandardMaterial({ vertexColors: true, map: texture, ...look }));
+    for (const { meshes, poses } of this._kinds) {
+      poses.dispose();
+      for (const mesh of meshes) for (const one of [mesh.geometry, mesh.material, mesh.customDepthMaterial]) one.dispose();
     }
-    return this._materials.get(key);
+    this._robots = this._kinds = [];
+    this.group.clear();
   }
 
-  _links(key, mesh) {
-    if (!this._parts.has(key)) this._parts.set(key, linkParts(mesh));
+  _mesh(key, mesh) {
+    if (!this._parts.has(key)) this._parts.set(key, robotParts(mesh));
     return this._parts.get(key);
   }
+}
+
+/** Draws one part of all robots of a kind. */
+function instances({ geometry, texture }, { ghost, robots, poses }) {
+  const shared = new THREE.InstancedBufferGeometry();
+  for (const [name, one] of Object.entries(geometry.attributes)) shared.setAttribute(name, one);
+  const slot = new THREE.InstancedBufferAttribute(new Float32Array(robots.length), 1);
+  shared.setAttribute("slot", slot.setUsage(THREE.DynamicDrawUsage));
+  shared.instanceCount = 0;
+  const look = ghost ? { roughness: 0.6, transparent: true, opacity: 0.45 } : { roughness: 0.62, metalness: 0.05 };
+  const mesh = new THREE.Mesh(shared, moveLinks(new THREE.MeshStandardMaterial({ vertexColors: true, map: texture, ...look }), poses));
+  mesh.customDepthMaterial = moveLinks(new THREE.MeshDepthMaterial(), poses);
+  mesh.frustumCulled = false; // its place is in the texture of poses
+  mesh.castShadow = !ghost;
+  mesh.receiveShadow = true;
+  return mesh;
 }
 
 /** Arrow on a robot that is a plain cylinder, so that its heading is seen. */
@@ -105,20 +129,34 @@ function aheadArrow({ radius, height }) {
   return arrow;
 }
 
-/** Returns for each link its parts {geometry, texture}: one for each image, and one for the faces without. */
-function linkParts({ arrays, textures }) {
+/** Returns the number of links, and parts {geometry, texture}: one for each image, and one for the faces without. */
+function robotParts({ arrays, textures }) {
   const { faces, first } = arrays;
   const image = imageOfFaces(arrays);
-  return Array.from(first, (begin, k) => {
-    const end = k + 1 < first.length ? first[k + 1] : faces.length / 3;
+  const pieces = new Map();
+  first.forEach((begin, link) => {
+    const end = link + 1 < first.length ? first[link + 1] : faces.length / 3;
     const groups = new Map();
     for (let f = begin; f < end; f++) {
       const at = textures[image[f]] ? image[f] : -1;
       if (!groups.has(at)) groups.set(at, []);
       groups.get(at).push(f);
     }
-    return [...groups].map(([at, rows]) => ({ geometry: partGeometry(arrays, rows, at >= 0), texture: textures[at] ?? null }));
+    for (const [at, rows] of groups) pieces.set(at, [...(pieces.get(at) ?? []), linkGeometry(arrays, rows, at >= 0, link)]);
   });
+  const parts = [...pieces].map(([at, own]) => {
+    const geometry = mergeGeometries(own);
+    for (const one of own) one.dispose();
+    return { geometry, texture: textures[at] ?? null };
+  });
+  return { parts, links: first.length };
+}
+
+/** Returns the geometry of some triangles of a link, which all its vertices name. */
+function linkGeometry(arrays, rows, textured, link) {
+  const geometry = partGeometry(arrays, rows, textured);
+  const count = geometry.attributes.position.count;
+  return geometry.setAttribute("link", new THREE.BufferAttribute(new Float32Array(count).fill(link), 1));
 }
 
 /** Returns the geometry of some triangles, with creased normals and a colour for each triangle. */

@@ -2,6 +2,9 @@
 export const VISIBLE = 1, EMULATED = 2, LEFT_HAND = 4, RIGHT_HAND = 8;
 const SIDES = ["left", "right"];
 const PINCH = 0.02;
+/** Names of the feature with which browsers give the direction of the eyes; there is no standard one. */
+export const EYE_FEATURES = ["eye-tracking", "gaze-tracking"];
+const EYE_PROFILE = "eye-gaze";
 
 /**
  * Returns {arrays, head, hands, rays, pressed, tracked}: arrays of the message, and positions in the room of the headset.
@@ -20,6 +23,8 @@ export function readPoses(frame, space) {
     found.head = viewer.transform;
     arrays.push(["head", pose(viewer.transform)]);
   }
+  const eyes = eyeGaze(frame, space);
+  if (viewer && eyes) arrays.push(["gaze", pose(eyes)]);
   for (const source of frame.session.inputSources) {
     const k = SIDES.indexOf(source.handedness);
     if (k < 0 || arrays.some(([name]) => name === SIDES[k])) continue;
@@ -47,6 +52,13 @@ export function vibrate(session, side, strength, milliseconds = 60) {
     if (motor?.pulse) motor.pulse(strength, milliseconds);
     else gamepad?.vibrationActuator?.playEffect?.("dual-rumble", { duration: milliseconds, strongMagnitude: strength });
   }
+}
+
+/** Pose whose -z is the direction of the eyes; null while they are closed, or for a ray that only follows the head. */
+function eyeGaze(frame, space) {
+  const granted = EYE_FEATURES.some((name) => frame.session.enabledFeatures?.includes(name));
+  const source = [...frame.session.inputSources].find((one) => one.targetRayMode === "gaze" && (granted || one.profiles.includes(EYE_PROFILE)));
+  return (source && frame.getPose(source.targetRaySpace, space)?.transform) ?? null;
 }
 
 function pose({ position: p, orientation: q }) {

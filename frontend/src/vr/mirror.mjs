@@ -4,17 +4,25 @@ import { Reflector } from "three/examples/jsm/objects/Reflector.js";
 
 const SIZE = [1.2, 2];
 const AWAY = 1.6;
+/** Overlay colour that changes nothing: half of the light. */
+const CLEAR = new THREE.Color().setRGB(0.5, 0.5, 0.5);
 
 export class Mirror {
-  /** @param {OwnBody} body hides the head of the avatar, except in the mirror */
-  constructor(body) {
+  /**
+   * @param {OwnBody} body hides the head of the avatar, except in the mirror
+   * @param {THREE.Object3D[]} panels what has no mirror image
+   */
+  constructor(body, panels) {
     this.group = new THREE.Group();
     this.group.visible = false;
-    const glass = new Reflector(new THREE.PlaneGeometry(...SIZE), { textureWidth: 768, textureHeight: 1280, clipBias: 0.001, multisample: 4 });
+    const glass = new Reflector(new THREE.PlaneGeometry(...SIZE), { textureWidth: 768, textureHeight: 1280, color: CLEAR, clipBias: 0.001, multisample: 4 });
     const reflect = glass.onBeforeRender;
     glass.onBeforeRender = (...args) => {
       this.reflections += 1;
+      const shown = panels.filter((one) => one.visible);
+      for (const one of shown) one.visible = false;
       body.withHeads(() => reflect.apply(glass, args));
+      for (const one of shown) one.visible = true;
     };
     const frame = new THREE.Mesh(new THREE.BoxGeometry(SIZE[0] + 0.08, SIZE[1] + 0.08, 0.03), new THREE.MeshStandardMaterial({ color: "#6b4a2f", roughness: 0.7 }));
     frame.position.z = -0.02;

@@ -5,7 +5,7 @@ import { Scene3D } from "../scene3d/scene3d.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { HeadsetLink, now } from "./headset_link.mjs";
 import { Board } from "./board.mjs";
-import { readPoses, vibrate } from "./headset_poses.mjs";
+import { EYE_FEATURES, readPoses, vibrate } from "./headset_poses.mjs";
 import { Mirror } from "./mirror.mjs";
 import { OwnBody } from "./own_body.mjs";
 import { Pointers } from "./pointers.mjs";
@@ -13,7 +13,7 @@ import { Room } from "./room.mjs";
 import { SceneFeed } from "./scene_feed.mjs";
 import { experimentScreen, stopScreen } from "./screens.mjs";
 
-const FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking"] };
+const FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking", ...EYE_FEATURES] };
 const SLOW = 1.5;
 
 export class VrPage {
@@ -54,7 +54,7 @@ export class VrPage {
     this.board = new Board({ draft: (answers) => this._draft(answers), finish: (answers) => this._finish(answers) });
     this.pointers = new Pointers(this.board);
     this.body = new OwnBody(this.scene.engine);
-    this.mirror = new Mirror(this.body);
+    this.mirror = new Mirror(this.body, [this.board.mesh, this.pointers.group]);
     this.room.rig.add(this.board.mesh, this.pointers.group, this.mirror.group);
     this._measureDrawing();
   }

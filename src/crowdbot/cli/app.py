@@ -59,6 +59,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--certificate", type=Path, metavar="FILE", help="certificate for HTTPS, PEM")
     parser.add_argument("--key", type=Path, metavar="FILE", help="private key of the certificate, PEM")
+    parser.add_argument(
+        "--lsl",
+        action="store_true",
+        help="sessions of experiments send events, head poses and robot poses over the Lab Streaming Layer",
+    )
+    parser.add_argument(
+        "--lsl-record",
+        action="append",
+        default=[],
+        metavar="STREAM",
+        help="sessions of experiments record streams of the Lab Streaming Layer: a name, or PROPERTY=VALUE such as"
+        " type=EEG (repeatable)",
+    )
     parser.add_argument("--sessions", type=int, default=40, metavar="N", help="sessions at the same time (default: 40)")
     group = parser.add_argument_group(
         "limits of each session", "the second default is that of a server for other machines (--host)"
@@ -70,13 +83,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Serve until Ctrl-C."""
     from crowdbot.vr import VR_DESKS, VrServer
-    from crowdbot.web import opened_first
+    from crowdbot.web import opened_first, with_streams
 
     if not 0 <= options.port <= 65535:
         raise InputError(f"--port = {options.port}: expected 0 to 65535")
     desks, readable = VR_DESKS, tuple[Path, ...]()
     if options.open is not None:
         desks, readable = opened_first(VR_DESKS, options.open)
+    if options.lsl or options.lsl_record:
+        desks = with_streams(desks, options.lsl, options.lsl_record)
     host = options.host or (EVERYWHERE if options.vr else "127.0.0.1")
     server = VrServer(
         desks,

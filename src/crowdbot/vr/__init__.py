@@ -6,7 +6,13 @@ from .calibration_pose import BodyMeasure, measure_pose
 from .certificate import certificate_files, local_addresses, tls_context
 from .clock_sync import ClockSync
 from .headset_access import session_of_token, token_of_session
-from .headset_recording import HeadsetRecord, HeadsetRecorder, read_headset_recording
+from .headset_recording import (
+    HeadsetClock,
+    HeadsetRecord,
+    HeadsetRecorder,
+    read_headset_clock,
+    read_headset_recording,
+)
 from .headset_sample import HeadsetSample
 from .headset_stream import HeadsetStream, StreamSettings
 from .headset_window import HEADSET_COMMANDS, HeadsetWindow, headset_frame, pack_triples
@@ -29,6 +35,7 @@ __all__ = [
     "BodyMeasure",
     "BodySize",
     "ClockSync",
+    "HeadsetClock",
     "HeadsetRecord",
     "HeadsetRecorder",
     "HeadsetSample",
@@ -54,6 +61,7 @@ __all__ = [
     "local_addresses",
     "measure_pose",
     "pack_triples",
+    "read_headset_clock",
     "read_headset_recording",
     "session_of_token",
     "tls_context",

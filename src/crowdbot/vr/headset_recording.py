@@ -10,13 +10,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from crowdbot.core import InputError
 from crowdbot.web import StateFrame
 
 from .headset_sample import HeadsetSample
 
-__all__ = ["HeadsetRecord", "HeadsetRecorder", "read_headset_recording"]
+__all__ = ["HeadsetClock", "HeadsetRecord", "HeadsetRecorder", "read_headset_clock", "read_headset_recording"]
 
+Floats = NDArray[np.float64]
 MAGIC = b"CBHR1\n"
 ENTRY = struct.Struct("<BdI")
 """Kind, time of the server [s] and number of bytes of an entry."""
@@ -36,6 +40,32 @@ class HeadsetRecord(NamedTuple):
     time: float
     sample: HeadsetSample | None
     note: dict[str, Any] | None
+
+
+class HeadsetClock(NamedTuple):
+    """Estimated relations of the clocks of a recording, about once a second.
+
+    Fields:
+        server: ``[T]`` monotonic clock of the server [s], as in :class:`crowdbot.experiments.TrialClock`.
+        offset: ``[T]`` server minus headset [s].
+        round_trip: ``[T]`` round trip of the exchange that counts [s]; the offset is wrong by at most half of it.
+        utc: ``[T]`` seconds since 1970.
+    """
+
+    server: Floats
+    offset: Floats
+    round_trip: Floats
+    utc: Floats
+
+    def to_server(self, time: ArrayLike) -> Floats:
+        """Return times of the headset in the clock of the server [s], with the offset interpolated between estimates.
+
+        >>> clock = HeadsetClock(np.array([50.0, 60.0]), np.array([40.0, 40.1]), np.full(2, 0.004), np.zeros(2))
+        >>> clock.to_server([10.0, 19.9]).round(3).tolist()
+        [50.0, 60.0]
+        """
+        instants = np.asarray(time, dtype=np.float64)
+        return np.asarray(instants + np.interp(instants, self.server - self.offset, self.offset))
 
 
 class HeadsetRecorder:
@@ -108,3 +138,16 @@ def read_headset_recording(path: Path | str) -> Iterator[HeadsetRecord]:
                 yield HeadsetRecord(time, HeadsetSample.of_frame(StateFrame.decode(data)), None)
             else:
                 yield HeadsetRecord(time, None, json.loads(data))
+
+
+def read_headset_clock(path: Path | str) -> HeadsetClock:
+    """Return the clocks of a recording.
+
+    Raises:
+        InputError: the file is no recording of a headset, an entry is damaged, or no clock was estimated.
+    """
+    notes = [(one.time, one.note["clock"]) for one in read_headset_recording(path) if one.note and "clock" in one.note]
+    if not notes:
+        raise InputError(f"{path}: the clocks were not compared; a recording needs two messages of the headset")
+    rows = [(time, note["offset"], note["round_trip"], note["utc"]) for time, note in notes]
+    return HeadsetClock(*np.array(rows, dtype=np.float64).T)

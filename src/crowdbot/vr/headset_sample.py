@@ -37,6 +37,8 @@ class HeadsetSample:
         time: time stamp in the clock of the headset [s].
         head: middle between the eyes: x, y, z [m] and a quaternion w, x, y, z; x looks ahead. None: tracking is lost.
         left, right: wrists in the form of :class:`crowdbot.humans.BodyPose`; None: not tracked.
+        gaze: direction of the eyes in the frame of the head (x ahead, y left, z up), a unit vector; None: the headset
+            does not measure it, or the eyes are closed.
         pressed: names of the hands whose trigger is pressed or whose fingers pinch.
         number: counts the messages of the headset.
         clock: ``t0, t1, t2, t3`` of the latest exchange of clocks, or None.
@@ -54,6 +56,7 @@ class HeadsetSample:
     head: Floats | None
     left: Floats | None = None
     right: Floats | None = None
+    gaze: Floats | None = None
     pressed: tuple[str, ...] = ()
     number: int = 0
     clock: tuple[float, float, float, float] | None = None
@@ -84,6 +87,7 @@ class HeadsetSample:
         return cls(
             float(frame.time),
             **parts,
+            gaze=None if parts["head"] is None or head is None else _gaze(frame, head),
             pressed=tuple(name for k, name in enumerate(("left", "right")) if press >> k & 1),
             number=frame.sequence,
             clock=None if clock is None else (float(clock[0]), float(clock[1]), float(clock[2]), float(clock[3])),
@@ -93,8 +97,11 @@ class HeadsetSample:
         )
 
     def blend(self, later: HeadsetSample, share: float) -> HeadsetSample:
-        """Return the sample at a share between two; a part that one of them lacks is that of ``later``."""
-        parts: dict[str, Any] = {}
+        """Return the sample at a share between two; a part that one of them lacks is that of ``later``.
+
+        The gaze is not blended, since eyes jump: it is the latest one.
+        """
+        parts: dict[str, Any] = {"gaze": later.gaze if share >= 1.0 else self.gaze}
         for name in PARTS:
             a, b = getattr(self, name), getattr(later, name)
             if a is not None and b is not None:
@@ -112,6 +119,14 @@ def _numbers(frame: StateFrame, name: str, count: int, default: Any = None) -> F
     if count == 7 and (np.abs(numbers[:3]).max() > FARTHEST or not 0.5 < np.linalg.norm(numbers[3:]) < 2.0):
         raise InputError(f"a message of a headset has {name!r} = {numbers.round(3).tolist()}, which is no pose")
     return numbers
+
+
+def _gaze(frame: StateFrame, head: Floats) -> Floats | None:
+    """Return the direction of the ray of the eyes, which is along -z of its pose, in the frame of the head."""
+    if "gaze" not in frame.arrays:
+        return None
+    ahead = _turn(_numbers(frame, "gaze", 7)) @ AXES.T
+    return np.asarray((_turn(head) @ AXES.T).T @ ahead[:, 0])
 
 
 def _pairs(frame: StateFrame) -> Floats:

@@ -24,6 +24,8 @@ from .shared_rooms import SharedRooms
 __all__ = ["VrParticipant", "avatar_body"]
 
 SOURCE = "vr"
+CLOCK_INTERVAL = 1.0
+"""Time between two records of the clock offset [s]."""
 LATEST = 100
 """Number of messages that are kept."""
 
@@ -40,6 +42,7 @@ class VrParticipant:
         recorder: recording of the raw messages, or None.
         clock: time of the server [s].
         tell: called with messages for the headset, JSON.
+        utc: seconds since 1970, recorded beside ``clock``.
     """
 
     def __init__(
@@ -50,6 +53,7 @@ class VrParticipant:
         recorder: HeadsetRecorder | None = None,
         clock: Callable[[], float] = time.monotonic,
         tell: Callable[[dict[str, Any]], None] = lambda _: None,
+        utc: Callable[[], float] = time.time,
     ) -> None:
         self.avatar, self.rooms, self.recorder = avatar, rooms, recorder
         self.stream = HeadsetStream(settings)
@@ -59,6 +63,8 @@ class VrParticipant:
         """The latest message."""
         self._latest: deque[HeadsetSample] = deque(maxlen=LATEST)
         self._clock, self._tell = clock, tell
+        self._utc = utc
+        self._noted: tuple[HeadsetRecorder | None, float] = (None, 0.0)
         self._lock = threading.Lock()
         self._simulation: Simulation | None = None
         self._estimator: BodyEstimator | None = None
@@ -80,6 +86,7 @@ class VrParticipant:
             self.sample = sample
             self._latest.append(sample)
             self.stream.add(sample, arrival)
+            self._note_clock(arrival)
         return {"clock": [sample.time, arrival, self._clock()]}
 
     def orders(self, simulation: Simulation) -> list[Order]:
@@ -97,6 +104,8 @@ class VrParticipant:
             if pose is None:
                 return []
             parts = {name: getattr(pose, name) for name in ("head", "left_hand", "right_hand")}
+            if sample.gaze is not None and pose.head is not None:
+                parts["gaze"] = tuple(sample.gaze.tolist())
             order = AvatarOrder(
                 avatar=self.avatar, time=at, x=pose.x, y=pose.y, heading=pose.heading, source=SOURCE, **parts
             )
@@ -146,6 +155,7 @@ class VrParticipant:
                 "refused": self.refused, "reason": self.reason, "offset": clock.offset if clock else None,
                 "round_trip": round(1e3 * clock.delay, 3) if clock else None,
                 "steps": self.stream.latency.count("motion"),
+                "gaze": getattr(sample, "gaze", None) is not None,
                 "hands": [name for name in ("left", "right") if getattr(sample, name, None) is not None],
             }  # fmt: skip
             if sample is not None and sample.head is not None:
@@ -153,6 +163,14 @@ class VrParticipant:
                 found["place"] = place.round(3).tolist()
                 found["margin"] = self.rooms.margin("person", float(place[0]), float(place[1]))
         return found
+
+    def _note_clock(self, now: float) -> None:
+        """Record how the clocks are related, in each recording first when it is known and then once a second."""
+        clock, recorder = self.stream.clock, self.recorder
+        if recorder is None or not clock or (recorder is self._noted[0] and now < self._noted[1] + CLOCK_INTERVAL):
+            return
+        self._noted = (recorder, now)
+        recorder.note(now, {"clock": {"offset": clock.offset, "round_trip": clock.delay, "utc": self._utc()}})
 
     def _follow(self, simulation: Simulation) -> None:
         """Use the body of the avatar in a simulation that was not seen before."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .session_limits import CLASSROOM, SessionLimits
     from .simulator import LiveRun, SimulatorDesk, navigator_orders
     from .state_frame import StateFrame
-    from .tabs import DESKS, opened_first
+    from .tabs import DESKS, opened_first, with_streams
     from .window import CREDIT, Window
     from .workspace import Workspace
 
@@ -47,7 +47,7 @@ __getattr__, __dir__ = lazy_exports(
         "experiments": ["ExperimentDesk"],
         "simulator": ["LiveRun", "SimulatorDesk", "navigator_orders"],
         "state_frame": ["StateFrame"],
-        "tabs": ["DESKS", "opened_first"],
+        "tabs": ["DESKS", "opened_first", "with_streams"],
         "window": ["CREDIT", "Window"],
         "workspace": ["Workspace"],
     },
@@ -82,6 +82,7 @@ __all__ = [
     "is_loopback",
     "navigator_orders",
     "opened_first",
+    "with_streams",
     "scene_description",
     "scene_frame",
     "scene_resource",

@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 GAZE_TYPE = "Gaze"
 GAZE_CHANNELS = ("direction_x", "direction_y", "direction_z")
 """Channels of a stream of the type ``Gaze``: the direction in the frame of the head (x ahead, y left, z up)."""
+UNKNOWN = (float("nan"),) * 3
 LATE = 0.1
 """Longest time between a sample of the gaze and the latest pose of the head [s]."""
 
@@ -76,13 +77,16 @@ def looking_shares(recorded: RecordedTrial) -> tuple[dict[str, float], str]:
 def view_track(recorded: RecordedTrial, avatar: str) -> ViewTrack | None:
     """Return where the participant looks: by the gaze if the session recorded one, else by the head; None without both.
 
-    The poses of the head are those of the orders in the episode. A recorded stream of the type ``Gaze`` with the
-    channels ``direction_x``, ``direction_y`` and ``direction_z`` turns with the latest pose of the head.
+    The poses of the head, and the gaze of a headset that measures it, are those of the orders in the episode; directions
+    are NaN while the eyes are closed. Otherwise a recorded stream of the type ``Gaze`` with the channels
+    ``direction_x``, ``direction_y`` and ``direction_z`` turns with the latest pose of the head.
     """
     head = _head_track(recorded, avatar)
     if head is None:
         return None
-    time, poses = head
+    time, poses, eyes = head
+    if np.isfinite(eyes).any():
+        return ViewTrack("gaze", time, poses[:, :3], _rotate(poses[:, 3:], eyes))
     for stream in read_streams(recorded.folder.parent):
         if stream.type == GAZE_TYPE and all(name in stream.labels for name in GAZE_CHANNELS):
             gaze = _gaze_track(recorded, stream, time, poses)
@@ -91,17 +95,18 @@ def view_track(recorded: RecordedTrial, avatar: str) -> ViewTrack | None:
     return ViewTrack("head", time, poses[:, :3], _rotate(poses[:, 3:], np.array([1.0, 0.0, 0.0])))
 
 
-def _head_track(recorded: RecordedTrial, avatar: str) -> tuple[Floats, Floats] | None:
-    """Return times and poses ``[T, 7]`` of the head in the orders for an avatar."""
+def _head_track(recorded: RecordedTrial, avatar: str) -> tuple[Floats, Floats, Floats] | None:
+    """Return times, poses ``[T, 7]`` of the head and directions ``[T, 3]`` of the eyes in the orders for an avatar."""
     known = {
-        float(at if order.time is None else order.time): order.head
+        float(at if order.time is None else order.time): (*order.head, *(order.gaze or UNKNOWN))
         for at, order in recorded.episode.orders
         if isinstance(order, AvatarOrder) and order.avatar == avatar and order.head is not None
     }
     if not known:
         return None
     times = np.array(sorted(known))
-    return times, np.array([known[time] for time in times.tolist()], dtype=np.float64)
+    rows = np.array([known[time] for time in times.tolist()], dtype=np.float64)
+    return times, rows[:, :7], rows[:, 7:]
 
 
 def _gaze_track(recorded: RecordedTrial, stream: RecordedStream, time: Floats, poses: Floats) -> ViewTrack | None:

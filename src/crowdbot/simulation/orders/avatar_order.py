@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.humans import BodyPose
 from crowdbot.world import give_pose
@@ -50,9 +52,11 @@ class AvatarOrder(Order):
         heading: direction of the trunk [rad].
         head, left_hand, right_hand: x, y, z [m] and a quaternion w, x, y, z in the world frame; None: as in the gait.
         skeleton: the whole skeleton. See :class:`crowdbot.humans.BodyPose` for all of these.
+        gaze: direction of the eyes in the frame of ``head`` (x ahead, y left, z up), a unit vector; None: not measured.
+            It is recorded and moves nothing.
 
     Raises:
-        InputError: a value is not finite or out of range.
+        InputError: a value is not finite or out of range, or there is a gaze without a head.
 
     >>> AvatarOrder(avatar="guide", x=1.0, y=2.0, time=0.1, right_hand=(1.2, 1.7, 1.6, 1, 0, 0, 0)).pose.heading
     0.0
@@ -67,6 +71,7 @@ class AvatarOrder(Order):
     left_hand: tuple[float, ...] | None = None
     right_hand: tuple[float, ...] | None = None
     skeleton: tuple[float, ...] | None = None
+    gaze: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -76,6 +81,18 @@ class AvatarOrder(Order):
         for name in ("x", "y", "heading", "head", "left_hand", "right_hand", "skeleton"):
             object.__setattr__(self, name, getattr(pose, name))
         object.__setattr__(self, "time", check_time(self))
+        if self.gaze is not None:
+            object.__setattr__(self, "gaze", self._unit_gaze())
+
+    def _unit_gaze(self) -> tuple[float, ...]:
+        """Return the direction of the eyes with length 1."""
+        values = list(self.gaze) if isinstance(self.gaze, list | tuple | np.ndarray) else []
+        if len(values) != 3 or not all(isinstance(one, int | float | np.number) for one in values) or self.head is None:
+            raise InputError(f"AvatarOrder: gaze = {self.gaze!r} must be 3 numbers, a direction in the frame of the head")
+        length = math.hypot(*(float(one) for one in values))
+        if not 1e-6 <= length <= 1e6:
+            raise InputError(f"AvatarOrder: gaze = {self.gaze!r} has the length {length:g}; it must be a direction")
+        return tuple(float(one) / length for one in values)
 
     @property
     def pose(self) -> BodyPose:

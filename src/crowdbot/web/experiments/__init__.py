@@ -2,5 +2,6 @@
 
 from .experiment_desk import ExperimentDesk
 from .question_form import question_form
+from .session_streams import StreamChoice, chosen_streams
 
-__all__ = ["ExperimentDesk", "question_form"]
+__all__ = ["ExperimentDesk", "StreamChoice", "chosen_streams", "question_form"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import re
 import threading
 import time
@@ -16,6 +17,7 @@ from crowdbot.experiments import (
     Answered,
     BackgroundRun,
     Event,
+    Experiment,
     Next,
     Pause,
     Repeat,
@@ -35,6 +37,7 @@ from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 
 from .question_form import question_form
+from .session_streams import SessionStreams, StreamChoice, chosen_streams
 from .trial_view import TrialView
 
 __all__ = ["ExperimentDesk"]
@@ -48,11 +51,14 @@ class ExperimentDesk(Desk):
     """
 
     name: ClassVar[str] = "experiments"
+    streams: ClassVar[StreamChoice] = StreamChoice()
+    """Streams of the Lab Streaming Layer that the page proposes."""
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
         self._runner: SessionRunner | None = None
         self._run: BackgroundRun | None = None
+        self._streams: SessionStreams | None = None
         self._rate = 1.0
         self._view: TrialView | None = None
         self._shown = ""
@@ -76,8 +82,20 @@ class ExperimentDesk(Desk):
         return rows
 
     @command
-    def open(self, experiment: str, participant: int, resume: bool = False, rate: float = 1.0) -> dict[str, Any]:
-        """Begin or continue the session of a participant; trials run at ``rate`` times real time."""
+    def open(
+        self,
+        experiment: str,
+        participant: int,
+        resume: bool = False,
+        rate: float = 1.0,
+        send_streams: bool | None = None,
+        record_streams: list[str] | None = None,
+    ) -> dict[str, Any]:
+        """Begin or continue the session of a participant; trials run at ``rate`` times real time.
+
+        ``send_streams`` sends events and poses over the Lab Streaming Layer, and ``record_streams`` names the streams of
+        other programs that are recorded; None takes those of the command line.
+        """
         if not 0.1 <= rate <= 100.0:
             raise InputError(f"rate = {rate:g}: expected 0.1 to 100")
         with self._lock:
@@ -87,7 +105,11 @@ class ExperimentDesk(Desk):
             builtin = experiment in builtin_experiments()
             found = load_experiment(experiment if builtin else self.session.workspace.readable(experiment))
             out = self.session.workspace.folder / "experiments" / re.sub(r"\W+", "-", found.name)
-            self._runner = SessionRunner(found, participant, out, time.time, resume=resume)
+            choice = chosen_streams(
+                self.streams.send if send_streams is None else send_streams,
+                self.streams.record if record_streams is None else record_streams,
+            )
+            self._begin_session(found, participant, out, resume, choice)
             self._rate = rate
             return self._do(Start()) if self._runner.session.phase == "ready" else self._moved()
 
@@ -99,7 +121,7 @@ class ExperimentDesk(Desk):
             for name, value in answers.items():
                 runner.do(Answered(str(name), value))
                 if runner.session.over:  # an answer that ends the session, such as no consent
-                    break
+                    return self._moved()
             return self._tell()
 
     @command
@@ -204,11 +226,29 @@ class ExperimentDesk(Desk):
         with self._lock:
             self._close()
 
+    def _begin_session(self, found: Experiment, participant: int, out: Path, resume: bool, choice: StreamChoice) -> None:
+        """Open the streams and the log; streams that are missing leave no session open."""
+        streams = SessionStreams(choice, found.name)
+        try:
+            runner = SessionRunner(found, participant, out, time.time, resume=resume, outlets=streams.outlets)
+        except BaseException:
+            streams.close()
+            raise
+        try:
+            streams.record(runner.folder)
+        except BaseException:
+            runner.close()
+            streams.close()
+            raise
+        self._runner, self._streams = runner, streams
+
     def _close(self) -> None:
         self._give_up()
-        if self._runner is not None:
-            self._runner.close()
-            self._runner = None
+        runner, streams, self._runner, self._streams = self._runner, self._streams, None, None
+        if runner is not None:
+            runner.close()
+        if streams is not None:
+            streams.close()
 
     def _opened(self) -> SessionRunner:
         if self._runner is None:
@@ -238,6 +278,8 @@ class ExperimentDesk(Desk):
             self._shown = runner.page.text
             if self._shown:
                 runner.log_screen(self._shown)
+        if runner.session.over and self._streams is not None:
+            self._streams.stop_recording()
         return self._tell()
 
     def _begin(self, runner: SessionRunner) -> None:
@@ -295,7 +337,7 @@ class ExperimentDesk(Desk):
     def _state(self) -> dict[str, Any]:
         runner = self._runner
         if runner is None:
-            return {"open": False}
+            return {"open": False, "streams": {"send": self.streams.send, "record": list(self.streams.record)}}
         now = runner.session
         page = runner.page if now.phase == "screen" else None
         screen = now.step.screen if page else None
@@ -316,6 +358,7 @@ class ExperimentDesk(Desk):
             "answers": {**now.answers.get(now.index, {}), **(self._draft[1] if self._draft[0] == now.index else {})},
             "outcomes": {str(index): one.outcome for index, one in now.results.items()},
             "rate": self._rate,
+            "streams": {} if self._streams is None else dataclasses.asdict(self._streams.choice),
         }
 
 
