@@ -8,6 +8,7 @@
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
 temperature; the last weights are taken, so nothing is chosen by the place that is left out.
+The fold `all`, for other places, learns from the recordings whose terms allow it (UCY) and from simulated crowds.
 """
 
 from __future__ import annotations
@@ -25,22 +26,33 @@ from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
+from crowdbot.prediction.anchor_net.agent_frame import REACH
 from crowdbot.prediction.anchor_net.confidence import calibrate_confidence
 from crowdbot.prediction.anchor_net.training import UPDATES, AnchorNetTraining, AnchorTraining
-from crowdbot.prediction.anchor_net.training_data import Augmentation, training_set
+from crowdbot.prediction.anchor_net.training_data import GENERAL, Augmentation, training_set
 from crowdbot.prediction.pretrained_weights import ALL, FOLDS, is_held_out
 from crowdbot.prediction.training.loop import TrainingSchedule, train
+from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
 """Borders of the probabilities that are counted together."""
-SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
+OPEN = ("crowds_", "students", "uni_examples")
+"""Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
+CROWDS = 3
+"""Simulated scenes per crowd model and layout in the fold `all`."""
+SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "situation_mean",
+         "situation_whitening", "situation_range")  # fmt: skip
 
 
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
+    if fold == ALL:
+        return [tracks for tracks in found if tracks.name.startswith(OPEN)] + simulated_crowds(
+            CROWDS, seed=1 if folder.name == "val" else 0
+        )
     return [tracks for tracks in found if is_held_out(fold, tracks.name) == left_out]
 
 
@@ -55,7 +67,7 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     if seed == 0:
         anchors = Anchors.fit(*(tracks.windows() for tracks in used))
         np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
-    how = AnchorTraining(seed=seed, **_changes(options.set))
+    how = AnchorTraining(seed=seed, **_changes(options.set, fold))
     watched = training_set(recordings(options.data / "val", fold), reverse=False)
     model = AnchorNetTraining(how, training_set(used), watched, [tracks.name for tracks in used])
     schedule = TrainingSchedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
@@ -83,12 +95,13 @@ def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str,
     print(f"{file.name}: {size} numbers, {file.stat().st_size / 1e6:.2f} MB, {said}", flush=True)
 
 
-def _changes(words: list[str]) -> dict[str, object]:
-    """Return settings of the training; those of the variation may be named too."""
+def _changes(words: list[str], fold: str) -> dict[str, object]:
+    """Return settings of the training of a fold; those of the variation may be named too."""
     pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
     fields = {f.name for f in dataclasses.fields(Augmentation)}
-    varied = dataclasses.replace(Augmentation(), **{k: v for k, v in pairs.items() if k in fields})
-    return {k: v for k, v in pairs.items() if k not in fields} | {"variation": varied}
+    usual, reach = (GENERAL, REACH) if fold == ALL else (Augmentation(), np.inf)
+    varied = dataclasses.replace(usual, **{k: v for k, v in pairs.items() if k in fields})
+    return {"reach": reach} | {k: v for k, v in pairs.items() if k not in fields} | {"variation": varied}
 
 
 def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, dict[str, float]]:

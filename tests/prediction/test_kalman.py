@@ -21,6 +21,12 @@ def slow_filter(
     rows: list[np.ndarray | None], kalman: Kalman | KalmanAcceleration, dt: float
 ) -> tuple[np.ndarray, float]:
     """Textbook filter of one person, state (x, y, vx, vy[, ax, ay]): the state at the end and the surprise [nat]."""
+    state, _, surprise, _, _ = slow_states(rows, kalman, dt)
+    return state, surprise
+
+
+def slow_states(rows: list[np.ndarray | None], kalman: Kalman | KalmanAcceleration, dt: float) -> tuple:
+    """The same with the covariance, and the matrices of one row."""
     eye, r = np.eye(2), kalman.measurement**2
     if isinstance(kalman, Kalman):
         step = np.array([[1, dt], [0, 1]])
@@ -50,7 +56,7 @@ def slow_filter(
         )
         gain = P @ H.T @ np.linalg.inv(S)
         state, P = state + gain @ wrong, (np.eye(2 * n) - gain @ H) @ P
-    return state, negative_log_likelihood
+    return state, P, negative_log_likelihood, F, Q
 
 
 FILTERS = pytest.mark.parametrize(
@@ -195,3 +201,39 @@ def test_impossible_parameters_and_empty_training_data_are_refused(windows: Make
         Kalman.fit(windows(np.zeros((2, 1, 3, 2))))
     with pytest.raises(InputError, match="at least one person who is observed at two rows"):
         Kalman.fit()
+
+
+@FILTERS
+def test_the_forecast_carries_the_covariance_of_the_matrix_twin(
+    crowd: Maker, kalman: Kalman | KalmanAcceleration
+) -> None:
+    past = crowd(2, holes=0.4)
+    covariance = kalman.predict(past, 3).covariance
+    assert covariance is not None
+    assert covariance.shape == (len(past), 3, past.present.shape[2], 2, 2)
+    checked = 0
+    for w, a in np.argwhere(past.present[:, -1]):
+        rows = [past.position[w, t, a] if past.present[w, t, a] else None for t in range(8)]
+        _, P, _, F, Q = slow_states(rows, kalman, past.dt)
+        for step in range(3):
+            P = F @ P @ F.T + Q
+            np.testing.assert_allclose(covariance[w, step, a], P[:2, :2], atol=1e-9)
+            checked += 1
+    assert checked > 10
+    assert not covariance[~np.broadcast_to(past.present[:, None, -1], covariance.shape[:3])].any()
+
+
+def test_a_robot_with_a_plan_has_no_uncertainty(windows: Maker) -> None:
+    track = np.stack([np.arange(8.0), np.zeros(8)], axis=-1)[None, :, None]
+    planned = windows(track, robot=True).with_plans({0: [[8.0, 0.0], [9.0, 0.0]]})
+    covariance = Kalman().predict(planned, 2).covariance
+    assert covariance is not None
+    assert not covariance.any()
+
+
+def test_the_covariance_of_some_windows_goes_with_them(crowd: Maker) -> None:
+    forecast = Kalman().predict(crowd(2), 3)
+    assert forecast.covariance is not None
+    np.testing.assert_array_equal(forecast[1:3].covariance, forecast.covariance[1:3])
+    with pytest.raises(InputError, match=r"covariance has shape \[1\], it must be \[4, 3, 7, 2, 2\]"):
+        dataclasses.replace(forecast, covariance=np.zeros(1))

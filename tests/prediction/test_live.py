@@ -23,7 +23,7 @@ def test_a_stream_is_predicted_as_the_same_window_of_a_recording(
 ) -> None:
     tracks = recorded("biwi_hotel")
     frames = np.unique(tracks.frame)[100:130]
-    live = Live(predictor, dt=tracks.dt)
+    live = Live(predictor, dt=tracks.dt, coast=0.0)
     for frame in frames:
         here = tracks.frame == frame
         live.update(tracks.id[here], tracks.position[here])
@@ -38,7 +38,7 @@ def test_a_stream_is_predicted_as_the_same_window_of_a_recording(
 
 
 def test_people_come_and_go_and_are_missed_for_a_while() -> None:
-    live = Live(ConstantVelocity(), dt=0.5)
+    live = Live(ConstantVelocity(), dt=0.5, coast=0.0)
     live.update([1, 2], [[0.0, 0.0], [9.0, 0.0]])
     live.update([2, 3], [[9.0, 0.5], [5.0, 5.0]])
     live.update([3, 1], [[5.0, 5.0], [2.0, 0.0]])

@@ -24,6 +24,11 @@ class Forecast:
         valid: ``[W, A]`` bool: people that were predicted (present at the last observed step).
         dt: time step [s].
         predictor: name of the predictor.
+        covariance: ``[W, T, A, 2, 2]`` [m^2] of the positions around the forecast with K = 1, if the predictor has one.
+            It is the error of the motion model, without the measurement noise of a tracker.
+        existence: ``[W, A]`` probability that a person is still there, for people hidden at the last row; None means 1.
+        out_of_distribution: ``[W, A]`` between 0 and 1: how unlike the training data a person is. A learned predictor
+            gives this share of its answer to a baseline.
 
     Raises:
         InputError: the shapes do not fit, or a position of a predicted person is not finite.
@@ -39,15 +44,20 @@ class Forecast:
     valid: NDArray[np.bool_]
     dt: float
     predictor: str
+    covariance: NDArray[np.float64] | None = None
+    existence: NDArray[np.float64] | None = None
+    out_of_distribution: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         if self.position.ndim != 5 or self.position.shape[4] != 2:
             raise InputError(
                 f"forecast of {self.predictor}: position has shape {list(self.position.shape)}, not [W, K, T, A, 2]"
             )
-        W, K, _, A, _ = self.position.shape
-        for name, fits in (("weight", (W, K)), ("valid", (W, A))):
-            if getattr(self, name).shape != fits:
+        W, K, T, A, _ = self.position.shape
+        shapes = {"weight": (W, K), "valid": (W, A), "covariance": (W, T, A, 2, 2), "existence": (W, A)}
+        for name, fits in (shapes | {"out_of_distribution": (W, A)}).items():
+            value = getattr(self, name)
+            if value is not None and value.shape != fits:
                 shape = list(getattr(self, name).shape)
                 raise InputError(f"forecast of {self.predictor}: {name} has shape {shape}, it must be {list(fits)}")
         wrong = ~np.isfinite(self.position).all(axis=(1, 2, 4)) & self.valid
@@ -95,5 +105,6 @@ class Forecast:
 
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Forecast:
         """Return the forecast of some of the windows."""
-        arrays = {name: getattr(self, name)[chosen] for name in ("position", "weight", "valid")}
+        names = ("position", "weight", "valid", "covariance", "existence", "out_of_distribution")
+        arrays = {name: getattr(self, name)[chosen] for name in names if getattr(self, name) is not None}
         return dataclasses.replace(self, **arrays)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -58,11 +59,25 @@ class _Filter(Predictor):
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        motion, _ = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
+        motion, _, spread = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
         time = past.dt * np.arange(1, steps + 1)[:, None, None]
         terms = [value[:, None] * time**order / math.factorial(order) for order, value in enumerate(motion)]
         place = np.sum(terms[1:], axis=0) + terms[0]
-        return self.forecast(past, place[:, None])
+        covariance = self._covariance(spread, past, steps)
+        return dataclasses.replace(self.forecast(past, place[:, None]), covariance=covariance)
+
+    def _covariance(self, spread: list[list[Floats]], past: Windows, steps: int) -> Floats:
+        """Return covariances ``[W, T, A, 2, 2]`` [m^2] of predicted positions; 0 for absent agents and known plans."""
+        n = len(self._start)
+        drift, noise = _step(n, past.dt), self._push**2 * _noise(n, past.dt)
+        variance = []
+        for step in range(1, steps + 1):
+            spread = _predict_covariance(drift, spread, noise)
+            here = past.present[:, -1]
+            if past.plan is not None:
+                here = here & np.isnan(past.plan_at(step)).any(axis=-1)
+            variance.append(np.where(here, spread[0][0], 0.0))
+        return np.asarray(np.stack(variance, axis=1)[..., None, None] * np.eye(2))
 
     @classmethod
     def fit(cls, *pasts: Windows) -> Self:
@@ -95,8 +110,13 @@ class _Filter(Predictor):
         """Return the mean negative log-likelihood of a row (two coordinates) given the rows before it [nat]."""
         return _negative_log_likelihood(self, [_tracks(past) for past in pasts])
 
-    def _run_filter(self, position: Floats, present: NDArray[np.bool_], dt: float) -> tuple[list[Floats], float]:
-        """Return position and derivatives ``[..., 2]`` after the rows, and the summed negative log-likelihood."""
+    def _run_filter(
+        self, position: Floats, present: NDArray[np.bool_], dt: float
+    ) -> tuple[list[Floats], float, list[list[Floats]]]:
+        """Return position and derivatives ``[..., 2]`` after the rows, the negative log-likelihood and the covariance.
+
+        The covariance is ``[n][n]`` of arrays ``[...]``, the same for x and y.
+        """
         n, shape = len(self._start), present.shape[1:]
         drift, noise = _step(n, dt), self._push**2 * _noise(n, dt)
         measured = self._start[0] ** 2
@@ -120,7 +140,7 @@ class _Filter(Predictor):
             first = here & ~started
             motion[0] = np.where(first[..., None], seen, motion[0])
             started |= here
-        return motion, negative_log_likelihood
+        return motion, negative_log_likelihood, spread
 
 
 @dataclass(frozen=True)
@@ -128,7 +148,8 @@ class Kalman(_Filter):
     """Kalman filter with nearly constant velocity (white acceleration noise).
 
     Position and velocity are filtered over the observed rows; the forecast has constant velocity. x and y are
-    independent. Missing rows are skipped. The velocity of people observed once is zero. Deterministic: K = 1.
+    independent. Missing rows are skipped. The velocity of people observed once is zero. Deterministic: K = 1. The
+    forecast has the covariance of the predicted positions.
 
     Fields:
         acceleration: square root of the spectral density of the acceleration [m s^-1.5].

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import dataclasses
+import math
+import threading
+import time as clock
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,28 +16,34 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 
 from .predictor import Predictor
+from .tracker_history import TrackerHistory
 
 __all__ = ["Live"]
 
-Floats = NDArray[np.float64]
-Row = tuple[NDArray[np.int64], Floats, frozenset[int]]
+ROWS = 8
+"""Default number of rows of predictors without a history in seconds."""
 
 
 class Live:
-    """Predicts a live stream of tracked people at a constant time step.
+    """Predicts a live stream of tracked people.
 
-    People may appear, disappear, be missing for some rows and return. All people in the last row are predicted, from
-    the rows in which they were observed. A calibrated crowd starts each search from the previous result.
+    People may appear, disappear, be missing for some rows and return. All people in the last row are predicted, and,
+    with ``coast``, those hidden since a short time, from the rows in which they were observed. A calibrated crowd
+    starts each search from the previous result. Methods may be called from several threads.
 
     Args:
         predictor: any predictor whose goal does not require the future.
-        dt: time between rows [s].
-        observe: number of observed rows.
+        dt: time between rows of the forecast, and between rows without a time stamp [s].
+        observe: number of observed rows; None: as many as the predictor reads (2.8 s for AnchorNet and Anchors), at
+            least 8.
         walls: rings ``[N, 2]`` [m] of obstacles.
         seed: random seed.
+        coast: how long a hidden person is predicted, at constant velocity [s]. The existence probability in the
+            forecast halves every ``coast / 2``; 0: people who are not in the last row are not predicted.
 
     Raises:
-        InputError: ``dt`` is not above 0, ``observe`` is below 1, or the predictor requires the future.
+        InputError: ``dt`` is not above 0, ``observe`` is below 1, ``coast`` is negative, or the predictor requires the
+            future.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> live = Live(ConstantVelocity(), dt=0.4)
@@ -41,15 +51,26 @@ class Live:
     >>> live.update([7, 9], [[0.4, 0.0], [3.0, 1.0]])
     >>> live.predict(2).position[0, 0, :, 0].round(1).tolist(), live.ids.tolist()
     ([[0.8, 0.0], [1.2, 0.0]], [7, 9])
+
+    Identities of any type and irregular time stamps:
+
+    >>> live = Live(ConstantVelocity(), dt=0.4)
+    >>> for now in (0.0, 0.13, 0.21, 0.38, 0.45):
+    ...     live.update(["a"], [[now, 0.0]], time=now)
+    >>> live.predict(1).position[0, 0, 0].round(2).tolist(), live.ids.tolist()
+    ([[0.85, 0.0]], ['a'])
     """
 
     def __init__(
-        self, predictor: Predictor, dt: float, observe: int = 8, walls: Iterable[ArrayLike] = (), seed: int = 0
-    ) -> None:
+        self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
+        seed: int = 0, coast: float = 1.0,
+    ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
-        if observe < 1:
+        if observe is not None and observe < 1:
             raise InputError(f"live: observe = {observe} rows must be at least 1")
+        if not 0.0 <= coast < np.inf:
+            raise InputError(f"live: coast = {coast} s must be finite and at least 0")
         if not isinstance(predictor, Predictor):
             raise InputError(f"live: {predictor!r} is not a predictor; pass an instance, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
@@ -60,70 +81,86 @@ class Live:
             )
         self.predictor = predictor
         self.dt = dt
-        self.observe = observe
+        self.observe = max(ROWS, math.ceil(predictor.history / dt - 1e-9) + 1) if observe is None else observe
         self.walls = tuple(np.asarray(ring, dtype=float) for ring in walls)
+        self.coast = coast
+        self.latency = math.nan
+        """Duration of the last call of :meth:`predict` [s]; NaN before the first."""
         self._seed = seed
-        self._rows: list[Row] = []
-        self._count = 0
+        self._history = TrackerHistory(dt, self.observe, coast)
         self._memory: Any = None
+        self._reading, self._predicting = threading.RLock(), threading.Lock()
 
     @property
-    def ids(self) -> NDArray[np.int64]:
-        """Identities of all agents in the last row, in the order of forecasts, including robots."""
-        return self._rows[-1][0] if self._rows else np.zeros(0, dtype=np.int64)
+    def ids(self) -> NDArray[Any]:
+        """Identities of all predicted agents in the order of forecasts, including robots and hidden people."""
+        with self._reading:
+            labels = self._history.labels(self._history.numbers())
+        if all(isinstance(label, int) for label in labels):
+            return np.array(labels, dtype=np.int64)
+        found = np.empty(len(labels), dtype=object)
+        found[:] = labels
+        return found
 
-    def update(self, ids: ArrayLike, position: ArrayLike, robots: Iterable[int] = ()) -> None:
-        """Add a row: identities ``[N]`` and positions ``[N, 2]`` [m]; ``robots`` lists the identities of robots.
-
-        Raises:
-            InputError: shapes do not match, a position is not finite, or an identity is duplicate or negative.
-        """
-        who = np.asarray(ids, dtype=np.int64).reshape(-1)
-        place = np.asarray(position, dtype=float).reshape(-1, 2)
-        if len(who) != len(place):
-            raise InputError(f"live: {len(who)} identities and {len(place)} positions; the numbers must be equal")
-        if not np.all(np.isfinite(place)):
-            raise InputError(f"live: the position of {who[~np.isfinite(place).all(axis=1)][0]} is not finite")
-        if len(np.unique(who)) != len(who) or np.any(who < 0):
-            raise InputError(f"live: identities {who.tolist()} must be distinct and at least 0")
-        order = np.argsort(who)
-        self._rows = [*self._rows[1 - self.observe :], (who[order], place[order], frozenset(robots))][-self.observe :]
-        self._count += 1
-
-    def past(self, plans: Mapping[int, ArrayLike] | None = None) -> Windows:
-        """Return the stored rows as one window of all agents in the last row."""
-        who = self.ids
-        T, A = len(self._rows), len(who)
-        position, present = np.zeros((1, T, A, 2)), np.zeros((1, T, A), dtype=np.bool_)
-        robots: frozenset[int] = frozenset()
-        for row, (ids, place, machines) in enumerate(self._rows):
-            robots |= machines
-            _, here, there = np.intersect1d(who, ids, assume_unique=True, return_indices=True)
-            position[0, row, here], present[0, row, here] = place[there], True
-        nobody = np.zeros((1, A), dtype=np.bool_)
-        frame = self._count - T + np.arange(T)
-        past = Windows(
-            position, present, nobody, np.isin(who, sorted(robots))[None], who[None], frame[None], self.dt, "live",
-            "live stream", self.walls,
-        )  # fmt: skip
-        return past.with_plans(plans) if plans else past
-
-    def predict(self, steps: int, samples: int = 1, plans: Mapping[int, ArrayLike] | None = None) -> Forecast:
-        """Return the forecast of all agents in the last row, in the order of :attr:`ids`.
+    def update(
+        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None
+    ) -> None:
+        """Add a row: identities ``[N]`` of any hashable type, and positions ``[N, 2]`` [m].
 
         Args:
-            steps: number of predicted rows.
+            ids: identities; integers of at least 0 are the ids of :meth:`past`, others are numbered.
+            position: positions [m].
+            robots: identities of robots.
+            time: time stamp [s], later than the one before; None: ``dt`` after it. The observed rows are interpolated
+                to steps of ``dt`` before the last time stamp.
+
+        Raises:
+            InputError: shapes do not match, a position is not finite, an identity is duplicate, or the time stamp is
+                not later than the one before.
+        """
+        with self._reading:
+            self._history.add(ids, position, robots, time)
+
+    def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
+        """Return the stored rows as one window of all predicted agents."""
+        return self._past(plans)[0]
+
+    def predict(self, steps: int, samples: int = 1, plans: Mapping[Any, ArrayLike] | None = None) -> Forecast:
+        """Return the forecast of all agents of :attr:`ids`, with the existence probability of each.
+
+        Args:
+            steps: number of predicted rows of ``dt``.
             samples: number of futures.
             plans: planned positions of robots, identity -> ``[S, 2]`` [m]. A query with a plan does not change the
                 memory of the predictor.
 
         Raises:
-            InputError: no row yet, or a plan for an identity that is not in the last row.
+            InputError: no row yet, or a plan for an identity that is not predicted.
         """
-        if not self._rows:
-            raise InputError("live: no row yet; call update first")
-        rng = stream(self._seed, "live", self._count)
-        forecast, memory = self.predictor.follow(self.past(plans), steps, samples, rng, self._memory)
-        if not plans:
-            self._memory = memory
-        return forecast
+        with self._predicting:
+            begin = clock.perf_counter()
+            past, existence, count = self._past(plans, required=True)
+            rng = stream(self._seed, "live", count)
+            forecast, memory = self.predictor.follow(past, steps, samples, rng, self._memory)
+            if not plans:
+                self._memory = memory
+            self.latency = clock.perf_counter() - begin
+        return dataclasses.replace(forecast, existence=existence)
+
+    def _past(
+        self, plans: Mapping[Any, ArrayLike] | None, required: bool = False
+    ) -> tuple[Windows, NDArray[np.float64], int]:
+        """Return the window, existence probabilities ``[1, A]`` and the number of rows so far."""
+        with self._reading:
+            if required and not self._history.count:
+                raise InputError("live: no row yet; call update first")
+            rows = self._history.rows()
+            count = self._history.count
+            known = {self._history.number_of(who): path for who, path in plans.items()} if plans else {}
+        nobody = np.zeros((1, len(rows.id)), dtype=np.bool_)
+        frame = count - len(rows.position) + np.arange(len(rows.position))
+        past = Windows(
+            rows.position[None], rows.present[None], nobody, rows.robot[None], rows.id[None], frame[None], self.dt,
+            "live", "live stream", self.walls,
+        )  # fmt: skip
+        return (past.with_plans(known) if known else past), rows.existence[None], count

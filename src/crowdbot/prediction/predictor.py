@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ class Predictor(ABC):
         draw random numbers from :func:`window_streams`. A deterministic predictor returns K = 1 for any number of
         samples.
     """
+
+    history: ClassVar[float] = 0.0
+    """Observed seconds that the predictor reads; 0: it reads all rows, whatever their time step."""
 
     @property
     def name(self) -> str:

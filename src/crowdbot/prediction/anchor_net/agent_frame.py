@@ -17,10 +17,12 @@ from crowdbot.prediction.pretrained_weights import STEP
 
 __all__ = [
     "AGENT_FEATURES",
+    "HISTORY",
     "LOOKAHEAD_ROWS",
     "NEAR",
     "NEIGHBOR_FEATURES",
     "PREDICTED_ROWS",
+    "REACH",
     "ROWS",
     "SPEED_CLASSES",
     "AgentHistories",
@@ -37,6 +39,8 @@ Bools = NDArray[np.bool_]
 
 ROWS = 8
 """Number of observed rows."""
+HISTORY = (ROWS - 1) * STEP
+"""Observed time [s]."""
 PREDICTED_ROWS = 12
 """Number of predicted rows."""
 NEAR = 12
@@ -49,6 +53,12 @@ NEIGHBOR_FEATURES = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(LOOKAHEAD_ROWS)
 """Number of features of each neighbor."""
 SPEED_CLASSES = (0.03, 0.2, 0.8, 2.0, 3.5)
 """Boundaries of the speed classes: distance walked in 2.8 s [m]."""
+REACH = 8.0
+"""Largest distance of a neighbor that new weights read [m]."""
+LONGEST_PATH = 10.0
+"""Limit of own past positions in bounded features [m]."""
+LONGEST_STEP = 2.0
+"""Limit of displacements in 0.4 s in bounded features [m]."""
 MOVED = 0.1
 """Minimum displacement for a heading [m]; below it, earlier rows are used."""
 FEW = 64
@@ -79,6 +89,10 @@ class AgentHistories(NamedTuple):
             self.past[rows], self.seen[rows], self.near[rows], self.pace[rows], self.later[rows], self.known[rows],
             self.there[rows],
         )  # fmt: skip
+
+    def within(self, reach: float) -> AgentHistories:
+        """Return the histories without neighbors farther away than ``reach`` [m]."""
+        return self._replace(there=np.asarray(self.there & (_length(self.near) <= reach)))
 
 
 def interpolate_gaps(position: Floats, seen: Bools) -> Floats:
@@ -140,13 +154,21 @@ def rotate(vector: Floats, heading: Floats, back: bool = False) -> Floats:
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)
 
 
-def agent_features(people: AgentHistories, heading: Floats) -> tuple[Floats, Floats]:
-    """Return the features of people ``[N, AGENT_FEATURES]`` and neighbors ``[N, 12, NEIGHBOR_FEATURES]``."""
+def agent_features(people: AgentHistories, heading: Floats, reach: float = np.inf) -> tuple[Floats, Floats]:
+    """Return the features of people ``[N, AGENT_FEATURES]`` and neighbors ``[N, 12, NEIGHBOR_FEATURES]``.
+
+    With a finite ``reach`` [m] all features are bounded: positions and displacements saturate smoothly, those of
+    neighbors at ``reach``. An infinite one gives the unbounded features of weights without the array ``reach``.
+    """
     past, near, pace, later = (rotate(values, heading) for values in (people.past, people.near, people.pace,
                                                                      people.later))  # fmt: skip
+    bounded = np.isfinite(reach)
     step = past[:, 1:] - past[:, :-1]
-    last = step[:, -1]
     mean = (past[:, -1] - past[:, -4]) / 3.0
+    if bounded:
+        past, step, mean = _saturate(past, LONGEST_PATH), _saturate(step, LONGEST_STEP), _saturate(mean, LONGEST_STEP)
+        pace, near = _saturate(pace, LONGEST_STEP), _saturate(near, reach)
+    last = step[:, -1]
     N = len(past)
     own = np.concatenate(
         [past[:, :-1].reshape(N, -1), step.reshape(N, -1), _length(last)[:, None], mean,
@@ -159,7 +181,8 @@ def agent_features(people: AgentHistories, heading: Floats) -> tuple[Floats, Flo
     soon = np.clip(-inward / np.maximum(speed2, 1e-9), 0.0, float(PREDICTED_ROWS))
     closest = _length(near + closing * soon[..., None])
     moment = np.asarray(LOOKAHEAD_ROWS, dtype=np.float64)[:, None]
-    meant = (later - last[:, None, None] * moment) / 5.0
+    meant = later - last[:, None, None] * moment
+    meant = (_saturate(meant, reach) if bounded else meant) / 5.0
     company = np.concatenate(
         [near / 5.0, pace, near / np.maximum(distance, 1e-9)[..., None],
          np.stack([1.0 / (1.0 + distance), 1.0 / (1.0 + closest), soon / PREDICTED_ROWS, people.known], axis=-1),
@@ -229,7 +252,24 @@ def _at_steps(past: Windows) -> tuple[Floats, Bools]:
         here = known.present[:, low] & known.present[:, high]
         position[:, -1 - back] = np.where(here[..., None], one + share * (other - one), 0.0)
         seen[:, -1 - back] = here
+    _extend_short_tracks(known, position, seen)
     return position, seen
+
+
+def _extend_short_tracks(known: Windows, position: Floats, seen: Bools) -> None:
+    """Set the second last row of people observed for less than 0.4 s from their mean velocity, in place.
+
+    Otherwise two people with 0.35 s of rows, one walking and one standing, would look the same.
+    """
+    T = known.present.shape[1]
+    first = np.argmax(known.present, axis=1)
+    time = (T - 1 - first) * known.dt
+    short = known.present[:, -1] & (time > 0.0) & (time < STEP - 1e-6)
+    start = np.take_along_axis(known.position, first[:, None, :, None], axis=1)[:, 0]
+    now = known.position[:, -1]
+    before = now - (now - start) * (STEP / np.where(short, time, 1.0))[..., None]
+    position[:, -2] = np.where(short[..., None], before, position[:, -2])
+    seen[:, -2] |= short
 
 
 def _nearest(place: Floats, here: Bools, walked: Bools, id: NDArray[np.int64]) -> tuple[NDArray[np.int64], Bools]:
@@ -250,6 +290,12 @@ def _nearest(place: Floats, here: Bools, walked: Bools, id: NDArray[np.int64]) -
         there[part, :, :few] = np.isfinite(np.take_along_axis(distance, nearest, axis=2))
         who[part, :, :few] = np.take_along_axis(np.broadcast_to(order[part, None], distance.shape), nearest, axis=2)
     return who, there
+
+
+def _saturate(vector: Floats, limit: float) -> Floats:
+    """Return vectors ``[..., 2]`` with lengths below ``limit``, almost unchanged if they are short."""
+    square = vector[..., 0] * vector[..., 0] + vector[..., 1] * vector[..., 1]
+    return np.asarray(vector / np.sqrt(1.0 + square / (limit * limit))[..., None])
 
 
 def _length(vector: Floats) -> Floats:

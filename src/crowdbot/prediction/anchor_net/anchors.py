@@ -24,7 +24,7 @@ from crowdbot.prediction.pretrained_weights import (
     load_pretrained,
 )
 
-from .agent_frame import PREDICTED_ROWS, agent_histories, heading_vectors, rotate
+from .agent_frame import HISTORY, PREDICTED_ROWS, agent_histories, heading_vectors, rotate
 
 __all__ = ["Anchors", "cluster_centers", "resample_paths", "residuals", "scatter_to_slots"]
 
@@ -64,6 +64,7 @@ class Anchors(Predictor):
     share: Floats | None = None
 
     paper: ClassVar[Paper] = CHAI
+    history: ClassVar[float] = HISTORY
 
     def __post_init__(self) -> None:
         check_fold(self.fold)

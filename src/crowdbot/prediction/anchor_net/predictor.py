@@ -31,6 +31,7 @@ from crowdbot.prediction.pretrained_weights import (
 from crowdbot.prediction.training.checkpoint import load_checkpoint
 
 from .agent_frame import (
+    HISTORY,
     PREDICTED_ROWS,
     agent_features,
     agent_histories,
@@ -41,8 +42,9 @@ from .agent_frame import (
 from .anchors import CHAI, resample_paths, scatter_to_slots
 from .layers import attend, dense
 from .network_shapes import wrong_array
+from .out_of_distribution import out_of_distribution
 
-__all__ = ["AnchorNet", "Modes", "network_output"]
+__all__ = ["AnchorNet", "Modes", "network_output", "reach_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -83,6 +85,8 @@ class _Bends(NamedTuple):
     step: Floats
     window: Integers
     slot: Integers
+    foreign: Floats
+    """``[N]`` out-of-distribution score."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,10 @@ class AnchorNet(Predictor):
     The futures of the people in a window are combined into joint futures with few collisions; remaining ones are
     removed by offsets of some centimetres. Each person keeps all 20 futures; the most probable ones are in the first
     joint futures.
+
+    People who are unlike the training data have a high ``out_of_distribution`` score in the forecast. The corrections
+    of the network are multiplied by 1 minus the score: at a score of 1 the set is the fixed anchors, and the single
+    trajectory is constant velocity. Leave-one-out weights have no score.
 
     Fields:
         fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
@@ -120,6 +128,7 @@ class AnchorNet(Predictor):
     contact: float = 0.25
 
     paper: ClassVar[Paper] = CHAI
+    history: ClassVar[float] = HISTORY
 
     def __post_init__(self) -> None:
         check_fold(self.fold)
@@ -145,15 +154,21 @@ class AnchorNet(Predictor):
         if samples == 1:
             path = _path(numbers, bends, bends.single[:, None], past, steps)[0]
             place = scatter_to_slots(past, path, bends.window, bends.slot)
-            return self.forecast(past, separate_people(past, place, self.contact))
+            return self._scored(past, separate_people(past, place, self.contact), bends)
         path = _path(numbers, bends, bends.mode, past, steps)[0]
         place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = bends.probability
         place, weight = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
-        forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
+        forecast = self._scored(past, separate_people(past, place[:, :samples], self.contact), bends)
         return dataclasses.replace(forecast, weight=weight)
+
+    def _scored(self, past: Windows, place: Floats, bends: _Bends) -> Forecast:
+        """Return the forecast with the out-of-distribution score of each person."""
+        foreign = np.zeros((len(past), past.present.shape[2]))
+        foreign[bends.window, bends.slot] = bends.foreign
+        return dataclasses.replace(self.forecast(past, place), out_of_distribution=foreign)
 
     def modes(self, past: Windows, steps: int = PREDICTED_ROWS) -> Modes:
         """Return the individual futures and probabilities of all agents present at the last row.
@@ -180,8 +195,20 @@ class AnchorNet(Predictor):
             return (
                 f"anchor-net: {past.source} is not named after a training place; using the weights trained on all"
                 " places; set fold if the recording is from one of them"
-            )
-        return ""
+            ) + self._foreign_note(past)
+        return self._foreign_note(past).removeprefix("; ")
+
+    def _foreign_note(self, past: Windows) -> str:
+        """Return how many people are unlike the training data; empty if fewer than 5 %."""
+        numbers = self._numbers(past)
+        people, _, _ = agent_histories(past)
+        score = out_of_distribution(numbers, people.within(reach_of(numbers)))
+        if np.mean(score > 0.5) < 0.05 or not len(score):
+            return ""
+        return (
+            f"; {np.mean(score > 0.5):.0%} of the people of {past.source} are unlike the training data (score above"
+            " 0.5): their forecasts are mostly constant velocity or the anchors"
+        )
 
     def _numbers(self, past: Windows) -> Numbers:
         if not self.file:
@@ -214,7 +241,7 @@ class AnchorNet(Predictor):
             bend = np.where(through[..., None], middle, bend)
         path, _ = _path(numbers, bends, bend, past, steps)
         place = coordinate_draws(past, scatter_to_slots(past, path, bends.window, bends.slot), self.contact, DRAWS)
-        return self.forecast(past, separate_people(past, place[:, :samples], self.contact))
+        return self._scored(past, separate_people(past, place[:, :samples], self.contact), bends)
 
 
 def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
@@ -230,6 +257,11 @@ def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArra
     seen = attend(query, near, np.ascontiguousarray(there), numbers["nobody"], numbers["alone"])
     both = layer(np.concatenate([hidden, seen], axis=1), "both_1")
     return layer(layer(both, "both_2"), "out", rectify=False)
+
+
+def reach_of(numbers: Numbers) -> float:
+    """Return the largest distance of a neighbor [m] of weights; infinite for weights with unbounded features."""
+    return float(numbers["reach"]) if "reach" in numbers else math.inf
 
 
 def _own(file: str, changed: int) -> Numbers:
@@ -263,19 +295,25 @@ def _checkpoint_weights(file: str) -> Numbers:
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
     people, window, slot = agent_histories(past)
+    reach = reach_of(numbers)
+    people = people.within(reach)
+    foreign = out_of_distribution(numbers, people)
     heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
     out = np.zeros((len(window), K * D + K + 2 * D))
     for first in range(0, len(window), MOST_AT_ONCE):
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
-        out[part] = network_output(numbers, *agent_features(some, heading[part]), some.there)
-    mode = numbers["centres"] + out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
+        out[part] = network_output(numbers, *agent_features(some, heading[part], reach), some.there)
+    own = (1.0 - foreign)[:, None]  # share of the network; the rest is the anchors, or constant velocity
+    mode = numbers["centres"] + own[..., None] * out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
     kind = speed_class(people.past)
     score = out[:, K * D : K * D + K] / numbers["temperature"][kind, None]
     probability = np.exp(score - score.max(axis=1, keepdims=True, initial=-np.inf))
     total = np.cumsum(probability, axis=1)[:, -1:]  # summation order independent of the batch
     probability = probability / total
+    if "share" in numbers:
+        probability = own * probability + (1.0 - own) * numbers["share"]
     spread = np.exp(np.clip(numbers["width"] + out[:, None, K * D + K + D :], -6.0, 2.0))
     spread = spread * numbers["spread"] * numbers["widening"][kind, None, None]
     order = np.argsort(-probability, axis=1, kind="stable")
@@ -284,12 +322,13 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     return _Bends(
         np.where(walked[..., None], mode[row, order], 0.0),
         probability[row, order],
-        np.where(walked, out[:, K * D + K : K * D + K + D] * numbers["spread"], 0.0),
+        np.where(walked, own * out[:, K * D + K : K * D + K + D] * numbers["spread"], 0.0),
         np.where(walked[..., None], spread[row, order], 0.0),
         heading,
         people.past[:, -1] - people.past[:, -2],
         window,
         slot,
+        foreign,
     )
 
 

@@ -16,11 +16,20 @@ from crowdbot.prediction.training.loop import Trainable
 from crowdbot.prediction.training.samples import Samples
 from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 
-from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, heading_vectors, rotate
+from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, REACH, heading_vectors, rotate
 from .anchors import cluster_centers
 from .confidence import calibrate_confidence
+from .out_of_distribution import distribution_of
 from .predictor import network_output
-from .training_data import NO_AUGMENTATION, Augmentation, TrainingBatch, TrainingSet, make_batch, training_set_of
+from .training_data import (
+    NO_AUGMENTATION,
+    Augmentation,
+    TrainingBatch,
+    TrainingSet,
+    augment_people,
+    make_batch,
+    training_set_of,
+)
 
 __all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
 
@@ -29,6 +38,8 @@ Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000
 """Optimizer steps of the shipped weights, which are the averaged weights after the last step."""
+DESCRIBED = 20000
+"""Number of augmented people that describe the training data for the out-of-distribution score."""
 RANK = 6
 """Number of coefficients of a residual; the reconstruction error is about 2 cm."""
 
@@ -49,6 +60,8 @@ class AnchorTraining:
         likely: weight of the likelihood under the mixture, which trains probabilities and spreads only.
         seed: random seed.
         variation: data augmentation.
+        reach: largest distance of a neighbor [m], which also bounds the features; inf: 12 neighbors at any distance
+            and unbounded features, as in the leave-one-out weights.
     """
 
     people: int = 256
@@ -65,6 +78,11 @@ class AnchorTraining:
     likely: float = 0.02
     seed: int = 0
     variation: Augmentation = dataclasses.field(default_factory=Augmentation)
+    reach: float = REACH
+
+    def __post_init__(self) -> None:
+        if not self.reach > 0.0:
+            raise InputError(f"anchor-net: reach = {self.reach} m must be above 0")
 
 
 def learner(
@@ -96,7 +114,7 @@ def learner(
 
 
 def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
-    """Return ``basis [6, 24]``, ``centres [count, 6]`` and ``spread [6]`` of the residuals to constant velocity."""
+    """Return ``basis [6, 24]``, ``centres [count, 6]``, their ``share`` and ``spread [6]`` of residuals of training data."""
     if len(material) < count:
         raise InputError(f"{len(material)} people are too few to train {count} futures")
     past = material.people.past
@@ -109,8 +127,8 @@ def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
     basis = vectors[:, ::-1][:, :RANK].T
     basis = basis * np.where(basis[np.arange(RANK), np.abs(basis).argmax(axis=1)] < 0.0, -1.0, 1.0)[:, None]
     points = both @ basis.T
-    found, _ = cluster_centers(points, count, seed)
-    return {"basis": basis, "centres": found, "spread": points.std(axis=0)}
+    found, share = cluster_centers(points, count, seed)
+    return {"basis": basis, "centres": found, "spread": points.std(axis=0), "share": share}
 
 
 def network(how: AnchorTraining) -> Any:
@@ -196,7 +214,9 @@ class AnchorNetTraining(Trainable):
         """Run one update; people and their augmentation are drawn from a stream given by the seed and the number."""
         del batch, rng
         how, own = self.config, stream(self.config.seed, "batch", number)
-        shown = make_batch(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
+        shown = make_batch(
+            self.material, own.integers(0, len(self.material), how.people), how.variation, own, how.reach
+        )
         for group in self.optimiser.param_groups:
             group["lr"] = how.rate * _rate_factor(number, total, how)
         loss = _loss(self.layers, self.fixed, shown, how, 1.0 - number / total)
@@ -214,7 +234,7 @@ class AnchorNetTraining(Trainable):
         """Return ADE and FDE [m] of the nearest future, and ADE of the single trajectory."""
         numbers = self.numbers()
         own, company, there, missed = make_batch(
-            self.watched, np.arange(len(self.watched)), NO_AUGMENTATION, stream(0, "check")
+            self.watched, np.arange(len(self.watched)), NO_AUGMENTATION, stream(0, "check"), self.config.reach
         )
         found = network_output(numbers, own, company, there)
         K = self.config.count
@@ -228,7 +248,13 @@ class AnchorNetTraining(Trainable):
 
     def numbers(self) -> Numbers:
         """Return the averaged weights before the calibration."""
-        return self.shapes | _plain(self.mean)
+        found = self.shapes | _plain(self.mean)
+        if not np.isfinite(self.config.reach):
+            return found
+        rng = stream(self.config.seed, "described")
+        rows = rng.integers(0, len(self.material), DESCRIBED)
+        people = augment_people(self.material, rows, self.config.variation, rng)[0].within(self.config.reach)
+        return found | {"reach": np.array(self.config.reach)} | distribution_of(people)
 
     def weights(self) -> Mapping[str, Any]:
         """Return the averaged weights with probabilities calibrated on the validation data."""

@@ -27,9 +27,11 @@ from .agent_frame import (
 )
 
 __all__ = [
+    "GENERAL",
     "Augmentation",
     "TrainingBatch",
     "TrainingSet",
+    "augment_people",
     "make_batch",
     "reverse_time",
     "training_set",
@@ -89,6 +91,7 @@ class Augmentation:
         switched: share of tracks whose older rows belong to the nearest neighbor.
         planned: share of people for whom the future of some neighbors is known.
         unseen: share of neighbors that are not observed.
+        coarse: share of tracks observed at a slower clock, of 0.48 to 0.7 s, and interpolated to 0.4 s.
     """
 
     mirror: float = 0.5
@@ -104,9 +107,12 @@ class Augmentation:
     switched: float = 0.03
     planned: float = 0.1
     unseen: float = 0.05
+    coarse: float = 0.0
 
 
-NO_AUGMENTATION = Augmentation(*(0.0,) * 13)
+NO_AUGMENTATION = Augmentation(*(0.0,) * 14)
+GENERAL = Augmentation(scale=0.35, noisy=0.2, holes=0.15, late=0.25, unseen=0.1, coarse=0.15)
+"""Augmentation of the weights for other places: more noise, shorter histories and other clocks."""
 
 
 def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> TrainingSet:
@@ -174,21 +180,22 @@ def reverse_time(tracks: Trajectories) -> Trajectories:
 
 
 def make_batch(
-    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
+    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator, reach: float = np.inf
 ) -> TrainingBatch:
-    """Return a batch of augmented people."""
-    people, ahead, seen_from = _augment(material, rows, how, rng)
+    """Return a batch of augmented people, with neighbors within ``reach`` [m] and the features that belong to it."""
+    people, ahead, seen_from = augment_people(material, rows, how, rng)
+    people = people.within(reach)
     heading = heading_vectors(people.past)
     angle = how.turn * rng.standard_normal(len(rows))
     wrong = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     heading = rotate(heading, wrong)
-    own, company = agent_features(people, heading)
+    own, company = agent_features(people, heading, reach)
     step = people.past[:, -1] - people.past[:, -2]
     missed = ahead - seen_from - step[:, None] * np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None]
     return TrainingBatch(own, company, people.there, rotate(missed, heading))
 
 
-def _augment(
+def augment_people(
     material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
 ) -> tuple[AgentHistories, Floats, Floats]:
     """Return augmented histories, futures and last positions, relative to the true last position."""
@@ -201,6 +208,7 @@ def _augment(
     factor = np.stack([size, size * np.where(rng.random(N) < how.mirror, -1.0, 1.0)], axis=1)
     past, ahead = plain.past * factor[:, None], material.ahead[rows] * factor[:, None]
     near, pace = plain.near * factor[:, None], plain.pace * factor[:, None]
+    past = past if how.coarse == 0.0 else _observe_at_slower_clock(past, how, rng)
     past = past + _noise(N, past.shape[1], how, rng)
     past = _switch_identities(past, near, pace, how, rng)
     seen = _draw_observed_rows(past, plain.seen, how, rng)
@@ -212,6 +220,26 @@ def _augment(
         np.where(zero[..., None], later * factor[:, None, None] - now[:, None], 0.0), knows & there, there,
     )  # fmt: skip
     return people, ahead, now
+
+
+def _observe_at_slower_clock(past: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
+    """Return tracks ``[N, 8, 2]``, some of them interpolated between the rows of a slower clock."""
+    N, T, _ = past.shape
+    slow = np.where(rng.random(N) < how.coarse, rng.uniform(1.2, 1.75, N), 1.0)[:, None]
+    back = np.arange(T - 1.0, -1.0, -1.0) / slow
+    late = np.floor(back + 1e-9)
+    share = (back - late)[..., None]
+    return (1.0 - share) * _interpolate(past, late * slow) + share * _interpolate(past, (late + 1.0) * slow)
+
+
+def _interpolate(past: Floats, back: Floats) -> Floats:
+    """Return positions ``[N, M, 2]`` of tracks at times ``back [N, M]`` before the last row, in rows."""
+    T = past.shape[1]
+    row = np.clip(T - 1.0 - back, 0.0, T - 1.0)
+    low = np.minimum(row.astype(np.int64), T - 2)
+    share = (row - low)[..., None]
+    one, other = (np.take_along_axis(past, (low + step)[..., None], axis=1) for step in (0, 1))
+    return one + share * (other - one)
 
 
 def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -> Floats:

@@ -94,7 +94,7 @@ class PredictedPaths:
 
     def __init__(self, predictor: Predictor, walls: tuple[Floats, ...] = ()) -> None:
         self.predictor, self._walls = predictor, walls
-        self._live = Live(predictor, ROW, OBSERVED, walls)
+        self._live = Live(predictor, ROW, OBSERVED, walls, coast=0.0)
         self._latest = np.nan
         self._due = 0.0
         self._rows: deque[tuple[NDArray[np.int64], Floats]] = deque(maxlen=OBSERVED)
@@ -103,7 +103,7 @@ class PredictedPaths:
 
     def exchange(self, predictor: Predictor) -> None:
         """Ask another predictor, with the rows observed so far."""
-        self.predictor, self._live, self._due = predictor, Live(predictor, ROW, OBSERVED, self._walls), 0.0
+        self.predictor, self._live, self._due = predictor, Live(predictor, ROW, OBSERVED, self._walls, coast=0.0), 0.0
         for ids, position in self._rows:
             self._live.update(ids, position)
         self._predict()
@@ -134,7 +134,7 @@ class PredictedPaths:
         return lines.reshape(-1, 2 * (found.shape[2] + 1)).astype(np.float32)
 
     def _restart(self, seconds: float, ids: NDArray[np.int64], before: Callable[[float], Scene | None]) -> None:
-        self._live = Live(self.predictor, ROW, OBSERVED, self._walls)
+        self._live = Live(self.predictor, ROW, OBSERVED, self._walls, coast=0.0)
         self._rows.clear()
         for k in range(OBSERVED - 1, 0, -1):
             earlier = before(seconds - k * ROW)

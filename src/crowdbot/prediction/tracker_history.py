@@ -1,0 +1,210 @@
+"""TrackerHistory: the last rows of a tracker, at any clock, as rows of a constant time step."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Hashable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError
+
+__all__ = ["TrackedRows", "TrackerHistory"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+FIRST_NUMBER = 1 << 40
+"""Numbers of identities that are not integers start here."""
+BRIDGE = 1.0
+"""Longest gap of a track that is interpolated at irregular time stamps [s]."""
+VELOCITY_TIME = 0.8
+"""The velocity of a hidden person is the mean of this time before the last observation [s]."""
+MAX_ROWS = 2000
+"""Largest number of stored rows, whatever the rate of the tracker."""
+
+
+class _Row(NamedTuple):
+    time: float
+    who: Integers
+    place: Floats
+    robots: frozenset[int]
+
+
+class TrackedRows(NamedTuple):
+    """Rows of A agents at a constant time step.
+
+    Fields:
+        position: ``[T, A, 2]`` [m]; 0 where absent.
+        present: ``[T, A]``.
+        robot: ``[A]``.
+        id: ``[A]``, sorted.
+        existence: ``[A]`` probability that an agent is still there: 1 if it is in the last row.
+    """
+
+    position: Floats
+    present: Bools
+    robot: Bools
+    id: Integers
+    existence: Floats
+
+
+class TrackerHistory:
+    """The last rows of a tracker.
+
+    Args:
+        dt: time step of :meth:`rows`, and between rows without a time stamp [s].
+        observe: largest number T of rows.
+        coast: how long hidden agents are kept [s].
+    """
+
+    def __init__(self, dt: float, observe: int, coast: float) -> None:
+        self.dt, self.observe, self.coast = dt, observe, coast
+        self.count = 0
+        self._stamped = False
+        self._rows: deque[_Row] = deque(maxlen=MAX_ROWS)
+        self._labels: dict[int, Hashable] = {}
+        self._numbers: dict[Hashable, int] = {}
+        self._next = FIRST_NUMBER
+
+    def add(self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable], time: float | None) -> None:
+        """Add a row, see :meth:`Live.update`."""
+        labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
+        place = np.asarray(position, dtype=float).reshape(-1, 2)
+        if len(labels) != len(place):
+            raise InputError(f"live: {len(labels)} identities and {len(place)} positions; the numbers must be equal")
+        if not np.all(np.isfinite(place)):
+            raise InputError(f"live: the position of {labels[int(np.argmin(np.isfinite(place).all(axis=1)))]} is not"
+                             " finite")  # fmt: skip
+        if len(set(labels)) != len(labels):
+            raise InputError(f"live: identities {labels} must be distinct")
+        stamp = self._stamp(time)
+        who = np.array([self._number(label) for label in labels], dtype=np.int64)
+        order = np.argsort(who)
+        machines = frozenset(self._number(label) for label in robots)
+        self._rows.append(_Row(stamp, who[order], place[order], machines))
+        self._stamped = self._stamped or time is not None
+        self.count += 1
+        self._forget()
+
+    def numbers(self) -> Integers:
+        """Return the numbers ``[A]`` of the agents in the last row and of the hidden ones, sorted."""
+        if not self._rows:
+            return np.zeros(0, dtype=np.int64)
+        now = self._rows[-1].time
+        kept = [self._rows[-1].who]
+        kept += [row.who for row in self._rows if self.coast > 0.0 and now - row.time <= self.coast + 1e-9]
+        return np.unique(np.concatenate(kept))
+
+    def labels(self, numbers: Integers) -> list[Hashable]:
+        """Return the identities of numbers."""
+        return [self._labels[int(number)] for number in numbers]
+
+    def number_of(self, label: Hashable) -> int:
+        """Return the number of an identity.
+
+        Raises:
+            InputError: the identity, which is not an integer, is unknown.
+        """
+        found = self._numbers.get(label)
+        if found is not None:
+            return found
+        if isinstance(label, int | np.integer):
+            return int(label)
+        raise InputError(
+            f"live: the plan is for {label!r}, who is not tracked; known are {sorted(map(str, self._numbers))}"
+        )
+
+    def rows(self) -> TrackedRows:
+        """Return the last rows; those with time stamps are interpolated at steps of ``dt`` before the last one."""
+        id = self.numbers()
+        track = {int(number): self._track(int(number)) for number in id}
+        times = self._times()
+        position, present = np.zeros((len(times), len(id), 2)), np.zeros((len(times), len(id)), dtype=np.bool_)
+        existence = np.ones(len(id))
+        for slot, number in enumerate(id):
+            seen, place = track[int(number)]
+            position[:, slot], present[:, slot] = self._at(times, seen, place)
+            hidden = times[-1] - seen[-1]
+            if hidden > 1e-9:
+                position[-1, slot], present[-1, slot] = _coast(seen, place, hidden), True
+                existence[slot] = 0.5 ** (2.0 * hidden / self.coast)
+        robots: frozenset[int] = frozenset().union(*(row.robots for row in self._rows))
+        return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence)
+
+    def _stamp(self, time: float | None) -> float:
+        last = self._rows[-1].time if self._rows else None
+        if time is None:
+            return 0.0 if last is None else last + self.dt
+        if not np.isfinite(time) or (last is not None and time <= last):
+            raise InputError(f"live: time stamp {time} s must be finite and later than the one before, {last} s")
+        return float(time)
+
+    def _number(self, label: Hashable) -> int:
+        if isinstance(label, np.generic):
+            label = label.item()
+        found = self._numbers.get(label)
+        if found is None:
+            plain = isinstance(label, int) and 0 <= label < FIRST_NUMBER
+            found = int(label) if plain else self._next  # type: ignore[call-overload]
+            self._next += 0 if plain else 1
+            self._numbers[label], self._labels[found] = found, label
+        return found
+
+    def _forget(self) -> None:
+        """Drop rows and identities that can no longer count."""
+        kept = max((self.observe - 1) * self.dt, self.coast + VELOCITY_TIME)
+        while len(self._rows) > 2 and self._rows[1].time <= self._rows[-1].time - kept - 1e-9:
+            self._rows.popleft()
+        if self.count % self.observe == 0:
+            alive = {int(n) for row in self._rows for n in (*row.who, *row.robots)}
+            self._labels = {number: label for number, label in self._labels.items() if number in alive}
+            self._numbers = {label: number for number, label in self._labels.items()}
+
+    def _times(self) -> Floats:
+        """Return the times of the rows: multiples of ``dt`` before now that are not before the first stored row."""
+        if not self._rows:
+            return np.zeros(0)
+        now, first = self._rows[-1].time, self._rows[0].time
+        count = min(self.observe, int((now - first) / self.dt + 1e-6) + 1)
+        # a track shorter than dt still has a velocity
+        count = min(self.observe, max(count, min(2, len(self._rows))))
+        return now - self.dt * np.arange(count - 1, -1, -1.0)
+
+    def _track(self, number: int) -> tuple[Floats, Floats]:
+        """Return times ``[N]`` and positions ``[N, 2]`` of an agent."""
+        found = [(row.time, row.place[at]) for row in self._rows
+                 for at in (int(np.searchsorted(row.who, number)),)
+                 if at < len(row.who) and row.who[at] == number]  # fmt: skip
+        return np.array([time for time, _ in found]), np.array([place for _, place in found])
+
+    def _at(self, times: Floats, seen: Floats, place: Floats) -> tuple[Floats, Bools]:
+        """Return positions ``[T, 2]`` at times ``[T]``, and whether they are known."""
+        after = np.minimum(np.searchsorted(seen, times - 1e-6 * self.dt), len(seen) - 1)
+        exact = np.abs(seen[after] - times) <= 1e-6 * self.dt
+        before = np.maximum(after - 1, 0)
+        gap = seen[after] - seen[before]
+        inside = (seen[before] < times) & (times < seen[after]) & (gap <= BRIDGE) & self._stamped
+        share = np.where(inside, (times - seen[before]) / np.where(gap > 0.0, gap, 1.0), 0.0)[:, None]
+        between = place[before] + share * (place[after] - place[before])
+        found = np.where(exact[:, None], place[after], between)
+        known = exact | inside
+        if self._stamped and len(seen) > 1 and len(times) > 1 and not known[:-1].any():  # observed for less than dt
+            found[-2] = found[-1] - self.dt * _velocity(seen, place)
+            known[-2] = bool(exact[-1])
+        return np.where(known[:, None], found, 0.0), known
+
+
+def _velocity(seen: Floats, place: Floats) -> Floats:
+    """Return the mean velocity ``[2]`` [m/s] of the last 0.8 s of a track; 0 for a single observation."""
+    first = min(int(np.searchsorted(seen, seen[-1] - VELOCITY_TIME - 1e-9)), max(0, len(seen) - 2))
+    time = float(seen[-1] - seen[first])
+    return np.asarray((place[-1] - place[first]) / time if time > 0.0 else np.zeros(2))
+
+
+def _coast(seen: Floats, place: Floats, hidden: float) -> Floats:
+    """Return the position ``[2]`` [m] of an agent some time after the last observation."""
+    return np.asarray(place[-1] + hidden * _velocity(seen, place))
