@@ -89,7 +89,7 @@ class CloudClusters(Detector):
         points = np.ascontiguousarray(ends[use])
         if walls is not None and len(walls):
             kept = np.ones(len(points), dtype=np.bool_)
-            hide_walls(np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(walls.segments), self.margin, kept)
+            hide_walls(np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(walls.segments()), self.margin, kept)
             points = points[kept]
         coverage = self._coverage(reading, ends, origin, heading)
         place, beams = self._people(points, origin)

@@ -94,7 +94,7 @@ class LidarClusters(Detector):
         length = np.where(there, ranges, 0.0)
         points = origin + length[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=-1)
         if walls is not None and len(walls):
-            hide_walls(points, np.ascontiguousarray(walls.segments), self.margin, there)
+            hide_walls(points, np.ascontiguousarray(walls.segments()), self.margin, there)
         far = min(self.max_range, 2.0 * self.body / (FEWEST * step))
         reach = np.where(np.isneginf(ranges) | np.isnan(ranges), 0.0, np.minimum(ranges, far))
         coverage = Coverage(origin, float(bearing[0]), step, reach)
