@@ -20,6 +20,8 @@ KINDS = {
     "costs": ("calibration", "Cost"),
     "searches": ("calibration", "Search"),
     "predictors": ("prediction", "Predictor"),
+    "detectors": ("perception", "Detector"),
+    "trackers": ("perception", "Tracker"),
     "degradations": ("data.degrade", "Degradation"),
 }
 """Kinds of plug-ins with their room and contract."""

@@ -32,6 +32,7 @@ COMMANDS = {
     "challenge": "run, verify and rank submissions to a competition of navigators",
     "experiment": "run trials with participants, instructions and questionnaires",
     "measure": "measure density, speed and flow in recordings, episodes and trials",
+    "track": "find and track people in laser scans, and score the tracks",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
