@@ -61,7 +61,7 @@ def emulated_headsets(browser, app, modules):
     assert [one for one in faults if not any(word in one for word in CUT)] == []
 
 
-def wait(page, expression, seconds=90.0):
+def wait(page, expression, seconds=180.0):
     """Wait until an expression of the page is true."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
@@ -74,7 +74,7 @@ def wait(page, expression, seconds=90.0):
 def call(app, command, **arguments):
     """Call a command as the operator does; a headset may not."""
     session = app.sessions["main"]
-    return asyncio.run_coroutine_threadsafe(session.call(command, arguments), session._loop).result(120)
+    return asyncio.run_coroutine_threadsafe(session.call(command, arguments), session._loop).result(180)
 
 
 def enter(page, app):
