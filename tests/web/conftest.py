@@ -42,12 +42,12 @@ def serve(folder, desks=DESKS, kind=AppServer, **options):
 
     thread = threading.Thread(target=asyncio.run, args=(main(),))
     thread.start()
-    assert ready.wait(20)
+    assert ready.wait(180)
 
     def stop():
         if thread.is_alive():
             box["loop"].call_soon_threadsafe(box["stop"].set)
-        thread.join(60)
+        thread.join(180)
 
     box["server"].stop = stop
     try:

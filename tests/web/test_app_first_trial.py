@@ -82,7 +82,7 @@ def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_
     gate, inner = threading.Event(), live_run.open_run
 
     def late(*args, **options):
-        assert gate.wait(60.0)
+        assert gate.wait(180.0)
         return inner(*args, **options)
 
     monkeypatch.setattr(live_run, "open_run", late)

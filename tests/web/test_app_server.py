@@ -60,7 +60,7 @@ class Counter(Desk):
     @command
     def hang(self) -> None:
         HANGS.set()
-        GOES_ON.wait(60)
+        GOES_ON.wait(180)
 
     @command
     def save(self, name: str, text: str) -> str:

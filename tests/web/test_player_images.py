@@ -24,7 +24,7 @@ def test_a_player_shows_the_recorded_images(browser, episode, tmp_path):
     recorded = read_episode(episode).readings
     context = browser.new_context(viewport={"width": 800, "height": 600}, offline=True)
     page, faults = context.new_page(), []
-    page.set_default_timeout(120_000)
+    page.set_default_timeout(180_000)
     page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
     page.on("pageerror", lambda one: faults.append(str(one)))
     page.goto(file.as_uri())

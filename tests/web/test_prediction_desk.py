@@ -208,7 +208,7 @@ def test_a_run_can_be_cancelled_and_keeps_its_results(desk):
     desk("run")
     import time
 
-    end = time.monotonic() + 120
+    end = time.monotonic() + 180
     while not desk.events("lines"):
         if time.monotonic() > end:
             raise TimeoutError

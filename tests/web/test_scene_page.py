@@ -74,7 +74,7 @@ def window(browser, serve, tmp_path):
     with serve(tmp_path / "files", (SceneDesk,)) as app:
         context = browser.new_context(viewport={"width": 480, "height": 320})
         page, faults = context.new_page(), []
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(180_000)
         page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
         page.on("pageerror", lambda one: faults.append(str(one)))
         page.on("request", lambda one: None if one.url.startswith((app.url, "blob:")) else faults.append(one.url))

@@ -136,7 +136,7 @@ def test_failures_and_the_page_of_the_operator(headset, app, browser, axe):
 
     context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     desk = context.new_page()
-    desk.set_default_timeout(120_000)
+    desk.set_default_timeout(180_000)
     desk.goto(app.url + "#tab=vr")
     desk.get_by_role("rowheader", name="guest").wait_for()
     desk.get_by_role("cell", name="ms (p95").first.wait_for()

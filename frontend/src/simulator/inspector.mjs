@@ -20,7 +20,7 @@ export class Inspector {
     this.place = h("div", { class: "place" }, h("span", {}, "x, y [m]"), this.x, this.y,
       h("button", { type: "button", onclick: () => this.goal(this._point()) }, "Set goal"),
       h("button", { type: "button", onclick: () => this.move(this._point()) }, "Move there"));
-    this.element = h("details", { open: true }, h("summary", {}, "Inspector"), this.list, h("table", {}, this.table), this.buttons, this.place);
+    this.element = h("details", { open: true }, h("summary", {}, "Inspector"), h("div", { class: "chosen" }, this.list), h("table", {}, this.table), this.buttons, this.place);
     this._show(null);
   }
 

@@ -73,7 +73,7 @@ def check(serve, folder, count, caplog, capfd):
     before = {one: one.stat().st_mtime_ns for one in folder.parent.iterdir()}
     with serve(folder, DESKS[1:]) as server, caplog.at_level(logging.WARNING):
         bugs, answers, memory = asyncio.run(attack(server.url, count, 7))
-        end = time.monotonic() + 30
+        end = time.monotonic() + 180
         while server.sessions["evil"].windows:
             if time.monotonic() > end:
                 raise TimeoutError

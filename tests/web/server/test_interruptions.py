@@ -10,7 +10,7 @@ import pytest
 
 from crowdbot.trials import parse_trial
 
-START = 120
+START = 240
 
 
 def start(folder, port=0):
@@ -24,7 +24,7 @@ def start(folder, port=0):
 
 def stop(process):
     process.send_signal(signal.SIGKILL)
-    process.wait(30)
+    process.wait(180)
     process.stdout.close()
 
 
@@ -50,7 +50,7 @@ def window(browser):
     """A window that may see its server die."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     page = context.new_page()
-    page.set_default_timeout(60_000)
+    page.set_default_timeout(180_000)
     yield page
     context.close()
 
