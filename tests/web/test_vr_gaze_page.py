@@ -38,5 +38,7 @@ def test_the_gaze_reaches_the_episode_and_a_headset_without_eye_tracking_sends_n
     assert sum(one.sample is not None and one.sample.gaze is not None for one in records) > 5
     clock = read_headset_clock(app.folder / "eyes-guest.headset")
     samples = [one for one in records if one.sample is not None]
-    behind = [one.time - time for one, time in zip(samples, clock.to_server([s.sample.time for s in samples]), strict=True)]
+    behind = [
+        one.time - time for one, time in zip(samples, clock.to_server([s.sample.time for s in samples]), strict=True)
+    ]
     assert min(behind) > -0.5 * clock.round_trip.max() - 1e-4  # no message arrives before it was sent

@@ -28,7 +28,8 @@ AIM = """([text, kind]) => {
 NUMBERS = """JSON.stringify({
   scene: crowdbotVr.scene.info(), pictures: crowdbotVr.pictures, work: crowdbotVr.work, dropped: crowdbotVr.dropped,
   reflections: crowdbotVr.mirror.reflections, note: crowdbotVr.note.textContent, said: crowdbotVr.room.said,
-  status: crowdbotVr.status, problem: crowdbotVr.board.problem, state: crowdbotVr.state, experiment: crowdbotVr.experiment,
+  status: crowdbotVr.status, problem: crowdbotVr.board.problem, state: crowdbotVr.state,
+  experiment: crowdbotVr.experiment,
 }, null, 1)"""
 PRESS = """([hand, value]) => {
   if (hand) device.hands.right.updatePinchValue(value);
@@ -84,7 +85,9 @@ def call(app, command, **arguments):
 def enter(page, app):
     """Enter; pictures take long without a graphics card, so they have no shadows, and late poses pause nothing."""
     wait(page, "crowdbotVr.connection.open && crowdbotVr.state !== null")
-    wait(page, "crowdbotVr.status && crowdbotVr.status.state !== 'preparing'", 900)  # kernels are compiled before pictures
+    wait(
+        page, "crowdbotVr.status && crowdbotVr.status.state !== 'preparing'", 900
+    )  # kernels are compiled before pictures
     call(app, "vr.set", settings={"timeout": 8.0, "pause_when_lost": False})
     call(app, "vr.show", own_body=False)
     page.evaluate("crowdbotVr.scene.setLayer('shadows', false)")

@@ -7,7 +7,7 @@ export const EYE_FEATURES = ["eye-tracking", "gaze-tracking"];
 const EYE_PROFILE = "eye-gaze";
 
 /**
- * Returns {arrays, head, hands, rays, pressed, tracked}: arrays of the message, and positions in the room of the headset.
+ * Returns {arrays, head, hands, fingers, rays, pressed, tracked}: arrays of the message, and positions in the room of the headset.
  * @param {XRFrame} frame
  * @param {XRReferenceSpace} space local-floor
  */
@@ -17,7 +17,7 @@ export function readPoses(frame, space) {
   let flags = frame.session.visibilityState === "hidden" ? 0 : VISIBLE;
   let press = 0;
   const arrays = [];
-  const found = { head: null, hands: {}, rays: {}, pressed: [], tracked };
+  const found = { head: null, hands: {}, fingers: {}, rays: {}, pressed: [], tracked };
   if (viewer) {
     if (!tracked) flags |= EMULATED;
     found.head = viewer.transform;
@@ -38,6 +38,7 @@ export function readPoses(frame, space) {
     const aim = frame.getPose(source.targetRaySpace, space);
     if (aim) found.rays[SIDES[k]] = aim.transform;
     found.hands[SIDES[k]] = one;
+    found.fingers[SIDES[k]] = Boolean(source.hand);
     arrays.push([SIDES[k], pose(one)]);
   }
   arrays.push(["flags", new Uint8Array([flags])], ["press", new Uint8Array([press])]);

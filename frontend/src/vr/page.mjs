@@ -32,6 +32,7 @@ export class VrPage {
     this.dropped = 0;
     this.touches = [];
     this._xr = null;
+    this._ownBefore = null;
     this._layout(root);
     this._listen();
     requestAnimationFrame(() => this._tick());
@@ -240,8 +241,11 @@ export class VrPage {
     return this.state?.pose?.avatar === this.link.avatar && this.link.avatar !== null;
   }
 
-  /** Id of the participant's own avatar, or null. */
+  /** Id of the participant's own avatar, or null; between two trials it is that of the picture that still stands. */
   _own() {
-    return this.state?.participants.find((one) => one.avatar === this.link?.avatar)?.id ?? null;
+    const id = this.state?.participants.find((one) => one.avatar === this.link?.avatar)?.id ?? null;
+    if (id !== null) this._ownBefore = id;
+    const between = this.experiment?.open && this.experiment.phase !== "running";
+    return id ?? (between ? this._ownBefore : null);
   }
 }

@@ -1,10 +1,12 @@
 // Room: the real room of the participant in the virtual one: where the headset is, the limits, hands, and a veil.
 import * as THREE from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
 const AXES = new THREE.Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 const NEAR = 0.9;
 const HIGH = 2.2;
 const GAP = 0.25;
+const SKIN = "#e0ac8a";
 
 export class Room {
   constructor() {
@@ -19,6 +21,7 @@ export class Room {
     this._limits = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: "#ff5c00", transparent: true, opacity: 0, depthTest: false }));
     this._limits.renderOrder = 8;
     this.group.add(this._limits);
+    this._shapes = { fist: fist(), open: openHand() };
     this._hands = { left: hand(), right: hand() };
     for (const one of Object.values(this._hands)) this.rig.add(one);
     this._veil = veil();
@@ -36,11 +39,12 @@ export class Room {
   }
 
   /** Shows hands where they are, and the limits before they are reached; `parts` are transforms of the headset. */
-  update({ head, hands }) {
+  update({ head, hands, fingers }) {
     for (const [side, mesh] of Object.entries(this._hands)) {
       const one = hands[side];
       mesh.visible = Boolean(one);
       if (!one) continue;
+      mesh.geometry = fingers[side] ? this._shapes.open : this._shapes.fist;
       mesh.position.copy(one.position);
       mesh.quaternion.copy(one.orientation);
     }
@@ -117,10 +121,35 @@ function fence(corners) {
 }
 
 function hand() {
-  const mesh = new THREE.Mesh(new THREE.CapsuleGeometry(0.035, 0.09, 6, 12), new THREE.MeshStandardMaterial({ color: "#e0ac8a", roughness: 0.8 }));
-  mesh.geometry.rotateX(0.5 * Math.PI);
+  const mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.8 }));
   mesh.visible = false;
   return mesh;
+}
+
+/** Geometry with one colour; sizes scale it about its middle. */
+function piece(geometry, color, [x, y, z], scale = [1, 1, 1]) {
+  const { r, g, b } = new THREE.Color(color);
+  const { count } = geometry.attributes.position;
+  geometry.setAttribute("color", new THREE.Float32BufferAttribute(Array(count).fill([r, g, b]).flat(), 3));
+  return geometry.scale(...scale).translate(x, y, z);
+}
+
+/** A fist about a controller, whose rod is along z and points to -z. */
+function fist() {
+  const rod = new THREE.CapsuleGeometry(0.016, 0.1, 4, 10).rotateX(0.5 * Math.PI);
+  return mergeGeometries([
+    piece(new THREE.SphereGeometry(0.045, 16, 12), SKIN, [0, 0, 0.005], [0.8, 0.85, 1]),
+    piece(rod, "#2b3038", [0, 0, -0.02]),
+  ]);
+}
+
+/** An open hand at its wrist, with the fingers along -z and the back along y. */
+function openHand() {
+  const finger = (x, reach) => piece(new THREE.CapsuleGeometry(0.008, 0.06, 4, 8).rotateX(0.5 * Math.PI), SKIN, [x, 0, -reach]);
+  return mergeGeometries([
+    piece(new THREE.SphereGeometry(0.05, 16, 12), SKIN, [0, 0, -0.05], [0.85, 0.32, 1.1]),
+    ...[[-0.03, 0.125], [-0.01, 0.135], [0.01, 0.135], [0.03, 0.125]].map(([x, reach]) => finger(x, reach)),
+  ]);
 }
 
 function veil() {
@@ -133,7 +162,8 @@ function veil() {
 
 function panel() {
   const map = new THREE.CanvasTexture(Object.assign(document.createElement("canvas"), { width: 1024, height: 256 }));
-  const mesh = new THREE.Mesh(new THREE.PlaneGeometry(1, 0.25), new THREE.MeshBasicMaterial({ map, transparent: true, depthTest: false, fog: false }));
+  map.colorSpace = THREE.SRGBColorSpace;
+  const mesh = new THREE.Mesh(new THREE.PlaneGeometry(1, 0.25), new THREE.MeshBasicMaterial({ map, transparent: true, depthTest: false, fog: false, toneMapped: false }));
   mesh.position.set(0, -0.05, -1.2);
   mesh.renderOrder = 10;
   mesh.visible = false;

@@ -82,9 +82,9 @@ __all__ = [
     "is_loopback",
     "navigator_orders",
     "opened_first",
-    "with_streams",
     "scene_description",
     "scene_frame",
     "scene_resource",
+    "with_streams",
     "write_player",
 ]

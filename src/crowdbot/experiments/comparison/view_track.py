@@ -77,8 +77,8 @@ def looking_shares(recorded: RecordedTrial) -> tuple[dict[str, float], str]:
 def view_track(recorded: RecordedTrial, avatar: str) -> ViewTrack | None:
     """Return where the participant looks: by the gaze if the session recorded one, else by the head; None without both.
 
-    The poses of the head, and the gaze of a headset that measures it, are those of the orders in the episode; directions
-    are NaN while the eyes are closed. Otherwise a recorded stream of the type ``Gaze`` with the channels
+    The poses of the head, and the gaze of a headset that measures it, are those of the orders in the episode;
+    directions are NaN while the eyes are closed. Otherwise a recorded stream of the type ``Gaze`` with the channels
     ``direction_x``, ``direction_y`` and ``direction_z`` turns with the latest pose of the head.
     """
     head = _head_track(recorded, avatar)

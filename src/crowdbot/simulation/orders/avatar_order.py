@@ -88,7 +88,9 @@ class AvatarOrder(Order):
         """Return the direction of the eyes with length 1."""
         values = list(self.gaze) if isinstance(self.gaze, list | tuple | np.ndarray) else []
         if len(values) != 3 or not all(isinstance(one, int | float | np.number) for one in values) or self.head is None:
-            raise InputError(f"AvatarOrder: gaze = {self.gaze!r} must be 3 numbers, a direction in the frame of the head")
+            raise InputError(
+                f"AvatarOrder: gaze = {self.gaze!r} must be 3 numbers, a direction in the frame of the head"
+            )
         length = math.hypot(*(float(one) for one in values))
         if not 1e-6 <= length <= 1e6:
             raise InputError(f"AvatarOrder: gaze = {self.gaze!r} has the length {length:g}; it must be a direction")

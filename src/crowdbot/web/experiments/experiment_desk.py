@@ -93,8 +93,8 @@ class ExperimentDesk(Desk):
     ) -> dict[str, Any]:
         """Begin or continue the session of a participant; trials run at ``rate`` times real time.
 
-        ``send_streams`` sends events and poses over the Lab Streaming Layer, and ``record_streams`` names the streams of
-        other programs that are recorded; None takes those of the command line.
+        ``send_streams`` sends events and poses over the Lab Streaming Layer, and ``record_streams`` names the streams
+        of other programs that are recorded; None takes those of the command line.
         """
         if not 0.1 <= rate <= 100.0:
             raise InputError(f"rate = {rate:g}: expected 0.1 to 100")
@@ -226,7 +226,9 @@ class ExperimentDesk(Desk):
         with self._lock:
             self._close()
 
-    def _begin_session(self, found: Experiment, participant: int, out: Path, resume: bool, choice: StreamChoice) -> None:
+    def _begin_session(
+        self, found: Experiment, participant: int, out: Path, resume: bool, choice: StreamChoice
+    ) -> None:
         """Open the streams and the log; streams that are missing leave no session open."""
         streams = SessionStreams(choice, found.name)
         try:
