@@ -44,7 +44,7 @@ from .layers import attend, dense
 from .network_shapes import wrong_array
 from .out_of_distribution import out_of_distribution
 
-__all__ = ["AnchorNet", "Modes", "network_output", "reach_of"]
+__all__ = ["AnchorNet", "Modes", "feature_bound", "network_output", "reach_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -260,8 +260,13 @@ def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArra
 
 
 def reach_of(numbers: Numbers) -> float:
-    """Return the largest distance of a neighbor [m] of weights; infinite for weights with unbounded features."""
+    """Return the largest distance of a neighbor that is read [m]; infinite for weights without the array ``reach``."""
     return float(numbers["reach"]) if "reach" in numbers else math.inf
+
+
+def feature_bound(numbers: Numbers) -> float:
+    """Return the bound of the features [m]; infinite for weights that learned from unbounded ones."""
+    return math.inf if "unbounded" in numbers else reach_of(numbers)
 
 
 def _own(file: str, changed: int) -> Numbers:
@@ -295,8 +300,7 @@ def _checkpoint_weights(file: str) -> Numbers:
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
     people, window, slot = agent_histories(past)
-    reach = reach_of(numbers)
-    people = people.within(reach)
+    people = people.within(reach_of(numbers))
     foreign = out_of_distribution(numbers, people)
     heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
@@ -304,7 +308,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     for first in range(0, len(window), MOST_AT_ONCE):
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
-        out[part] = network_output(numbers, *agent_features(some, heading[part], reach), some.there)
+        out[part] = network_output(numbers, *agent_features(some, heading[part], feature_bound(numbers)), some.there)
     own = (1.0 - foreign)[:, None]  # share of the network; the rest is the anchors, or constant velocity
     mode = numbers["centres"] + own[..., None] * out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
     kind = speed_class(people.past)
