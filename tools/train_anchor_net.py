@@ -9,7 +9,8 @@
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
 temperature; the last weights are taken, so nothing is chosen by the place that is left out.
-The fold `all`, for other places, learns from the recordings whose terms allow it (UCY) and from simulated crowds.
+The shipped fold `all` is trained and then described, which limits it to near neighbors. The fold `open` learns only
+from the recordings with stated terms (UCY) and from simulated crowds, with the recipe `general`.
 """
 
 from __future__ import annotations
@@ -47,10 +48,11 @@ from crowdbot.prediction.training.torch_backend import torch_threads
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
 """Borders of the probabilities that are counted together."""
+OPEN_FOLD = "open"
 OPEN = ("crowds_", "students", "uni_examples")
 """Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
 CROWDS = 3
-"""Simulated scenes per crowd model and layout in the fold `all`."""
+"""Simulated scenes per crowd model and layout in the fold `open`."""
 SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "situation_mean",
          "situation_whitening", "situation_range")  # fmt: skip
 
@@ -58,7 +60,7 @@ SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widenin
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    if fold == ALL:
+    if fold == OPEN_FOLD:
         return [tracks for tracks in found if tracks.name.startswith(OPEN)] + simulated_crowds(
             CROWDS, seed=1 if folder.name == "val" else 0
         )
@@ -127,7 +129,7 @@ def _recipe(words: list[str], fold: str, seed: int) -> AnchorTraining:
     """Return the settings of the training of a fold; those of the variation may be named too."""
     pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
     fields = {f.name for f in dataclasses.fields(Augmentation)}
-    preset = PRESETS["general" if fold == ALL else "shipped"]
+    preset = PRESETS["general" if fold == OPEN_FOLD else "shipped"]
     varied = dataclasses.replace(preset.variation, **{k: v for k, v in pairs.items() if k in fields})
     others = {k: v for k, v in pairs.items() if k not in fields}
     return dataclasses.replace(preset, **others, seed=seed, variation=varied)
@@ -235,7 +237,7 @@ def main() -> None:
     parser.add_argument("what", choices=("train", "calibrate", "describe", "score", "reliability"))
     parser.add_argument("data", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
+    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL, OPEN_FOLD])
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
     parser.add_argument("--updates", type=int, default=UPDATES)
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
@@ -263,7 +265,7 @@ def main() -> None:
         reliability(options)
         return
     for seed in options.seed:
-        rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold != ALL}
+        rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold in FOLDS}
         (options.out / f"scores-seed{seed}.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
         for name in next(iter(rows.values())):
             mean = {k: np.mean([row[name][k] for row in rows.values()]) for k in SHOWN}

@@ -201,8 +201,8 @@ class AnchorNet(Predictor):
     def _foreign_note(self, past: Windows) -> str:
         """Return how many people are unlike the training data; empty if fewer than 5 %."""
         numbers = self._numbers(past)
-        people, _, _ = agent_histories(past)
-        score = out_of_distribution(numbers, people.within(reach_of(numbers)))
+        people, window, _ = agent_histories(past)
+        score = out_of_distribution(numbers, people.within(reach_of(numbers)), window)
         if np.mean(score > 0.5) < 0.05 or not len(score):
             return ""
         return (
@@ -301,7 +301,7 @@ def _checkpoint_weights(file: str) -> Numbers:
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
     people, window, slot = agent_histories(past)
     people = people.within(reach_of(numbers))
-    foreign = out_of_distribution(numbers, people)
+    foreign = out_of_distribution(numbers, people, window)
     heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
     out = np.zeros((len(window), K * D + K + 2 * D))
