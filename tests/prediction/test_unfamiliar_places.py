@@ -78,7 +78,7 @@ def test_a_foreign_person_gets_constant_velocity_and_the_anchors(windows: Maker)
     numbers = NET._numbers(past)
     shapes = (numbers["centres"] @ numbers["basis"]).reshape(1, -1, 12, 2)
     fixed = resample_paths(shapes, np.array([[80.0, 0.0]]), 12, 0.4)
-    np.testing.assert_allclose(np.sort(many.path[0, :, -1, 0]), np.sort(fixed[0, :, -1, 0]), atol=1e-6)
+    np.testing.assert_allclose(np.sort(many.path[0, :, -1, 0]), np.sort(fixed[0, :, -1, 0]), atol=1e-3)
     assert many.probability[0].sum() == pytest.approx(1.0)
     assert scatter_to_slots(past, fixed, np.array([0]), np.array([0])).shape == (1, 20, 12, 1, 2)
     assert Anchors("all").predict(past, 12, 20).samples == 20

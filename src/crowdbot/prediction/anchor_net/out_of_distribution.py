@@ -86,8 +86,8 @@ def out_of_distribution(
         window: ``[N]`` window of each person.
 
     The score is the largest of four: the distance of the person's situation from the training data, the speed above
-    4 m/s, the evenness of the person's track, and the share of even tracks in the window. No measured person walks in a straight line at
-    constant speed to a few millimetres; simulated people do.
+    4 m/s, the evenness of the person's track, and the share of even tracks in the window. No measured person walks in
+    a straight line at constant speed to a few millimetres; simulated people do.
     """
     if "situation_mean" not in numbers:
         return np.zeros(len(people.past))
