@@ -2,13 +2,15 @@
 
     python tools/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
     python tools/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
+    python tools/train_anchor_net.py describe DATA OUT --fold all
     python tools/train_anchor_net.py score DATA OUT --seed 0
     python tools/train_anchor_net.py reliability DATA OUT --seed 0
 
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
 temperature; the last weights are taken, so nothing is chosen by the place that is left out.
-The fold `all`, for other places, learns from the recordings whose terms allow it (UCY) and from simulated crowds.
+The shipped fold `all` is trained and then described, which limits it to near neighbors. The fold `open` learns only
+from the recordings with stated terms (UCY) and from simulated crowds, with the recipe `general`.
 """
 
 from __future__ import annotations
@@ -23,13 +25,21 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.benchmark import evaluate
+from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import REACH
 from crowdbot.prediction.anchor_net.confidence import calibrate_confidence
-from crowdbot.prediction.anchor_net.training import UPDATES, AnchorNetTraining, AnchorTraining
-from crowdbot.prediction.anchor_net.training_data import GENERAL, Augmentation, training_set
+from crowdbot.prediction.anchor_net.out_of_distribution import distribution_of
+from crowdbot.prediction.anchor_net.training import DESCRIBED, PRESETS, UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.anchor_net.training_data import (
+    NO_AUGMENTATION,
+    Augmentation,
+    augment_people,
+    make_batch,
+    training_set,
+)
 from crowdbot.prediction.pretrained_weights import ALL, FOLDS, is_held_out
 from crowdbot.prediction.training.loop import TrainingSchedule, train
 from crowdbot.prediction.training.simulated_crowds import simulated_crowds
@@ -38,10 +48,11 @@ from crowdbot.prediction.training.torch_backend import torch_threads
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
 """Borders of the probabilities that are counted together."""
+OPEN_FOLD = "open"
 OPEN = ("crowds_", "students", "uni_examples")
 """Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
 CROWDS = 3
-"""Simulated scenes per crowd model and layout in the fold `all`."""
+"""Simulated scenes per crowd model and layout in the fold `open`."""
 SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "situation_mean",
          "situation_whitening", "situation_range")  # fmt: skip
 
@@ -49,7 +60,7 @@ SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widenin
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    if fold == ALL:
+    if fold == OPEN_FOLD:
         return [tracks for tracks in found if tracks.name.startswith(OPEN)] + simulated_crowds(
             CROWDS, seed=1 if folder.name == "val" else 0
         )
@@ -67,7 +78,7 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     if seed == 0:
         anchors = Anchors.fit(*(tracks.windows() for tracks in used))
         np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
-    how = AnchorTraining(seed=seed, **_changes(options.set, fold))
+    how = _recipe(options.set, fold, seed)
     watched = training_set(recordings(options.data / "val", fold), reverse=False)
     model = AnchorNetTraining(how, training_set(used), watched, [tracks.name for tracks in used])
     schedule = TrainingSchedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
@@ -95,13 +106,33 @@ def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str,
     print(f"{file.name}: {size} numbers, {file.stat().st_size / 1e6:.2f} MB, {said}", flush=True)
 
 
-def _changes(words: list[str], fold: str) -> dict[str, object]:
-    """Return settings of the training of a fold; those of the variation may be named too."""
+def describe(options: argparse.Namespace, fold: str) -> None:
+    """Limit weights that learned from unbounded features to near neighbors, and add the out-of-distribution score."""
+    used = [load(path, fps=25) for path in sorted((options.data / "train").glob("*.txt"))]
+    used = [tracks for tracks in used if not is_held_out(fold, tracks.name)]
+    material, file = training_set(used), Path(weights_file(options, fold, 0))
+    with np.load(file) as kept:
+        numbers = {name: kept[name] for name in kept.files}
+    rng = stream(0, "described")
+    shown = augment_people(material, rng.integers(0, len(material), DESCRIBED), Augmentation(), rng)[0].within(REACH)
+    missed = make_batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "share")).missed
+    points = missed.reshape(len(missed), -1) @ numbers["basis"].T
+    nearest = np.argmin([((points - centre) ** 2).sum(axis=1) for centre in numbers["centres"]], axis=0)
+    count = np.bincount(nearest, minlength=len(numbers["centres"])) + 1.0
+    found = {"reach": np.array(REACH), "unbounded": np.array(1.0), "share": count / count.sum()}
+    found |= distribution_of(shown)
+    np.savez(file, **numbers | {name: values.astype(np.float32) for name, values in found.items()})
+    print(f"{file.name}: neighbors within {REACH} m, scores from {found['situation_range'].round(2).tolist()}")
+
+
+def _recipe(words: list[str], fold: str, seed: int) -> AnchorTraining:
+    """Return the settings of the training of a fold; those of the variation may be named too."""
     pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
     fields = {f.name for f in dataclasses.fields(Augmentation)}
-    usual, reach = (GENERAL, REACH) if fold == ALL else (Augmentation(), np.inf)
-    varied = dataclasses.replace(usual, **{k: v for k, v in pairs.items() if k in fields})
-    return {"reach": reach} | {k: v for k, v in pairs.items() if k not in fields} | {"variation": varied}
+    preset = PRESETS["general" if fold == OPEN_FOLD else "shipped"]
+    varied = dataclasses.replace(preset.variation, **{k: v for k, v in pairs.items() if k in fields})
+    others = {k: v for k, v in pairs.items() if k not in fields}
+    return dataclasses.replace(preset, **others, seed=seed, variation=varied)
 
 
 def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, dict[str, float]]:
@@ -203,10 +234,10 @@ def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windo
 def main() -> None:
     """Do what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("train", "calibrate", "score", "reliability"))
+    parser.add_argument("what", choices=("train", "calibrate", "describe", "score", "reliability"))
     parser.add_argument("data", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
+    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL, OPEN_FOLD])
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
     parser.add_argument("--updates", type=int, default=UPDATES)
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
@@ -226,11 +257,15 @@ def main() -> None:
                 with np.load(file) as kept:
                     write(options, fold, file, {name: kept[name] for name in kept.files})
         return
+    if options.what == "describe":
+        for fold in options.fold:
+            describe(options, fold)
+        return
     if options.what == "reliability":
         reliability(options)
         return
     for seed in options.seed:
-        rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold != ALL}
+        rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold in FOLDS}
         (options.out / f"scores-seed{seed}.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
         for name in next(iter(rows.values())):
             mean = {k: np.mean([row[name][k] for row in rows.values()]) for k in SHOWN}

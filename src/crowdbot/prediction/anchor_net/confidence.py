@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core import stream
 
 from .agent_frame import PREDICTED_ROWS, SPEED_CLASSES, speed_class
-from .predictor import network_output, reach_of
+from .predictor import feature_limit, network_output
 from .training_data import NO_AUGMENTATION, TrainingSet, make_batch
 
 __all__ = ["calibrate_confidence"]
@@ -34,7 +34,7 @@ def calibrate_confidence(numbers: Numbers, material: TrainingSet) -> Numbers:
     """
     held = {name: np.asarray(values, dtype=np.float64) for name, values in numbers.items()}
     own, company, there, missed = make_batch(
-        material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "calibrated"), reach_of(held)
+        material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "calibrated"), feature_limit(held)
     )
     out = network_output(held, own, company, there)
     K, D = held["centres"].shape

@@ -27,6 +27,16 @@ SURE, FOREIGN = 0.98, 0.999
 """Quantiles of the distances of the training data; the score is 0 up to the first, 1 from ``WIDE`` times the second."""
 WIDE = 1.5
 """Factor of the second distance."""
+EVEN = (0.005, 0.015)
+"""Deviation of a track from a straight line at constant speed [m]: even below the first, not even above the second."""
+EVEN_SHARE = (0.1, 0.3)
+"""Share of even tracks among the moving people of a window from which, and above which, all of them are foreign."""
+FEWEST_EVEN = 3
+"""Number of moving people in a window for which the share of even tracks counts."""
+FAST = (1.6, 2.4)
+"""Mean displacement in 0.4 s [m] from which, and above which, a person is foreign: 4 and 6 m/s."""
+SLOW = 0.08
+"""Displacement in 0.4 s below which a person does not count as moving [m]."""
 
 
 def situation_descriptors(people: AgentHistories) -> Floats:
@@ -65,13 +75,46 @@ def distribution_of(people: AgentHistories) -> dict[str, Floats]:
     return {"situation_mean": middle, "situation_whitening": whitening, "situation_range": np.array([low, WIDE * high])}
 
 
-def out_of_distribution(numbers: Mapping[str, NDArray[Any]], people: AgentHistories) -> Floats:
-    """Return scores ``[N]`` between 0 (like the training data) and 1; 0 for weights without a description of them."""
+def out_of_distribution(
+    numbers: Mapping[str, NDArray[Any]], people: AgentHistories, window: NDArray[np.int64]
+) -> Floats:
+    """Return scores ``[N]`` between 0 (like the training data) and 1; 0 for weights without a description of them.
+
+    Args:
+        numbers: weights.
+        people: histories.
+        window: ``[N]`` window of each person.
+
+    The score is the largest of four: the distance of the person's situation from the training data, the speed above
+    4 m/s, the evenness of the person's track, and the share of even tracks in the window. No measured person walks in
+    a straight line at constant speed to a few millimetres; simulated people do.
+    """
     if "situation_mean" not in numbers:
         return np.zeros(len(people.past))
     distance = _distances(situation_descriptors(people), numbers["situation_mean"], numbers["situation_whitening"])
     low, high = numbers["situation_range"]
-    share = np.clip((distance - low) / (high - low), 0.0, 1.0)
+    even, moves = _evenness(people)
+    count = np.bincount(window, moves.astype(np.float64))
+    share = np.bincount(window, np.where(moves, even, 0.0)) / np.maximum(count, 1.0)
+    simulated = np.where(count >= FEWEST_EVEN, _ramp(share, *EVEN_SHARE), 0.0)
+    fast = _ramp(np.hypot(*(people.past[:, -1] - people.past[:, 0]).T) / (ROWS - 1.0), *FAST)
+    return np.asarray(np.max([_ramp(distance, low, high), even, simulated[window], fast], axis=0))
+
+
+def _evenness(people: AgentHistories) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the evenness ``[N]`` of tracks of moving people, between 0 and 1, and who moves with all rows observed."""
+    row = np.arange(ROWS) - 0.5 * (ROWS - 1)
+    away = people.past - people.past.mean(axis=1, keepdims=True)
+    step = (away * row[:, None]).sum(axis=1) / float((row * row).sum())
+    rest = away - step[:, None] * row[:, None]
+    deviation = np.sqrt((rest[..., 0] ** 2 + rest[..., 1] ** 2).mean(axis=1))
+    moves = (np.hypot(step[:, 0], step[:, 1]) > SLOW) & people.seen.all(axis=1)
+    return np.where(moves, 1.0 - _ramp(deviation, *EVEN), 0.0), moves
+
+
+def _ramp(value: Floats, low: float, high: float) -> Floats:
+    """Return 0 below ``low``, 1 above ``high`` and a smooth value between."""
+    share = np.clip((value - low) / (high - low), 0.0, 1.0)
     return np.asarray(share * share * (3.0 - 2.0 * share))
 
 

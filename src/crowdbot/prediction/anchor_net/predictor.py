@@ -44,7 +44,7 @@ from .layers import attend, dense
 from .network_shapes import wrong_array
 from .out_of_distribution import out_of_distribution
 
-__all__ = ["AnchorNet", "Modes", "network_output", "reach_of"]
+__all__ = ["AnchorNet", "Modes", "feature_limit", "network_output", "reach_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -94,7 +94,7 @@ class AnchorNet(Predictor):
     """Learned predictor with 20 weighted futures per person, a single trajectory for K = 1, or random draws.
 
     A multilayer perceptron reads the last 8 positions of a person in the person's frame and, through attention, the 12
-    nearest neighbors, including the plans of robots. For each of 20 anchors (see
+    nearest neighbors (default weights: within 8 m), including the plans of robots. For each of 20 anchors (see
     :class:`~crowdbot.prediction.Anchors`) it predicts a correction with 6 coefficients and the probability to be the
     nearest future. A separate output serves K = 1. The training includes missing rows, noise, late tracks and identity
     switches. Futures that cross a wall get a low probability and stop at the wall.
@@ -201,8 +201,8 @@ class AnchorNet(Predictor):
     def _foreign_note(self, past: Windows) -> str:
         """Return how many people are unlike the training data; empty if fewer than 5 %."""
         numbers = self._numbers(past)
-        people, _, _ = agent_histories(past)
-        score = out_of_distribution(numbers, people.within(reach_of(numbers)))
+        people, window, _ = agent_histories(past)
+        score = out_of_distribution(numbers, people.within(reach_of(numbers)), window)
         if np.mean(score > 0.5) < 0.05 or not len(score):
             return ""
         return (
@@ -260,8 +260,13 @@ def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArra
 
 
 def reach_of(numbers: Numbers) -> float:
-    """Return the largest distance of a neighbor [m] of weights; infinite for weights with unbounded features."""
+    """Return the largest distance of a neighbor that is read [m]; infinite for weights without the array ``reach``."""
     return float(numbers["reach"]) if "reach" in numbers else math.inf
+
+
+def feature_limit(numbers: Numbers) -> float:
+    """Return the bound of the features [m]; infinite for weights that learned from unbounded ones."""
+    return math.inf if "unbounded" in numbers else reach_of(numbers)
 
 
 def _own(file: str, changed: int) -> Numbers:
@@ -295,16 +300,15 @@ def _checkpoint_weights(file: str) -> Numbers:
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
     people, window, slot = agent_histories(past)
-    reach = reach_of(numbers)
-    people = people.within(reach)
-    foreign = out_of_distribution(numbers, people)
+    people = people.within(reach_of(numbers))
+    foreign = out_of_distribution(numbers, people, window)
     heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
     out = np.zeros((len(window), K * D + K + 2 * D))
     for first in range(0, len(window), MOST_AT_ONCE):
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
-        out[part] = network_output(numbers, *agent_features(some, heading[part], reach), some.there)
+        out[part] = network_output(numbers, *agent_features(some, heading[part], feature_limit(numbers)), some.there)
     own = (1.0 - foreign)[:, None]  # share of the network; the rest is the anchors, or constant velocity
     mode = numbers["centres"] + own[..., None] * out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
     kind = speed_class(people.past)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -22,6 +23,7 @@ from .confidence import calibrate_confidence
 from .out_of_distribution import distribution_of
 from .predictor import network_output
 from .training_data import (
+    GENERAL,
     NO_AUGMENTATION,
     Augmentation,
     TrainingBatch,
@@ -61,7 +63,7 @@ class AnchorTraining:
         seed: random seed.
         variation: data augmentation.
         reach: largest distance of a neighbor [m], which also bounds the features; inf: 12 neighbors at any distance
-            and unbounded features, as in the leave-one-out weights.
+            and unbounded features.
     """
 
     people: int = 256
@@ -78,11 +80,15 @@ class AnchorTraining:
     likely: float = 0.02
     seed: int = 0
     variation: Augmentation = dataclasses.field(default_factory=Augmentation)
-    reach: float = REACH
+    reach: float = math.inf
 
     def __post_init__(self) -> None:
         if not self.reach > 0.0:
             raise InputError(f"anchor-net: reach = {self.reach} m must be above 0")
+
+
+PRESETS = {"shipped": AnchorTraining(), "general": AnchorTraining(reach=REACH, variation=GENERAL)}
+"""Recipes of the leave-one-out weights and of the default weights."""
 
 
 def learner(
@@ -91,7 +97,8 @@ def learner(
     """Return an AnchorNet ready to train, from the options of the command line.
 
     Args:
-        settings: name of the preset; only ``shipped`` exists, the settings of the shipped weights.
+        settings: name of the preset: ``shipped``, the recipe of the leave-one-out weights (default), or ``general``,
+            that of the default weights: bounded features, and augmentation for other places and trackers.
         values: settings that differ from the preset, including those of the augmentation, as text.
         samples, watched: training data and validation data.
         seed: random seed.
@@ -100,21 +107,28 @@ def learner(
     Raises:
         InputError: a name or value is unknown, or the samples do not have 8 + 12 rows of 0.4 s in metres.
     """
-    if settings not in (None, "shipped"):
-        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; the"
-                         " only preset is shipped")  # fmt: skip
+    if settings not in (None, *PRESETS):
+        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), [*PRESETS])}; they"
+                         f" are {' or '.join(PRESETS)}")  # fmt: skip
+    preset = PRESETS[settings or "shipped"]
     varied = {field.name for field in dataclasses.fields(Augmentation)}
     plain = {name.replace("-", "_"): value for name, value in values.items()}
-    variation = from_attributes(Augmentation, {name: value for name, value in plain.items() if name in varied})
+    given = from_attributes(Augmentation, {name: value for name, value in plain.items() if name in varied})
+    variation = dataclasses.replace(preset.variation, **_named(given, plain))
     how = from_attributes(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
-    how = dataclasses.replace(how, seed=seed, variation=variation)
+    how = dataclasses.replace(preset, **_named(how, plain) | {"seed": seed, "variation": variation})
     return AnchorNetTraining(
         how, training_set_of(samples), training_set_of(watched, reverse=False), samples.names, device
     )
 
 
+def _named(settings: Any, names: Mapping[str, str]) -> dict[str, Any]:
+    """Return the settings that were given by name."""
+    return {field.name: getattr(settings, field.name) for field in dataclasses.fields(settings) if field.name in names}
+
+
 def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
-    """Return ``basis [6, 24]``, ``centres [count, 6]``, their ``share`` and ``spread [6]`` of residuals of training data."""
+    """Return ``basis [6, 24]``, ``centres [count, 6]``, their ``share`` and ``spread [6]`` of training residuals."""
     if len(material) < count:
         raise InputError(f"{len(material)} people are too few to train {count} futures")
     past = material.people.past

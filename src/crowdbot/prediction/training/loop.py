@@ -217,7 +217,7 @@ def _begin_or_resume(model: Trainable, schedule: TrainingSchedule, folder: Path 
     kept = load_checkpoint(folder / LAST, f"{model.kind} training")
     now = _about(model)
     # the defaults of newer settings reproduce the earlier behavior
-    kept["config"] = _defaults(model.config) | kept["config"]
+    kept["config"] = _merge(_defaults(model.config), kept["config"])
     for word, what in (("config", "settings"), ("data", "data")):
         if kept[word] != now[word]:
             was = _difference(kept[word], now[word])
@@ -231,8 +231,21 @@ def _begin_or_resume(model: Trainable, schedule: TrainingSchedule, folder: Path 
 
 
 def _defaults(config: Any) -> Any:
-    fields = dataclasses.fields(config)
-    return _plain({field.name: field.default for field in fields if field.default is not dataclasses.MISSING})
+    """Return the defaults of settings, and those of settings in them."""
+    found: dict[str, Any] = {}
+    for field in dataclasses.fields(config):
+        if field.default is not dataclasses.MISSING:
+            found[field.name] = field.default
+        elif field.default_factory is not dataclasses.MISSING and dataclasses.is_dataclass(getattr(config, field.name)):
+            found[field.name] = dataclasses.asdict(field.default_factory())
+    return _plain(found)
+
+
+def _merge(defaults: dict[str, Any], kept: dict[str, Any]) -> dict[str, Any]:
+    """Return ``kept`` with the defaults of settings that it lacks, at every level."""
+    both = {name: _merge(defaults[name], value) for name, value in kept.items()
+            if isinstance(value, dict) and isinstance(defaults.get(name), dict)}  # fmt: skip
+    return defaults | kept | both
 
 
 def _plain(values: dict[str, Any]) -> Any:

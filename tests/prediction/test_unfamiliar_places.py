@@ -1,0 +1,141 @@
+"""Places, trackers and people that the training did not see: bounded features and the out-of-distribution score."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from crowdbot.core import InputError
+from crowdbot.data import Windows
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
+from crowdbot.prediction.anchor_net.agent_frame import REACH, agent_features, agent_histories, heading_vectors
+from crowdbot.prediction.anchor_net.anchors import resample_paths, scatter_to_slots
+from crowdbot.prediction.anchor_net.out_of_distribution import DESCRIPTORS, distribution_of, situation_descriptors
+from crowdbot.prediction.anchor_net.out_of_distribution import out_of_distribution as score_of
+from crowdbot.prediction.training.simulated_crowds import CROWD_LAYOUTS, CROWD_MODELS, simulated_crowds
+
+Maker = Callable[..., Windows]
+NET = AnchorNet("all")
+
+
+def walkers(windows: Maker, *people: tuple[float, float, float, float], sway: float = 0.04) -> Windows:
+    """People who walk from x, y [m] with velocities [m/s] for 8 rows, and sway [m] as measured people do."""
+    time = 0.4 * np.arange(-7.0, 1.0)
+    side = sway * np.array([1.0, -1.0, 0.5, 1.0, -1.0, 0.5, 0.0, 0.0])
+    track = [[[x + vx * t, y + vy * t + s] for x, y, vx, vy in people] for t, s in zip(time, side, strict=True)]
+    return windows([track])
+
+
+def test_bounded_features_are_bounded_and_change_little_nearby(windows: Maker) -> None:
+    wide = walkers(windows, (0.0, 0.0, 40.0, 0.0), (900.0, 50.0, -30.0, 9.0), (0.5, -700.0, 0.0, 60.0))
+    people, _, _ = agent_histories(wide)
+    own, company = agent_features(people, heading_vectors(people.past), REACH)
+    assert np.abs(own).max() <= 10.0
+    assert np.abs(company).max() <= 2.0
+    close = walkers(windows, (0.0, 0.0, 0.8, 0.0), (1.0, 1.0, 0.8, 0.0))
+    people, _, _ = agent_histories(close)
+    heading = heading_vectors(people.past)
+    for bounded, plain in zip(agent_features(people, heading, REACH), agent_features(people, heading), strict=True):
+        np.testing.assert_allclose(bounded, plain, atol=0.1)
+
+
+def test_a_neighbor_far_away_changes_nothing(windows: Maker) -> None:
+    alone = walkers(windows, (0.0, 0.0, 1.3, 0.0))
+    for x in (8.5, 30.0, 2000.0):
+        both = walkers(windows, (0.0, 0.0, 1.3, 0.0), (x, 1.0, -1.0, 0.3))
+        for samples in (1, 20):
+            one = dataclasses.replace(NET, contact=0.0)
+            np.testing.assert_array_equal(
+                one.predict(both, 12, samples).position[0, :, :, 0],
+                one.predict(alone, 12, samples).position[0, :, :, 0],
+            )
+
+
+def test_walkers_in_a_wide_place_do_not_stop(windows: Maker) -> None:
+    rng = np.random.default_rng(0)
+    crowd = [(0.0, 0.0, 1.4, 0.0)] + [(*rng.uniform(-40.0, 40.0, 2), *rng.normal(0.0, 1.0, 2)) for _ in range(12)]
+    crowd = [one for one in crowd if np.hypot(one[0], one[1]) > 10.0 or one[2] == 1.4]
+    end = NET.predict(walkers(windows, *crowd), 12).position[0, 0, -1, 0, 0]
+    assert 0.8 * 4.8 * 1.4 < end < 1.2 * 4.8 * 1.4
+
+
+def test_the_score_is_low_for_walkers_and_high_for_what_is_no_walker(windows: Maker) -> None:
+    past = walkers(windows, (0.0, 0.0, 1.2, 0.0), (200.0, 0.0, 15.0, 0.0))
+    score = NET.predict(past, 12).out_of_distribution
+    assert score is not None
+    assert score[0, 0] < 0.1
+    assert score[0, 1] > 0.9
+    assert AnchorNet("eth").predict(past, 12).out_of_distribution.tolist() == [[0.0, 0.0]]  # type: ignore[union-attr]
+
+
+def test_a_foreign_person_gets_constant_velocity_and_the_anchors(windows: Maker) -> None:
+    past = walkers(windows, (0.0, 0.0, 200.0, 0.0))
+    one, many = NET.predict(past, 12), NET.modes(past)
+    np.testing.assert_allclose(one.position, ConstantVelocity().predict(past, 12).position, atol=1e-6)
+    numbers = NET._numbers(past)
+    shapes = (numbers["centres"] @ numbers["basis"]).reshape(1, -1, 12, 2)
+    fixed = resample_paths(shapes, np.array([[80.0, 0.0]]), 12, 0.4)
+    np.testing.assert_allclose(np.sort(many.path[0, :, -1, 0]), np.sort(fixed[0, :, -1, 0]), atol=1e-3)
+    assert many.probability[0].sum() == pytest.approx(1.0)
+    assert scatter_to_slots(past, fixed, np.array([0]), np.array([0])).shape == (1, 20, 12, 1, 2)
+    assert Anchors("all").predict(past, 12, 20).samples == 20
+
+
+def test_the_note_names_the_share_of_foreign_people(windows: Maker) -> None:
+    past = walkers(windows, (0.0, 0.0, 1.2, 0.0), (200.0, 0.0, 15.0, 0.0))
+    assert NET.note(past).startswith("50% of the people of made are unlike the training data")
+    assert NET.note(walkers(windows, (0.0, 0.0, 1.2, 0.0))) == ""
+    assert "; 50% of the people" in AnchorNet().note(past)
+
+
+def test_the_score_grows_smoothly_from_0_to_1(windows: Maker) -> None:
+    rng = np.random.default_rng(2)
+    people, _, _ = agent_histories(walkers(windows, *((0.0, 30.0 * k, 0.5 + 0.01 * k, 0.0) for k in range(200))))
+    people = people._replace(past=people.past + rng.normal(0.0, 0.1, people.past.shape))
+    numbers = distribution_of(people)
+    assert situation_descriptors(people).shape == (200, len(DESCRIPTORS))
+    speeds = np.geomspace(0.5, 2000.0, 800)
+    grown, _, _ = agent_histories(walkers(windows, *((0.0, 30.0 * k, v, 0.0) for k, v in enumerate(speeds))))
+    noise = people.past[0] - people.past[0, -1] - 0.2 * np.arange(-7.0, 1.0)[:, None] * [1.0, 0.0]
+    grown = grown._replace(past=grown.past + noise)
+    score = score_of(numbers, grown, np.arange(len(speeds)))
+    assert score[0] == 0.0
+    assert score[-1] == 1.0
+    assert np.all(np.diff(score) >= -1e-9)
+    assert np.diff(score).max() < 0.2
+
+
+def test_people_who_walk_like_machines_get_constant_velocity(windows: Maker) -> None:
+    crowd = [(2.0 * k, 3.0 * (k % 3), 1.0 + 0.05 * k, 0.0) for k in range(6)]
+    even = walkers(windows, *crowd, sway=0.0)
+    forecast = NET.predict(even, 12)
+    assert forecast.out_of_distribution is not None
+    assert forecast.out_of_distribution.tolist() == [[1.0] * 6]
+    free = dataclasses.replace(NET, contact=0.0)
+    np.testing.assert_allclose(
+        free.predict(even, 12).position, ConstantVelocity().predict(even, 12).position, atol=1e-9
+    )
+    swaying = NET.predict(walkers(windows, *crowd), 12).out_of_distribution
+    assert swaying is not None
+    assert swaying.max() < 0.1
+
+
+def test_simulated_crowds_are_the_same_for_a_seed() -> None:
+    one, other = simulated_crowds(1, seed=4), simulated_crowds(1, seed=4)
+    assert len(one) == len(CROWD_MODELS) * len(CROWD_LAYOUTS)
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_array_equal(a.position, b.position)
+        assert a.dt == pytest.approx(0.4)
+        assert len(a.windows()[0]) > 0
+
+
+def test_the_reach_of_a_training_is_above_0() -> None:
+    from crowdbot.prediction.anchor_net.training import PRESETS, AnchorTraining
+
+    assert PRESETS["general"].reach == REACH
+    assert PRESETS["shipped"].reach == np.inf
+    with pytest.raises(InputError, match="reach = 0.0 m must be above 0"):
+        AnchorTraining(reach=0.0)
