@@ -6,7 +6,7 @@ import pytest
 from crowdbot.core import TrialError
 from crowdbot.recording import record, replay
 from crowdbot.simulation import Simulation, simulate, simulate_seeds
-from crowdbot.trials import apply_values, load_trial, parse_trial
+from crowdbot.trials import apply_values, load_trial, parse_trial, trial_xml
 
 
 def trial_with(people, **values):
@@ -68,7 +68,7 @@ def test_a_recorded_run_replays_from_its_keyframes(tmp_path):
 
 
 def test_tracking_needs_a_laser_scanner():
-    text = load_trial("crossing-flows").to_xml().replace("<robot ", '<robot people="tracked" ')
+    text = trial_xml(load_trial("crossing-flows")).replace("<robot ", '<robot people="tracked" ')
     begin, end = text.index("<sensor"), text.index("</robot>")
     with pytest.raises(TrialError, match="no laser scanner"):
         parse_trial(text[:begin] + text[end:])

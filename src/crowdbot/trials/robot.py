@@ -34,8 +34,8 @@ from .fields import FieldProblem, attribute, check, child, children, mounted_fie
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
-from .robots.people_input import ABOUT_PEOPLE, PEOPLE_INPUTS, people_problems
 from .robots.joint_target import JointTarget, joint_problems
+from .robots.people_input import ABOUT_PEOPLE, PEOPLE_INPUTS, people_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
