@@ -52,7 +52,7 @@ def clear_mot(table: TrackComparison, reach: float = 0.5) -> ClearMot:
     >>> found.mota, round(found.motp, 3), found.misses, found.switches
     (0.5, 0.1, 1, 1)
     """
-    seen = table.drop_hidden(reach)
+    seen = table.visible_only(reach)
     distances = seen.distances()
     T, A, B = distances.shape
     last = np.full(A, -1)

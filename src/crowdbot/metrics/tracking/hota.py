@@ -44,7 +44,7 @@ def hota(table: TrackComparison, zero: float = 1.0) -> Hota:
     >>> round(found.detection, 6), round(found.association, 6), round(found.hota, 3)
     (1.0, 0.5, 0.707)
     """
-    seen = table.drop_hidden(zero)
+    seen = table.visible_only(zero)
     similarity = np.nan_to_num(np.maximum(0.0, 1.0 - seen.distances() / zero))
     people, tracks = (~np.isnan(one[..., 0]) for one in (seen.truth, seen.estimate))
     whole = float(people.sum() + tracks.sum())

@@ -27,7 +27,7 @@ def identity_f1(table: TrackComparison, reach: float = 0.5) -> float:
     >>> identity_f1(table)
     0.75
     """
-    seen = table.drop_hidden(reach)
+    seen = table.visible_only(reach)
     together = (seen.distances() <= reach).sum(axis=0)
     people, tracks = linear_sum_assignment(-together)
     right = int(together[people, tracks].sum())

@@ -24,7 +24,7 @@ def track_latency(table: TrackComparison, times: ArrayLike, reach: float = 0.5) 
     >>> track_latency(table, [1.0, 1.1, 1.2]).round(3).tolist()
     [0.2]
     """
-    seen = table.drop_hidden(reach)
+    seen = table.visible_only(reach)
     when = np.asarray(times, dtype=np.float64)
     there = ~np.isnan(seen.truth[..., 0])
     found = np.full(there.shape[1], np.nan)

@@ -31,7 +31,7 @@ def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Flo
     >>> ospa(table).round(4).tolist()
     [0.8246]
     """
-    seen = table.drop_hidden(cutoff)
+    seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         small, large = sorted(distance.shape)
@@ -57,7 +57,7 @@ def gospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Fl
     >>> gospa(table).round(4).tolist() == [round(math.sqrt(0.36 + 0.5), 4)]
     True
     """
-    seen = table.drop_hidden(cutoff)
+    seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         cost = np.minimum(distance, cutoff) ** order

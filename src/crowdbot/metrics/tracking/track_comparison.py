@@ -79,7 +79,7 @@ class TrackComparison:
         away = self.truth[:, :, None] - self.estimate[:, None]
         return np.asarray(np.hypot(away[..., 0], away[..., 1]))
 
-    def drop_hidden(self, reach: float) -> TrackComparison:
+    def visible_only(self, reach: float) -> TrackComparison:
         """Return the table without hidden people and without their tracks, assigned within ``reach`` [m].
 
         A track of a hidden person is then neither right nor wrong, as in the preprocessing of MOTChallenge (Milan et
