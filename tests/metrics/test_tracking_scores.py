@@ -8,7 +8,7 @@ import pytest
 import tracking_reference
 
 from crowdbot.core import InputError
-from crowdbot.metrics import TrackTable, clear_mot, gospa, hota, identity_f1, ospa, track_latency, tracking_scores
+from crowdbot.metrics import TrackComparison, clear_mot, gospa, hota, identity_f1, ospa, track_latency, tracking_scores
 
 ROWS = json.loads(tracking_reference.FILE.read_text(encoding="utf-8"))
 
@@ -28,14 +28,14 @@ def test_scores_equal_those_of_motmetrics_and_trackeval(row):
 
 def test_perfect_tracks_have_perfect_scores():
     truth = np.cumsum(np.full((8, 3, 2), 0.1), axis=0) + np.arange(3.0)[None, :, None] * 4.0
-    scores = tracking_scores(TrackTable(truth, truth[:, [2, 0, 1]]), np.arange(8) / 10)
+    scores = tracking_scores(TrackComparison(truth, truth[:, [2, 0, 1]]), np.arange(8) / 10)
     assert [scores[name] for name in ("mota", "idf1", "hota")] == pytest.approx([1.0, 1.0, 1.0])
     assert [scores[name] for name in ("motp", "ospa", "gospa", "switches", "misses", "latency")] == [0.0] * 6
 
 
 def test_a_pair_is_kept_while_it_is_within_reach():
     walk = [{0: (0.0, 0.0)}, {0: (0.0, 0.0)}]
-    table = TrackTable.of(walk, [{4: (0.0, 0.0)}, {4: (0.4, 0.0), 5: (0.0, 0.0)}])
+    table = TrackComparison.of(walk, [{4: (0.0, 0.0)}, {4: (0.4, 0.0), 5: (0.0, 0.0)}])
     assert clear_mot(table).switches == 0
     assert clear_mot(table, reach=0.3).switches == 1
 
@@ -43,25 +43,25 @@ def test_a_pair_is_kept_while_it_is_within_reach():
 def test_hidden_people_and_their_tracks_do_not_count():
     people = [{0: (0.0, 0.0), 1: (5.0, 0.0)}] * 3
     tracks = [{7: (0.0, 0.0), 8: (5.1, 0.0)}] * 3
-    whole, without = TrackTable.of(people, tracks), TrackTable.of(people, tracks, [(), (1,), (1,)])
+    whole, without = TrackComparison.of(people, tracks), TrackComparison.of(people, tracks, [(), (1,), (1,)])
     assert clear_mot(whole).people == 6
     found = clear_mot(without)
     assert (found.people, found.matches, found.false_tracks, found.mota) == (4, 4, 0, 1.0)
-    lost = clear_mot(TrackTable.of(people, [{7: (0.0, 0.0)}] * 3, [(1,), (1,), (1,)]))
+    lost = clear_mot(TrackComparison.of(people, [{7: (0.0, 0.0)}] * 3, [(1,), (1,), (1,)]))
     assert (lost.misses, lost.mota) == (0, 1.0)
 
 
 def test_a_switch_costs_association_but_not_detection():
     people = [{0: (0.0, 0.0), 1: (3.0, 0.0)}] * 10
     swapped = [{5: (0.0, 0.0), 6: (3.0, 0.0)}] * 5 + [{6: (0.0, 0.0), 5: (3.0, 0.0)}] * 5
-    found = hota(TrackTable.of(people, swapped))
+    found = hota(TrackComparison.of(people, swapped))
     assert found.detection == pytest.approx(1.0)
     assert found.association == pytest.approx(5.0 / 15.0)
-    assert identity_f1(TrackTable.of(people, swapped)) == pytest.approx(0.5)
+    assert identity_f1(TrackComparison.of(people, swapped)) == pytest.approx(0.5)
 
 
 def test_ospa_and_gospa_of_missing_and_false_tracks():
-    table = TrackTable.of([{0: (0, 0)}, {0: (0, 0)}, {}, {}], [{}, {3: (0.3, 0.4)}, {3: (0, 0)}, {}])
+    table = TrackComparison.of([{0: (0, 0)}, {0: (0, 0)}, {}, {}], [{}, {3: (0.3, 0.4)}, {3: (0, 0)}, {}])
     assert ospa(table).tolist() == pytest.approx([1.0, 0.5, 1.0, 0.0])
     assert gospa(table).tolist() == pytest.approx([math.sqrt(0.5), 0.5, math.sqrt(0.5), 0.0])
     assert ospa(table, cutoff=0.4).tolist() == pytest.approx([0.4, 0.4, 0.4, 0.0])
@@ -69,12 +69,12 @@ def test_ospa_and_gospa_of_missing_and_false_tracks():
 
 def test_latency_counts_from_the_first_sight():
     people = [{0: (0, 0), 1: (9, 9)}, {0: (0, 0)}, {0: (0, 0)}]
-    table = TrackTable.of(people, [{}, {}, {2: (0, 0)}], [(0,), (), ()])
+    table = TrackComparison.of(people, [{}, {}, {2: (0, 0)}], [(0,), (), ()])
     assert track_latency(table, [0.0, 0.5, 1.0]).tolist() == [0.5, math.inf]
 
 
 def test_no_people_have_no_accuracy():
-    table = TrackTable(np.zeros((3, 0, 2)), np.zeros((3, 0, 2)))
+    table = TrackComparison(np.zeros((3, 0, 2)), np.zeros((3, 0, 2)))
     found = tracking_scores(table, [0.0, 0.1, 0.2])
     assert math.isnan(found["mota"])
     assert math.isnan(found["hota"])
@@ -83,8 +83,8 @@ def test_no_people_have_no_accuracy():
 
 def test_wrong_tables_are_rejected():
     with pytest.raises(InputError, match=r"estimate has shape \[2, 1, 2\], it must be \[3, people, 2\]"):
-        TrackTable(np.zeros((3, 1, 2)), np.zeros((2, 1, 2)))
+        TrackComparison(np.zeros((3, 1, 2)), np.zeros((2, 1, 2)))
     with pytest.raises(InputError, match="1 instants of people, 2 of tracks"):
-        TrackTable.of([{}], [{}, {}])
+        TrackComparison.of([{}], [{}, {}])
     with pytest.raises(InputError, match=r"hidden has shape \[3, 2\]"):
-        TrackTable(np.zeros((3, 1, 2)), np.zeros((3, 1, 2)), np.zeros((3, 2), dtype=bool))
+        TrackComparison(np.zeros((3, 1, 2)), np.zeros((3, 1, 2)), np.zeros((3, 2), dtype=bool))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.metrics import TrackTable
+from crowdbot.metrics import TrackComparison
 
 FILE = Path(__file__).parents[1] / "reference" / "tracking" / "scores.json"
 SEEDS = range(4)
@@ -36,7 +36,7 @@ def made_table(seed):
         if rng.random() < 0.3:
             estimate[t, 10 + rng.integers(2)] = rng.uniform(-3.0, 3.0, 2)
     truth[:10, 0], truth[40:, 1] = np.nan, np.nan
-    return TrackTable(truth, estimate)
+    return TrackComparison(truth, estimate)
 
 
 def main():

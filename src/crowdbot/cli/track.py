@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .output import Progress, add_json, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from crowdbot.evaluation.tracking import ReadingLog, TrackingRun
+    from crowdbot.evaluation import ReadingLog, TrackingRun
     from crowdbot.perception import Detector, Tracker
 
 
@@ -38,7 +38,7 @@ def main(options: argparse.Namespace) -> int:
     """Track people in all runs, print the scores and draw the plot."""
     from crowdbot import perception
     from crowdbot.core import InputError, explain_write_errors, find_class
-    from crowdbot.evaluation.tracking import estimate_scores, plot_tracks, track_people
+    from crowdbot.evaluation import estimate_scores, plot_tracks, track_people
 
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
@@ -69,7 +69,7 @@ def main(options: argparse.Namespace) -> int:
 def _logs(options: argparse.Namespace, detector: Detector, report: Progress) -> list[ReadingLog]:
     """Return the readings of the episode, or of each run of the trial."""
     from crowdbot.core import InputError
-    from crowdbot.evaluation.tracking import log_readings, read_readings
+    from crowdbot.evaluation import log_readings, read_readings
     from crowdbot.trials import load_trial
 
     if options.source.endswith(".mcap"):

@@ -30,6 +30,7 @@ from .decision_timer import DecisionTimer
 from .door_paths import next_waypoints
 from .faults.fault_state import FaultState
 from .mounted_sensor import MountedSensor, mounted_sensors
+from .tracking.people_tracking import PerceivedPeople, begin_tracking, track_readings, view_tracks
 from .world_builder import limits_of
 from .world_view import WorldView
 
@@ -56,6 +57,8 @@ class _Known(NamedTuple):
     """``[N, 9]`` state of the path planner."""
     tracks: TrackBatch
     """N histories of the visible people, or empty."""
+    perceived: list[PerceivedPeople]
+    """States of N trackers and their tracks, or empty."""
     failures: dict[int, Exception]
     """Environments without a path or with invalid tracks."""
 
@@ -94,6 +97,7 @@ class RobotControl:
         ordered: ``[E]`` tick of the latest velocity order, -1 for none.
         joints: ``[E, J]`` target of each joint [rad or m] that has been moved, otherwise NaN.
         faults: faults of the robot, or None.
+        perceived: state of the tracker and tracks in each environment, or empty.
         wanted: targets of joints from the latest decisions by environment, until they are applied.
     """
 
@@ -115,6 +119,7 @@ class RobotControl:
     tolerance: Floats
     joints: Floats
     faults: FaultState | None = None
+    perceived: list[PerceivedPeople] = field(default_factory=list)
     wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
@@ -144,6 +149,7 @@ class RobotControl:
             np.full(count, robot.goal.tolerance),
             np.full((count, len(free_joints(robot.body))), np.nan),
             FaultState.of(robot, seeds),
+            begin_tracking(count) if robot.people == "tracked" else [],
         )
 
     def change_memory(self, trial: Trial, robot: RobotSpec) -> RobotControl:
@@ -155,11 +161,13 @@ class RobotControl:
         old, count = self.robot, len(self.memories)
         planner = robot.stage_planner(trial.stage)
         same = (robot.tracks, robot.control_period) == (old.tracks, old.control_period)
+        kept = self.perceived if robot.people == old.people else []
         return dataclasses.replace(
             self,
             planner=planner,
             path=self.path if planner is self.planner else np.full_like(self.path, np.nan),
-            tracks=self.tracks if same else _empty_tracks(robot, count),
+            tracks=self.tracks if same and robot.people == old.people else _empty_tracks(robot, count),
+            perceived=kept or (begin_tracking(count) if robot.people == "tracked" else []),
         )
 
     def commands(self, times: Floats) -> Twists:
@@ -190,7 +198,8 @@ class RobotControl:
 
     def _observe(self, around: WorldView, environments: Ints) -> tuple[ObservationBatch, _Known]:
         """Return the observations, and the state of paths and tracks after them."""
-        batch = self._perceive(around, environments)
+        perceived = self._track_people(around, environments)
+        batch = self._perceive(around, environments, perceived)
         path, tracks = self.path[environments], self.tracks
         failures: dict[int, Exception] = {}
         changes: dict[str, Any] = {}
@@ -204,14 +213,22 @@ class RobotControl:
             changes |= {} if goal is batch.goal else {"goal": goal}
             path, changes["waypoint"] = found.path, found.point
             failures |= {k: InputError(f"robot {self.robot.name!r}: {error}") for k, error in found.failures.items()}
-        return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, failures)
+        return dataclasses.replace(batch, **changes) if changes else batch, _Known(path, tracks, perceived, failures)
 
-    def _perceive(self, around: WorldView, environments: Ints) -> ObservationBatch:
+    def _track_people(self, around: WorldView, environments: Ints) -> list[PerceivedPeople]:
+        """Return the people tracked in the latest readings, for a robot that tracks people."""
+        found = []
+        for e in environments.tolist() if self.perceived else ():
+            walls = (around.flat_of(e) if around.world.has_own_walls else around.flat).walls
+            found.append(track_readings(self.perceived[e], self.sensors, e, walls))
+        return found
+
+    def _perceive(self, around: WorldView, environments: Ints, perceived: list[PerceivedPeople]) -> ObservationBatch:
         """Return the observations without paths and tracks."""
         world = around.world
         ids, twists = world.ids, world.twists[self.agent]
-        seen = np.zeros(ids.shape, dtype=np.bool_)
-        for sensor in self.sensors:
+        seen = np.full(ids.shape, self.robot.people == "true")
+        for sensor in self.sensors if self.robot.people == "seen" else ():
             visible = sensor.visible(ids)
             if visible is not None:
                 seen |= visible
@@ -236,7 +253,12 @@ class RobotControl:
             predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),
         )
-        return batch if self.faults is None else self.faults.distort(batch, world, self.sensors, environments)
+        if perceived:
+            batch = dataclasses.replace(batch, people=view_tracks(perceived, world.times[environments]))
+        if self.faults is None:
+            return batch
+        seeing = self.sensors if self.robot.people == "seen" else ()
+        return self.faults.distort(batch, world, seeing, environments)
 
     def _latest(self, environment: int) -> dict[str, Reading]:
         """Return the latest reading of each sensor that has one."""
@@ -295,6 +317,8 @@ class RobotControl:
 
     def _remember(self, environments: Ints, known: _Known) -> None:
         self.path[environments] = known.path
+        for e, one in zip(environments.tolist(), known.perceived, strict=False):
+            self.perceived[e] = one
         if self.tracks:
             whole = len(environments) == len(self.tracks)
             self.tracks = known.tracks if whole else self.tracks.put(environments, known.tracks)
@@ -307,7 +331,7 @@ class RobotControl:
         self.command[environments[stale]] = 0.0
         self.begun[environments] = True
         self.timer.repeat_misses(environments, ticks)
-        if self.planner is None and self.robot.tracks is None:
+        if self.planner is None and self.robot.tracks is None and not self.perceived:
             return
         due = environments[world.clock.schedule(self.robot.control_period).is_due(ticks)]
         for part in np.split(due, len(due)) if world.has_own_walls and len(due) > 1 else [due]:
@@ -337,6 +361,7 @@ class RobotControl:
         other.sensors = tuple(sensor.select(environments) for sensor in self.sensors)
         other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
         other.tracks = self.tracks.select(environments) if self.tracks else self.tracks
+        other.perceived = [self.perceived[e] for e in environments.tolist()] if self.perceived else []
         other.timer = self.timer.select(environments)
         other.faults = None if self.faults is None else self.faults.select(environments)
         for name in ROWS:
@@ -352,6 +377,8 @@ class RobotControl:
         self.timer.put(environments, other.timer)
         if self.faults is not None and other.faults is not None:
             self.faults.put(environments, other.faults)
+        for e, one in zip(environments.tolist(), other.perceived, strict=False):
+            self.perceived[e] = one
         if self.tracks:
             self.tracks = self.tracks.put(environments, other.tracks)
         for name in ROWS:

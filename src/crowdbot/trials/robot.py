@@ -35,6 +35,7 @@ from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
 from .robots.joint_target import JointTarget, joint_problems
+from .robots.people_input import ABOUT_PEOPLE, PEOPLE_INPUTS, people_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose
 from .robots.robot_types import robot_folder_of, robot_of_type
@@ -166,24 +167,20 @@ class RobotSpec:
     )
     control_period: float = attribute(0.1, about="control period", unit="s", exclusive_min=0.0)
     deadline: float | None = attribute(
-        None,
+        None, unit="s", exclusive_min=0.0,
         about="compute time of a decision above which it is missed: the previous command stays (default: no limit)",
-        unit="s",
-        exclusive_min=0.0,
-    )
+    )  # fmt: skip
     decision_limit: float = attribute(
         60.0,
         about="real time after which a decision of an own navigator that has not returned ends the run with an error",
         unit="s",
         exclusive_min=0.0,
     )
+    people: str = attribute("seen", about=ABOUT_PEOPLE, choices=PEOPLE_INPUTS)
     tracks: float | None = attribute(
-        None,
+        None, unit="s", exclusive_min=0.0, max=600.0,
         about="time span of the past positions of visible people for the navigator (default: none)",
-        unit="s",
-        exclusive_min=0.0,
-        max=600.0,
-    )
+    )  # fmt: skip
     holonomic: bool = attribute(
         False, about="whether the navigator moves in every direction, with an omnidirectional drive"
     )
@@ -237,6 +234,8 @@ class RobotSpec:
         for problem in safety_problems(self.safety, self.navigator):
             raise InputError(problem)
         for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
+            raise InputError(problem)
+        for problem in people_problems(self.people, self.sensors):
             raise InputError(problem)
         for problem in rider_problems(self.rider_kind, self.body.seat):
             raise InputError(problem)

@@ -18,6 +18,7 @@ from .measurement import Gauge, Measurement
 from .ray_casting import mujoco_rays, people_with_limbs
 from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 from .skinning import posing_and_skinning
+from .tracking import tracking
 
 __all__ = ["crowd", "measurements"]
 
@@ -65,6 +66,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     if sys.platform != "win32":  # Windows does not report the peak memory of a process
         found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "lidar-1080-batch": _lidar_batch, "trial": _trial}
+    found["track-1080"] = tracking
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs

@@ -47,7 +47,7 @@ class LoggedReading:
         """Time of the reading [s]."""
         return float(np.max(self.reading.time))
 
-    def hidden(self, min_beams: int = MIN_BEAMS) -> list[int]:
+    def hidden_ids(self, min_beams: int = MIN_BEAMS) -> list[int]:
         """Return the ids of those who need not be found."""
         return [who for who in self.people if self.beams.get(who, 0) < min_beams] + list(self.others)
 

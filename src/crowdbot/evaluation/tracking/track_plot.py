@@ -64,7 +64,7 @@ def _draw_people(axis: Any, run: TrackingRun, first: int) -> None:
     names = {"visible person": "-", "hidden person": ":"}
     for who in sorted({who for row in rows for who in row.people}):
         place = np.array([row.people.get(who, (np.nan, np.nan)) for row in rows])
-        hidden = np.array([who in row.hidden() for row in rows])
+        hidden = np.array([who in row.hidden_ids() for row in rows])
         for wanted, (name, style) in zip((False, True), names.items(), strict=True):
             part = np.where((hidden == wanted)[:, None], place, np.nan)
             if not np.isnan(part).all():

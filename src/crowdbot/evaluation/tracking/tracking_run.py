@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.evaluation.intervals import Estimate, bootstrap_interval
-from crowdbot.metrics import TRACKING_SCORES, TrackTable, tracking_scores
+from crowdbot.metrics import TRACKING_SCORES, TrackComparison, tracking_scores
 from crowdbot.perception import Detections, Detector, Tracker, Tracks
 
 from .reading_log import ReadingLog
@@ -30,11 +30,11 @@ class TrackingRun:
     detections: tuple[Detections, ...]
     tracks: tuple[Tracks, ...]
 
-    def table(self) -> TrackTable:
+    def table(self) -> TrackComparison:
         """Return people and tracks at the instants of the readings; hidden people and other robots do not count."""
         truth = [{**row.people, **row.others} for row in self.log.rows]
         found = [dict(zip(one.ids.tolist(), one.position.tolist(), strict=True)) for one in self.tracks]
-        return TrackTable.of(truth, found, [row.hidden() for row in self.log.rows])
+        return TrackComparison.of(truth, found, [row.hidden_ids() for row in self.log.rows])
 
     def scores(self, reach: float = 0.5) -> dict[str, float]:
         """Return the scores of the tracks, see :data:`crowdbot.metrics.TRACKING_SCORES`."""

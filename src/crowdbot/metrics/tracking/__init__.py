@@ -5,14 +5,14 @@ from .hota import Hota, hota
 from .identity_f1 import identity_f1
 from .latency import track_latency
 from .ospa import gospa, ospa
-from .track_table import TrackTable
+from .track_comparison import TrackComparison
 from .tracking_scores import TRACKING_SCORES, tracking_scores
 
 __all__ = [
     "TRACKING_SCORES",
     "ClearMot",
     "Hota",
-    "TrackTable",
+    "TrackComparison",
     "clear_mot",
     "gospa",
     "hota",

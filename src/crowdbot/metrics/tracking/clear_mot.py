@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .track_table import TrackTable, match_nearest
+from .track_comparison import TrackComparison, match_nearest
 
 __all__ = ["ClearMot", "clear_mot"]
 
@@ -35,7 +35,7 @@ class ClearMot:
     fragments: int
 
 
-def clear_mot(table: TrackTable, reach: float = 0.5) -> ClearMot:
+def clear_mot(table: TrackComparison, reach: float = 0.5) -> ClearMot:
     """Return the CLEAR MOT scores.
 
     A pair of the previous instant is kept while it is within reach; the others are matched with the smallest sum of
@@ -47,12 +47,12 @@ def clear_mot(table: TrackTable, reach: float = 0.5) -> ClearMot:
         table: people and tracks; hidden people are left out first.
         reach: largest distance of a pair [m].
 
-    >>> table = TrackTable.of([{0: (0, 0)}] * 4, [{5: (0.1, 0)}, {5: (0.1, 0)}, {}, {6: (0.1, 0)}])
+    >>> table = TrackComparison.of([{0: (0, 0)}] * 4, [{5: (0.1, 0)}, {5: (0.1, 0)}, {}, {6: (0.1, 0)}])
     >>> found = clear_mot(table)
     >>> found.mota, round(found.motp, 3), found.misses, found.switches
     (0.5, 0.1, 1, 1)
     """
-    seen = table.without_hidden(reach)
+    seen = table.visible_only(reach)
     distances = seen.distances()
     T, A, B = distances.shape
     last = np.full(A, -1)

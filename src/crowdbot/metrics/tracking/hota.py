@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from .track_table import TrackTable
+from .track_comparison import TrackComparison
 
 __all__ = ["Hota", "hota"]
 
@@ -28,7 +28,7 @@ class Hota(NamedTuple):
     """AssA"""
 
 
-def hota(table: TrackTable, zero: float = 1.0) -> Hota:
+def hota(table: TrackComparison, zero: float = 1.0) -> Hota:
     """Return the higher order tracking accuracy.
 
     At each threshold, DetA = TP / (TP + FN + FP), AssA is the mean over the pairs of TPA / (TPA + FNA + FPA), and
@@ -39,12 +39,12 @@ def hota(table: TrackTable, zero: float = 1.0) -> Hota:
         table: people and tracks; hidden people are left out first.
         zero: distance at which the similarity is 0 [m].
 
-    >>> table = TrackTable.of([{0: (0, 0)}] * 4, [{5: (0, 0)}, {5: (0, 0)}, {6: (0, 0)}, {6: (0, 0)}])
+    >>> table = TrackComparison.of([{0: (0, 0)}] * 4, [{5: (0, 0)}, {5: (0, 0)}, {6: (0, 0)}, {6: (0, 0)}])
     >>> found = hota(table)
     >>> round(found.detection, 6), round(found.association, 6), round(found.hota, 3)
     (1.0, 0.5, 0.707)
     """
-    seen = table.without_hidden(zero)
+    seen = table.visible_only(zero)
     similarity = np.nan_to_num(np.maximum(0.0, 1.0 - seen.distances() / zero))
     people, tracks = (~np.isnan(one[..., 0]) for one in (seen.truth, seen.estimate))
     whole = float(people.sum() + tracks.sum())

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from .track_table import TrackTable
+from .track_comparison import TrackComparison
 
 __all__ = ["identity_f1"]
 
 
-def identity_f1(table: TrackTable, reach: float = 0.5) -> float:
+def identity_f1(table: TrackComparison, reach: float = 0.5) -> float:
     """Return IDF1 = 2 IDTP / (people + tracks), both over all instants; NaN without both.
 
     IDTP is the number of instants at which a person is within reach of the one track that is assigned to the person for
@@ -23,11 +23,11 @@ def identity_f1(table: TrackTable, reach: float = 0.5) -> float:
         table: people and tracks; hidden people are left out first.
         reach: largest distance of a pair [m].
 
-    >>> table = TrackTable.of([{0: (0, 0)}] * 4, [{5: (0, 0)}, {5: (0, 0)}, {5: (0, 0)}, {6: (0, 0)}])
+    >>> table = TrackComparison.of([{0: (0, 0)}] * 4, [{5: (0, 0)}, {5: (0, 0)}, {5: (0, 0)}, {6: (0, 0)}])
     >>> identity_f1(table)
     0.75
     """
-    seen = table.without_hidden(reach)
+    seen = table.visible_only(reach)
     together = (seen.distances() <= reach).sum(axis=0)
     people, tracks = linear_sum_assignment(-together)
     right = int(together[people, tracks].sum())

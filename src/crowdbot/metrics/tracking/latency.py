@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .track_table import TrackTable, match_nearest
+from .track_comparison import TrackComparison, match_nearest
 
 __all__ = ["track_latency"]
 
 
-def track_latency(table: TrackTable, times: ArrayLike, reach: float = 0.5) -> NDArray[np.float64]:
+def track_latency(table: TrackComparison, times: ArrayLike, reach: float = 0.5) -> NDArray[np.float64]:
     """Return the time from the first sight of each person to the first track, ``[A]`` [s]; ``inf`` if never tracked.
 
     It is NaN for people who are never visible.
@@ -20,11 +20,11 @@ def track_latency(table: TrackTable, times: ArrayLike, reach: float = 0.5) -> ND
         times: ``[T]`` [s].
         reach: largest distance of a person and a track [m].
 
-    >>> table = TrackTable.of([{0: (0, 0)}] * 3, [{}, {}, {5: (0.2, 0)}])
+    >>> table = TrackComparison.of([{0: (0, 0)}] * 3, [{}, {}, {5: (0.2, 0)}])
     >>> track_latency(table, [1.0, 1.1, 1.2]).round(3).tolist()
     [0.2]
     """
-    seen = table.without_hidden(reach)
+    seen = table.visible_only(reach)
     when = np.asarray(times, dtype=np.float64)
     there = ~np.isnan(seen.truth[..., 0])
     found = np.full(there.shape[1], np.nan)

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from .track_table import TrackTable
+from .track_comparison import TrackComparison
 
 __all__ = ["gospa", "ospa"]
 
 Floats = NDArray[np.float64]
 
 
-def ospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
+def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Floats:
     """Return the optimal subpattern assignment distance at each instant, ``[T]`` [m]; 0 without people and tracks.
 
     With m <= n elements in the two sets: ((min sum over m pairs of min(d, c)^p + c^p (n - m)) / n)^(1/p) (Schuhmacher,
@@ -27,11 +27,11 @@ def ospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
         cutoff: c [m].
         order: p.
 
-    >>> table = TrackTable.of([{0: (0, 0), 1: (5, 0)}], [{7: (0, 0.6)}])
+    >>> table = TrackComparison.of([{0: (0, 0), 1: (5, 0)}], [{7: (0, 0.6)}])
     >>> ospa(table).round(4).tolist()
     [0.8246]
     """
-    seen = table.without_hidden(cutoff)
+    seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         small, large = sorted(distance.shape)
@@ -41,7 +41,7 @@ def ospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
     return found
 
 
-def gospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
+def gospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Floats:
     """Return the generalized OSPA distance at each instant, ``[T]`` [m], for alpha = 2.
 
     (sum over assigned pairs of d^p + c^p / 2 (misses + false tracks))^(1/p), minimized over assignments of pairs within
@@ -53,11 +53,11 @@ def gospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
         cutoff: c [m].
         order: p.
 
-    >>> table = TrackTable.of([{0: (0, 0), 1: (5, 0)}], [{7: (0, 0.6)}])
+    >>> table = TrackComparison.of([{0: (0, 0), 1: (5, 0)}], [{7: (0, 0.6)}])
     >>> gospa(table).round(4).tolist() == [round(math.sqrt(0.36 + 0.5), 4)]
     True
     """
-    seen = table.without_hidden(cutoff)
+    seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         cost = np.minimum(distance, cutoff) ** order
@@ -68,7 +68,7 @@ def gospa(table: TrackTable, cutoff: float = 1.0, order: float = 2.0) -> Floats:
     return found
 
 
-def _present(table: TrackTable) -> list[Floats]:
+def _present(table: TrackComparison) -> list[Floats]:
     """Return the distances between those present, ``[people, tracks]`` for each instant."""
     distances = table.distances()
     people, tracks = (~np.isnan(one[..., 0]) for one in (table.truth, table.estimate))

@@ -10,7 +10,7 @@ from .hota import hota
 from .identity_f1 import identity_f1
 from .latency import track_latency
 from .ospa import gospa, ospa
-from .track_table import TrackTable
+from .track_comparison import TrackComparison
 
 __all__ = ["TRACKING_SCORES", "tracking_scores"]
 
@@ -30,7 +30,9 @@ TRACKING_SCORES = {
 numbers by 100 instants of people; latency is the median of people."""
 
 
-def tracking_scores(table: TrackTable, times: ArrayLike, reach: float = 0.5, cutoff: float = 1.0) -> dict[str, float]:
+def tracking_scores(
+    table: TrackComparison, times: ArrayLike, reach: float = 0.5, cutoff: float = 1.0
+) -> dict[str, float]:
     """Return the scores of tracks by name, see :data:`TRACKING_SCORES`.
 
     Args:
@@ -39,7 +41,7 @@ def tracking_scores(table: TrackTable, times: ArrayLike, reach: float = 0.5, cut
         reach: largest distance of a person and a track in MOTA, MOTP, IDF1 and latency [m].
         cutoff: distance at which HOTA, OSPA and GOSPA see no similarity [m].
 
-    >>> table = TrackTable.of([{0: (0, 0)}] * 2, [{5: (0.1, 0)}] * 2)
+    >>> table = TrackComparison.of([{0: (0, 0)}] * 2, [{5: (0.1, 0)}] * 2)
     >>> scores = tracking_scores(table, [0.0, 0.1])
     >>> scores["mota"], round(scores["ospa"], 3), list(scores) == list(TRACKING_SCORES)
     (1.0, 0.1, True)

@@ -102,7 +102,10 @@ class FaultState:
     def distort(
         self, batch: ObservationBatch, world: World, sensors: Sequence[MountedSensor], environments: Ints
     ) -> ObservationBatch:
-        """Return observations as the robot believes them: people of old readings, and a wrong pose."""
+        """Return observations as the robot believes them: people of old readings, and a wrong pose.
+
+        Without sensors, the people of the observations are those of the latest readings already.
+        """
         changed = self._with_old_people(batch, world, sensors, environments)
         return self._with_wrong_pose(changed, world.times, environments)
 

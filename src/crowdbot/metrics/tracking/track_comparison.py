@@ -1,4 +1,4 @@
-"""TrackTable: true people and tracks at the same instants, as arrays."""
+"""TrackComparison: true people and tracks at the same instants, as arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from crowdbot.core import InputError
 
-__all__ = ["TrackTable", "match_nearest"]
+__all__ = ["TrackComparison", "match_nearest"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -20,7 +20,7 @@ FORBIDDEN = 1e9
 
 
 @dataclass(frozen=True, eq=False)
-class TrackTable:
+class TrackComparison:
     """Positions of A true people and of B tracks at T instants; each column is one identity.
 
     Fields:
@@ -31,7 +31,7 @@ class TrackTable:
     Raises:
         InputError: a shape is wrong.
 
-    >>> table = TrackTable.of([{3: (0.0, 0.0)}, {3: (1.0, 0.0)}], [{0: (0.1, 0.0)}, {}])
+    >>> table = TrackComparison.of([{3: (0.0, 0.0)}, {3: (1.0, 0.0)}], [{0: (0.1, 0.0)}, {}])
     >>> table.truth.shape, table.estimate[:, 0].tolist()
     ((2, 1, 2), [[0.1, 0.0], [nan, nan]])
     """
@@ -45,10 +45,10 @@ class TrackTable:
         for name in ("truth", "estimate"):
             shape = getattr(self, name).shape
             if len(shape) != 3 or shape[0] != T or shape[2] != 2:
-                raise InputError(f"track table: {name} has shape {list(shape)}, it must be [{T}, people, 2]")
+                raise InputError(f"tracks: {name} has shape {list(shape)}, it must be [{T}, people, 2]")
         if self.hidden is not None and self.hidden.shape != self.truth.shape[:2]:
             raise InputError(
-                f"track table: hidden has shape {list(self.hidden.shape)}, it must be {list(self.truth.shape[:2])}"
+                f"tracks: hidden has shape {list(self.hidden.shape)}, it must be {list(self.truth.shape[:2])}"
             )
 
     @classmethod
@@ -57,16 +57,14 @@ class TrackTable:
         truth: Sequence[Mapping[int, Sequence[float]]],
         estimate: Sequence[Mapping[int, Sequence[float]]],
         hidden: Sequence[Sequence[int]] | None = None,
-    ) -> TrackTable:
+    ) -> TrackComparison:
         """Return the table of positions by identity at each instant, and identities of the hidden people.
 
         Raises:
             InputError: the numbers of instants differ.
         """
         if len(truth) != len(estimate) or (hidden is not None and len(hidden) != len(truth)):
-            raise InputError(
-                f"track table: {len(truth)} instants of people, {len(estimate)} of tracks; they must be equal"
-            )
+            raise InputError(f"tracks: {len(truth)} instants of people, {len(estimate)} of tracks; they must be equal")
         people, columns = _columns(truth)
         tracks, _ = _columns(estimate)
         if hidden is None:
@@ -81,7 +79,7 @@ class TrackTable:
         away = self.truth[:, :, None] - self.estimate[:, None]
         return np.asarray(np.hypot(away[..., 0], away[..., 1]))
 
-    def without_hidden(self, reach: float) -> TrackTable:
+    def visible_only(self, reach: float) -> TrackComparison:
         """Return the table without hidden people and without their tracks, assigned within ``reach`` [m].
 
         A track of a hidden person is then neither right nor wrong, as in the preprocessing of MOTChallenge (Milan et
@@ -95,7 +93,7 @@ class TrackTable:
                 people, tracks = match_nearest(distance, reach)
                 estimate[t, tracks[self.hidden[t, people]]] = np.nan
         truth[self.hidden] = np.nan
-        return TrackTable(truth, estimate)
+        return TrackComparison(truth, estimate)
 
 
 def match_nearest(distance: Floats, reach: float) -> tuple[Ints, Ints]:

@@ -1,0 +1,1 @@
+"""Tracking of people by the sensors of robots in a simulation."""
