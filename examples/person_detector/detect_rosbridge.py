@@ -12,17 +12,12 @@ from __future__ import annotations
 
 import argparse
 import base64
-import statistics
-import threading
-import time
 
-import numpy as np
 import roslibpy
 from detectors import add_options, detectors_of
+from image_search import ImageSearch, pixels_of
 
 KIND = "vision_msgs/Detection2DArray"
-ORDERS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0)}
-"""Positions of red, green and blue in a pixel, by encoding."""
 
 
 def image_of(message):
@@ -31,12 +26,8 @@ def image_of(message):
     Raises:
         ValueError: the encoding is neither rgb8 nor bgr8.
     """
-    if message["encoding"] not in ORDERS:
-        raise ValueError(f"encoding {message['encoding']!r} must be one of {', '.join(ORDERS)}")
-    height, width = message["height"], message["width"]
-    rows = np.frombuffer(base64.b64decode(message["data"]), dtype=np.uint8).reshape(height, message["step"])
-    pixels = rows[:, : 3 * width].reshape(height, width, 3)
-    return np.ascontiguousarray(pixels[..., ORDERS[message["encoding"]]])
+    data = base64.b64decode(message["data"])
+    return pixels_of(message["encoding"], message["height"], message["width"], message["step"], data)
 
 
 def message_of(header, detections):
@@ -53,49 +44,24 @@ def message_of(header, detections):
     return {"header": header, "detections": rows}
 
 
-class DetectorNode:
-    """Searches the newest image and publishes what it finds, with the header of the image.
+def connect_search(ros, camera, detector):
+    """Return a search of the images of a camera that publishes what it finds, with the header of the image.
 
     Args:
         ros: connection.
         camera: topic of the camera without ``/image``, such as ``/robot/camera``.
         detector: has ``detect(rgb)``.
     """
+    out = roslibpy.Topic(ros, f"{camera}/detections", KIND, queue_size=1)
+    out.advertise()
 
-    def __init__(self, ros, camera, detector):
-        self.detector, self.newest, self.fresh = detector, None, threading.Condition()
-        self.times, self.people, self.closed = [], 0, False
-        self.out = roslibpy.Topic(ros, f"{camera}/detections", KIND, queue_size=1)
-        self.out.advertise()
-        ros.on("close", lambda *_: self.close())
-        image = roslibpy.Topic(ros, f"{camera}/image", "sensor_msgs/Image", queue_length=1)
-        image.subscribe(self.take_image)
+    def answer(message, found):
+        out.publish(roslibpy.Message(message_of(message["header"], found)))
 
-    def take_image(self, message):
-        """Keep an image until it is searched or replaced."""
-        with self.fresh:
-            self.newest = message
-            self.fresh.notify()
-
-    def close(self):
-        """End :meth:`work`."""
-        with self.fresh:
-            self.closed = True
-            self.fresh.notify()
-
-    def work(self):
-        """Answer images until the connection is closed."""
-        while True:
-            with self.fresh:
-                self.fresh.wait_for(lambda: self.closed or self.newest is not None)
-                if self.closed:
-                    return
-                message, self.newest = self.newest, None
-            begin = time.perf_counter()
-            found = self.detector.detect(image_of(message))
-            self.times.append(time.perf_counter() - begin)
-            self.people += len(found.scores)
-            self.out.publish(roslibpy.Message(message_of(message["header"], found)))
+    search = ImageSearch(detector, image_of, answer)
+    ros.on("close", lambda *_: search.close())
+    roslibpy.Topic(ros, f"{camera}/image", "sensor_msgs/Image", queue_length=1).subscribe(search.take_image)
+    return search
 
 
 def main():
@@ -108,10 +74,9 @@ def main():
     options = parser.parse_args()
     ros = roslibpy.Ros(options.host, options.port)
     ros.run(timeout=60)
-    node = DetectorNode(ros, options.camera, next(iter(detectors_of(options).values())))
-    node.work()
-    median = 1000.0 * statistics.median(node.times) if node.times else 0.0
-    print(f"{len(node.times)} images, {node.people} people, median {median:.0f} ms an image")
+    search = connect_search(ros, options.camera, next(iter(detectors_of(options).values())))
+    search.work()
+    print(search.summary())
     ros.terminate()
 
 

@@ -94,7 +94,7 @@ def main():
     session = qi.Session()
     session.connect(options.url)
     driver = ScanDriver(goal)
-    driver.planner.max_speed = 0.4
+    driver.planner.max_speed, driver.planner.max_turn = 0.35, 0.7
     node = NavigationNode(session, start, driver)
     try:
         while not driver.done:

@@ -35,6 +35,8 @@ def navigate(transport, program, folder):
         meeting.callback(process.kill)
         done = running.end(120.0)
         running.run.port.stop()
+        if meeting.server:  # that of the others; the program ends with it
+            meeting.server.stop()
         printed, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
     chosen = {name: done.metrics[name] for name in ("path_length", "collision")}

@@ -55,9 +55,9 @@ class SocketLink:
         self._closed = ConnectionClosed
         try:
             self._socket = connect(f"ws://{address}", subprotocols=self.protocols, max_size=None, close_timeout=2.0)
-        except (InvalidHandshake, EOFError):  # killed in between
+            self.begin()
+        except (InvalidHandshake, ConnectionClosed, EOFError, GoneError):  # killed in between
             raise ConnectionError from None
-        self.begin()
 
     def tick(self, seconds):
         """Return the next time of the clock [ns], None after some seconds."""

@@ -176,7 +176,9 @@ def deaths(transport, count, folder):
             )
             meeting.callback(process.wait)
             meeting.callback(process.kill)
-            wait(lambda out=out: number_of_orders(out) > 5, 120.0, 0.5)
+            wait(lambda out=out: number_of_orders(out) > 5 or program.poll() is not None, 120.0, 0.5)
+            if program.poll() is not None:
+                pytest.fail(program.communicate()[1])
             time.sleep(rng.uniform(0.0, 1.0))
             process.kill()
             process.wait()

@@ -6,6 +6,7 @@ import functools
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ from test_naoqi import FakeRobot
 
 from crowdbot.bridges import BridgeClock, run_bridge
 from crowdbot.bridges.naoqi import NaoqiBridge
+from crowdbot.recording import read_episode
 from crowdbot.trials import load_trial
 
 sys.path.insert(0, str(EXAMPLES))
@@ -140,6 +142,16 @@ def reference():
     return done.metrics
 
 
+def test_the_page_names_every_program_and_its_first_commands_start_one():
+    page = (EXAMPLES.parents[1] / "docs" / "how-to" / "navigation-node.md").read_text(encoding="utf-8")
+    programs = sorted(one.name for one in EXAMPLES.glob("navigate_*.py"))
+    assert [one for one in programs if f"`{one} " not in page] == []
+    trial, program = re.search(r"^crowdbot run (\S+) .*?^python (\S+) --goal 4,0$", page, re.M | re.S).groups()
+    goal = load_trial(str(EXAMPLES.parents[1] / trial)).robots[0].goal
+    assert (goal.x, goal.y) == (4.0, 0.0)
+    assert Path(program).name in programs
+
+
 def check(seen):
     """It has driven around the pillar to the goal, on the way of the reference, and touched nothing."""
     assert (seen["outcome"], seen["collision"]) == ("success", 0.0), seen
@@ -182,11 +194,13 @@ def test_a_node_without_ros_and_one_of_rclpy_drive_to_the_goal(transport, progra
 def test_a_program_on_a_pepper_drives_around_a_virtual_person_to_its_goal(tmp_path):
     trial = load_trial(str(EXAMPLES / "pepper.xml"))
     goal = trial.robots[0].goal
-    with FakeRobot("idle") as robot, Running(trial, [NaoqiBridge(robot.url)], out=tmp_path) as running:
+    with FakeRobot("lockstep") as robot, Running(trial, [NaoqiBridge(robot.url)], "commands", out=tmp_path) as running:
         words = [sys.executable, str(EXAMPLES / "navigate_naoqi.py"), robot.url, "--goal", f"{goal.x},{goal.y}"]
         process = subprocess.run(words, capture_output=True, text=True, timeout=100)
         done = running.end(100.0)
     assert process.returncode == 0, process.stderr
     assert "arrived after" in process.stdout
-    assert (done.outcome, done.metrics["collision"]) == ("success", 0.0)
+    episode = read_episode(tmp_path / "episode.mcap")
+    places = episode.position[:, episode.robots[0]]
+    assert (done.outcome, done.metrics["collision"]) == ("success", 0.0), (process.stdout, places[::20].tolist())
     assert done.metrics["path_length"] > 2.6
