@@ -3,7 +3,7 @@
 import statistics
 
 import pytest
-from vr_headset import call, desks, emulated_headsets, enter, wait
+from vr_headset import STATE, call, desks, emulated_headsets, enter, wait
 
 from crowdbot.vr import VrServer
 
@@ -60,6 +60,7 @@ def test_lost_tracking_the_stop_of_the_participant_and_a_killed_server(browser, 
     with serve(folder, desks("small.xml"), VrServer) as app, emulated_headsets(browser, app, modules) as headset:
         page = headset()
         enter(page, app)
+        wait(page, f"{STATE}?.steps > 2")  # the avatar moves: what is lost was tracked
         call(app, "vr.set", settings={"timeout": 1.0, "pause_when_lost": True})
         page.evaluate("() => void (XRFrame.prototype._own = XRFrame.prototype.getViewerPose)")
         # tracking is lost: there is no pose at all

@@ -111,7 +111,7 @@ class ExperimentDesk(Desk):
             )
             self._begin_session(found, participant, out, resume, choice)
             self._rate = rate
-            return self._do(Start()) if self._runner.session.phase == "ready" else self._moved()
+            return self._do(Start()) if self._opened().session.phase == "ready" else self._moved()
 
     @command
     def answer(self, answers: dict) -> dict[str, Any]:  # type: ignore[type-arg]
