@@ -72,7 +72,7 @@ def _joined(ranges: Floats, use: Bools, one: int, other: int, step: float, gap: 
     a, b = ranges[one], ranges[other]
     square = a * a + b * b - 2.0 * a * b * math.cos(step)
     limit = gap + 2.0 * min(a, b) * step
-    return square <= limit * limit
+    return bool(square <= limit * limit)
 
 
 @kernel
