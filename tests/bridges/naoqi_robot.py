@@ -1,9 +1,8 @@
 """A fake NAOqi robot with the real ``qi``: service directory, memory that it rewrites in each cycle, and motion.
 
-    python naoqi_robot.py PORT [still|lockstep]
+    python naoqi_robot.py PORT [still|idle]
 
-With "lockstep", it has no program of its own and moves one step with each look of the bridge at its velocity, so that
-a busy computer does not part it from the virtual robot; with "still", it has no motion.
+With "idle", it has no program of its own; with "still", no motion either.
 
 Its own sensors see nothing (3 m, 0). A program on the robot, over a connection of its own, drives forward while the
 front laser of the memory is free for 1 m, and stops otherwise. A line on its input asks for one line of JSON on its
@@ -19,7 +18,7 @@ import time
 
 import qi
 
-CYCLE, STEP = 0.012, 0.05
+CYCLE = 0.012
 FRONT = "Device/SubDeviceList/Platform/LaserSensor/Front/Horizontal"
 KEYS = [f"{FRONT}/Seg{k:02}/{axis}/Sensor/Value" for k in range(1, 16) for axis in "XY"]
 KEYS += [key.replace("Front", side) for side in ("Left", "Right") for key in KEYS[:30]]
@@ -52,7 +51,6 @@ class Motion:
 
     def __init__(self):
         self.velocity, self.pose, self.moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], time.monotonic()
-        self.lockstep = "lockstep" in sys.argv
 
     def move(self, x, y, turn):
         self.getRobotPosition(True)
@@ -62,21 +60,15 @@ class Motion:
         self.move(0.0, 0.0, 0.0)
 
     def getRobotVelocity(self):  # noqa: N802
-        if self.lockstep:
-            self.advance(STEP)
         return self.velocity
 
     def getRobotPosition(self, use_sensors):  # noqa: N802
         seconds, self.moment = time.monotonic() - self.moment, time.monotonic()
-        if not self.lockstep:
-            self.advance(seconds)
-        return self.pose
-
-    def advance(self, seconds):
         (x, y, heading), (forward, left, turn) = self.pose, self.velocity
         cos, sin = math.cos(heading), math.sin(heading)
         x, y = x + seconds * (cos * forward - sin * left), y + seconds * (sin * forward + cos * left)
         self.pose = [x, y, heading + seconds * turn]
+        return self.pose
 
 
 class Program:
