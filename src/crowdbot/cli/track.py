@@ -87,8 +87,11 @@ def _logs(options: argparse.Namespace, detector: Detector, report: Progress) -> 
 
 
 def _as_json(scores: Any) -> dict[str, Any]:
-    return {name: dataclasses.asdict(one) if dataclasses.is_dataclass(one) else one._asdict()
-            for name, one in scores.items()}  # fmt: skip
+    found = {}
+    for name, one in scores.items():
+        is_record = dataclasses.is_dataclass(one) and not isinstance(one, type)
+        found[name] = dataclasses.asdict(one) if is_record else one._asdict()
+    return found
 
 
 def _summary(options: argparse.Namespace, logs: list[ReadingLog], scores: dict[str, Any]) -> dict[str, Any]:

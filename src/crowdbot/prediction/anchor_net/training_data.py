@@ -239,7 +239,7 @@ def _interpolate(past: Floats, back: Floats) -> Floats:
     low = np.minimum(row.astype(np.int64), T - 2)
     share = (row - low)[..., None]
     one, other = (np.take_along_axis(past, (low + step)[..., None], axis=1) for step in (0, 1))
-    return one + share * (other - one)
+    return np.asarray(one + share * (other - one))
 
 
 def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -> Floats:
