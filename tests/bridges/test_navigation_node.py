@@ -191,6 +191,7 @@ def test_a_node_without_ros_and_one_of_rclpy_drive_to_the_goal(transport, progra
     check(json.loads(done.stdout.splitlines()[-1]))
 
 
+@pytest.mark.soak  # the program keeps its own time, and needs an idle machine
 def test_a_program_on_a_pepper_drives_around_a_virtual_person_to_its_goal(tmp_path):
     """On a busy computer, the virtual robot parts from the real one, so its own outcome is not looked at."""
     trial = load_trial(str(EXAMPLES / "pepper.xml"), duration=600.0)
