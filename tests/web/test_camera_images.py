@@ -145,9 +145,8 @@ def test_a_run_sends_each_reading_once_and_only_the_chosen_images(tmp_path):
         assert np.diff(times) == pytest.approx(0.2)  # 5 Hz, although the time step is 0.05 s
         assert {int(one.arrays["revision"][0]) for one in found} == {revision}
         assert images(desk, COLOR) == []
-        count = len(found)
         desk.show_frame()  # a new window gets the current image, too
-        wait_until(lambda: len(images(desk, DEPTH)) > count)
+        wait_until(lambda: images(desk, DEPTH)[-1] is not found[-1])
         assert images(desk, DEPTH)[-1].time == times[-1]
         call_command(desk, "cameras", {"names": []})
         desk.session.frames.clear()

@@ -24,7 +24,7 @@ export class CameraPanel {
       return;
     }
     this._chosen = new Set(names);
-    this.app.remember({ images: names.join(",") || null });
+    this._remember();
     this._show();
   }
 
@@ -49,8 +49,13 @@ export class CameraPanel {
 
   _toggle(name, on) {
     this._chosen[on ? "add" : "delete"](name);
+    this._remember();
     this._show();
     this._ask();
+  }
+
+  _remember() {
+    this.app.remember({ images: [...this._chosen].join(",") || null });
   }
 
   _ask() {
