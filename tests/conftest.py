@@ -15,7 +15,7 @@ import os
 import shutil
 import subprocess
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,6 +101,7 @@ INPUTS = {
     "namespaces": Input("network namespaces", "unshare --net true", _namespaces, right=True),
     "ros1": Input("ROS 1", PACKAGES, lambda: shutil.which("rosmaster") and shutil.which("rosbag")),
     "roslaunch": Input("roslaunch of ROS 1", PACKAGES, lambda: shutil.which("roslaunch")),
+    "rviz": Input("RViz 1 and Xvfb", PACKAGES, lambda: shutil.which("Xvfb") and shutil.which("rviz")),
 }
 
 
@@ -129,6 +130,12 @@ def roslaunch() -> str:
 
 
 @pytest.fixture(scope="session")
+def rviz() -> str:
+    """Command of RViz 1; its X server without a screen is there, too."""
+    return INPUTS["rviz"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
 def drawing() -> str:
     """Name of the OpenGL backend that draws without a screen."""
     return INPUTS["drawing"].get()  # type: ignore[return-value]
@@ -144,6 +151,16 @@ def namespaces() -> str:
 def ros1() -> str:
     """Command of the master of ROS 1; its tools and rospy are there, too."""
     return INPUTS["ros1"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture
+def domain() -> Iterator[int]:
+    """A ROS domain that no other run on this computer uses; it is locked until the end of the test."""
+    from crowdbot.bridges.ros2.domain_lock import lock_domain
+
+    number, release = lock_domain()
+    yield number
+    release()
 
 
 @pytest.fixture(scope="session")

@@ -25,7 +25,7 @@ def make_weights(folder: Path) -> None:
     for name, path in {
         "anchor-net": first / "anchor-net" / "best.npz",
         "social-ways": first / "social-ways" / "best.npz",
-        "shipped": ASSETS / "predictors" / "anchor-net-all.npz",
+        "shipped": ASSETS / "predictors" / "anchor-net-open.npz",
     }.items():
         (folder / name).mkdir()
         shutil.copyfile(path, folder / name / "weights.npz")

@@ -81,6 +81,7 @@ def composed(count: int) -> dict[str, CrowdModel]:
         "cost-energy": CostModel(wish + 2.0 * costs.PowerLawEnergy(), refinements=3, **small),
         "cost-obstacles": CostModel(wish + costs.ReciprocalObstacles(), samples="umans", **small),
         "cost-effort": CostModel(costs.Effort() + 0.1 * costs.NoiseTerm(), samples="random", **small),
+        "cost-distance": CostModel(costs.CollisionDistance(), samples="umans", relaxation_time=0.5, **small),
         "cost-free-way": CostModel(costs.FreeWay(), contact_stiffness=62.5, max_acceleration=5.0, **small),
         "mixture": Mixture((ORCA(), SocialForce(), VOG()), which=np.arange(count) % 3),
     }

@@ -78,7 +78,7 @@ def made(b: Bodies) -> dict[str, np.ndarray]:
         shape = np.concatenate([place, place[adult].mean(axis=0, keepdims=True)])
         thinning = Thinning(shape[-1], piece.mesh, piece.care)
         for k in range(3):
-            thinning.down_to(FACES[name][k])
+            thinning.collapse(FACES[name][k])
             now, kept = thinning.result(piece.mesh)
             coarse = shape[:, kept]
             if k > 0 and name in ("skin", "cloth"):

@@ -63,6 +63,9 @@ social-force, escape-panic and group-force follow their papers and differ from t
 ENGINE_OF = (
     (r"^corridor of six|AnticipationVelocity", "anticipation-velocity", "JuPedSim"),
     (r"Boids", "boids", "CrowdBot simulator"),
+    (r"CollisionFreeSpeedModelV3", "collision-free-speed-v3", "JuPedSim"),
+    (r"GeneralizedCentrifugalForce", "generalized-centrifugal-force", "JuPedSim"),
+    (r"WarpDriverModel", "warp-driver", "JuPedSim"),
     (r"CollisionFreeSpeed", "collision-free-speed", "JuPedSim"),
     (r"CostModel", "cost-model", "UMANS"),
     (r"Helbing2000", "escape-panic", "CrowdBot simulator"),
@@ -246,7 +249,7 @@ def _engine_row(line: str) -> list[str] | None:
         return None
     count = share[2] or (found[1] if (found := re.search(r"(\d+) (?:steps|agents)", line)) else "")
     scene = re.split(r": |, (?:all|moving|free)", line)[0]
-    for word in ("crossing", "corridor", "bottleneck"):
+    for word in ("crossing", "corridor", "bottleneck", "random states"):
         scene = word if word in scene else scene
     part = next((word for key, word in PARTS.items() if key in line.split(":", maxsplit=1)[0]), "")
     cost = re.search(r"CostModel\((.*)\):", line)

@@ -105,8 +105,9 @@ def parts(profile: dict[str, Any]) -> dict[str, float]:
     return {name: count / sum(found.values()) for name, count in found.most_common()}
 
 
-def measure(page: Page, people: int, beams: int, pictures: int) -> None:
-    """Print the cost of a picture in space and from above."""
+def measure(page: Page, people: int, beams: int, pictures: int) -> dict[str, float]:
+    """Print and return the cost [ms] of a picture in space and from above."""
+    costs = {}
     page.set_content("<!doctype html><title>cost</title><body></body>")
     script = resources.files("crowdbot").joinpath("assets", "web", "player.js").read_text("utf-8")
     page.add_script_tag(content=script, type="module")
@@ -125,11 +126,13 @@ def measure(page: Page, people: int, beams: int, pictures: int) -> None:
         info = page.evaluate(DRAW, {"name": name, "pictures": pictures})
         cost = 1000.0 * (thread_time(session) - begin) / pictures
         what = f"{info['people']} people, {info['robots']} robot, {beams} beams"
+        costs[title] = cost
         print(f"{title}: {cost:.1f} ms of JavaScript a picture, {what}")
         session.send("Profiler.start")
         page.evaluate(DRAW, {"name": name, "pictures": pictures})
         found = parts(session.send("Profiler.stop")["profile"])
         print("  " + ", ".join(f"{one} {100 * share:.0f} %" for one, share in found.items()))
+    return costs
 
 
 def main() -> None:

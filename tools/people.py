@@ -1,115 +1,135 @@
-"""Draw people for the gallery: ``python tools/people.py docs/gallery/people``."""
+"""Draw people for the gallery: ``python tools/people.py docs/gallery/people [NAME...]``."""
 
 from __future__ import annotations
 
+import math
 import sys
-import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
-import trimesh
-from matplotlib.image import imsave
-from raster import corner_normals, drawn
+from PIL import Image
 
-from crowdbot.humans import ACTIVITIES, CHAIR, WHEELCHAIR, Gait, People, Seat
+from crowdbot.core import Scene
+from crowdbot.humans import ACTIVITIES, People
+from crowdbot.world import PeopleMotion, PhysicsStage, Renderer, Robot, SceneCamera, StageAppearance
 
 WALKERS = (
     "man-20", "woman-20", "man-32", "woman-36", "man-55", "woman-60", "man-44", "woman-28", "man-66", "woman-41",
 )  # fmt: skip
 YOUNG = ("boy-08", "girl-09", "boy-12", "girl-13", "mannequin", "mannequin")
-BUSY = ("woman-36", "man-44", "woman-20", "man-27", "woman-60", "man-66")
-CLOSE = ("woman-24", "man-38")
-RIDERS = ("woman-38", "man-60")
-APART, SPEED, DT = 0.8, 1.3, 0.02
-CHAIR_FILE = Path(__file__).parents[1] / "src" / "crowdbot" / "assets" / "robots" / "wheelchair" / "wheelchair.urdf"
-Parts = tuple[np.ndarray, np.ndarray, np.ndarray]
+BUSY = (
+    "man-32", "woman-36", "man-44", "woman-20", "man-60", "woman-66", "man-27", "woman-41", "man-38", "woman-60",
+    "woman-28", "man-55", "man-20", "woman-24",
+)  # fmt: skip
+FACES = ("man-20", "woman-20", "man-38", "woman-36", "man-66", "woman-60", "boy-08", "girl-13")
+SPEEDS = {"walk": 1.2, "stick": 0.8, "pram": 1.1, "wheelchair": 1.0, "run": 3.0}
+PLACES = (("wood", "panels", "clear"), ("grass", "brick", "cloudy"), ("asphalt", "concrete", "overcast"),
+          ("paving", "plaster", "dusk"))  # fmt: skip
+DT, STEPS = 0.02, 50
+Image3 = np.ndarray
 
 
 def main() -> None:
-    """Write the pictures."""
+    """Write the pictures, or those with the names given."""
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    _write(folder / "walking.png", _people(WALKERS, speed=SPEED), scale=135)
-    _write(folder / "young.png", _people(YOUNG, speed=1.1, variation=(0, 1, 2, 3, 0, 4)), scale=150)
-    _write(folder / "busy.png", _people(BUSY, activities=ACTIVITIES, apart=1.0), scale=150)
-    for level in range(3):
-        _write(folder / f"level-{level}.png", _people(CLOSE, speed=SPEED, level=level), scale=230)
-    chairs = [_chair(np.array([0.0, 1.1 * k, 0.0])) for k in range(2)]
-    riders = _people(RIDERS, activities=("sit", "sit"), apart=1.1, seat=WHEELCHAIR, variation=(4, 2))
-    _write(folder / "wheelchair.png", _together([riders, *chairs]), scale=230, azimuth=0.75)
-    _write(folder / "wheelchair-side.png", _together([riders, *chairs]), scale=230, azimuth=1.57, elevation=0.02)
-    same = _people(("woman-36",) * 10, variation=tuple(range(10)), apart=0.65)
-    _write(folder / "variations.png", same, scale=135)
+    pictures = {
+        "walking": lambda: row(WALKERS, ["walk"] * 10, 1.3, size=(1280, 400)),
+        "young": lambda: row(YOUNG, ["walk"] * 6, 1.1, (0, 1, 2, 3, 0, 4), size=(960, 400)),
+        "busy": busy,
+        "faces": faces,
+        "places": places,
+        "variations": lambda: row(("woman-36",) * 10, ["walk"] * 10, 0.0, size=(1280, 400)),
+        "wheelchair": wheelchairs,
+        **{f"level-{k}": (lambda k=k: row(("woman-24", "man-38"), ["walk"] * 2, 1.2, detail=k)) for k in range(3)},
+    }
+    for name in sys.argv[2:] or pictures:
+        Image.fromarray(pictures[name]()).save(folder / f"{name}.png")
 
 
-def _write(path: Path, parts: Parts, scale: float, azimuth: float = 0.5, elevation: float = 0.12) -> None:
-    imsave(path, drawn(*parts, azimuth, elevation, scale))
-
-
-def _together(parts: list[Parts]) -> Parts:
-    triangles, colors, normals = zip(*parts, strict=True)
-    return np.concatenate(triangles), np.concatenate(colors), np.concatenate(normals)
-
-
-def _people(
-    names: tuple[str, ...], speed: float = 0.0, activities: tuple[str, ...] | None = None, level: int = 0,
-    apart: float = APART, seat: Seat = CHAIR, variation: tuple[int, ...] | None = None,
-) -> Parts:  # fmt: skip
-    """People beside each other after a second of what they do."""
+def moved(names: tuple[str, ...], doing: list[str], speeds: list[float], variation: object, apart: float) -> tuple:
+    """Scene and motion of people beside each other after a second of what they do."""
     count = len(names)
-    people = People.of(list(names), np.arange(count) if variation is None else variation)
-    gait = Gait(people, seed=3, seat=seat)
-    place = np.stack([np.zeros(count), apart * np.arange(count)], axis=1)
-    velocity = np.tile([speed, 0.0], (count, 1))
-    state = gait.start(place, np.zeros(count), velocity, "walk" if activities is None else list(activities))
-    for _ in range(50):
-        place = place + velocity * DT
-        state = gait.step(state, place, velocity, np.zeros(count), DT)
-    skin, faces, worn, colors = (
-        gait.skin(state, level),
-        people.faces(level),
-        people.clothing_mask(level),
-        people.face_colors(level),
-    )
-    each = [
-        (skin[i][faces[worn[i]]], colors[i][worn[i]], corner_normals(skin[i], faces[worn[i]])) for i in range(count)
+    place = np.stack([np.zeros(count), apart * (np.arange(count) - 0.5 * (count - 1))], axis=1)[None]
+    velocity = np.stack([np.array(speeds), np.zeros(count)], axis=1)[None]
+    scene = Scene.of(place[0], heading=np.zeros(count), velocity=velocity[0])
+    motion = PeopleMotion(scene, np.arange(count), People.of(list(names), variation), seed=3)
+    motion.begin(scene.replace(position=place - velocity * DT * STEPS), doing)
+    for k in range(STEPS):
+        motion.walk(scene.replace(position=place - velocity * DT * (STEPS - 1 - k)), DT)
+    return scene, motion
+
+
+def row(
+    names: tuple[str, ...], doing: list[str], speed: float, variation: object = None, detail: int = 0,
+    apart: float = 0.85, size: tuple[int, int] = (480, 400), look: StageAppearance = StageAppearance(),  # noqa: B008
+) -> Image3:  # fmt: skip
+    """People beside each other, who come towards the camera."""
+    count = len(names)
+    speeds = [SPEEDS.get(one, 0.0) if one != "walk" else speed for one in doing]
+    scene, motion = moved(names, doing, speeds, np.arange(count) if variation is None else variation, apart)
+    wide = apart * (count + 0.4)
+    view = math.radians(22.0)
+    away = max(0.5 * wide * size[1] / size[0], 1.15) / math.tan(0.5 * view)
+    camera = SceneCamera(
+        (away, 0.35 * away, 1.5), (0.0, 0.0, 0.86), *size, view, detail=detail, shadows=True, renderer="software",
+        antialiasing=8,
+    )  # fmt: skip
+    return Renderer(scene, {}, PhysicsStage(appearance=look), motion).images(camera).rgb
+
+
+def busy() -> Image3:
+    """All activities, in two rows."""
+    half = len(ACTIVITIES) // 2
+    parts = [
+        row(BUSY[rows], list(ACTIVITIES[rows]), 1.2, np.arange(14)[rows], apart=1.25, size=(1280, 420))
+        for rows in (slice(0, half), slice(half, 2 * half))
     ]
-    return _together(each)
+    return np.vstack(parts)
 
 
-def _chair(at: np.ndarray) -> Parts:
-    """The shipped wheelchair of its primitives."""
-    root = ET.parse(CHAIR_FILE).getroot()  # noqa: S314
-    material = {m.get("name"): m.find("color").get("rgba") for m in root.findall("material")}
-    place = {"base_link": np.eye(4)}
-    for joint in root.findall("joint"):
-        place[joint.find("child").get("link")] = _pose(joint.find("origin"))
-    each = []
-    for link in root.findall("link"):
-        for visual in link.findall("visual"):
-            shape = _primitive(visual.find("geometry")[0])
-            shape.apply_transform(place[link.get("name")] @ _pose(visual.find("origin")))
-            color = [float(c) for c in material[visual.find("material").get("name")].split()[:3]]
-            flat = np.repeat(shape.face_normals[:, None], 3, axis=1)
-            each.append((shape.triangles + at, np.tile(color, (len(flat), 1)), flat))
-    return _together(each)
+def faces() -> Image3:
+    """Heads at a distance of 0.8 m."""
+    scene, motion = moved(FACES, ["walk"] * 8, [0.0] * 8, np.arange(8), 3.0)
+    renderer, parts = Renderer(scene, {}, None, motion), []
+    for k in range(8):
+        x, y = scene.position[0, k]
+        eyes = 0.93 * float(motion.people.height[k])
+        camera = SceneCamera(
+            (x + 0.75, y + 0.25, eyes + 0.03), (x + 0.05, y, eyes - 0.01), 320, 320, math.radians(34.0), detail=0,
+            shadows=True, renderer="software", antialiasing=8,
+        )  # fmt: skip
+        parts.append(renderer.images(camera).rgb)
+    return np.vstack([np.hstack(parts[:4]), np.hstack(parts[4:])])
 
 
-def _primitive(geometry: ET.Element) -> trimesh.Trimesh:
-    if geometry.tag == "box":
-        return trimesh.creation.box([float(v) for v in geometry.get("size").split()])
-    if geometry.tag == "sphere":
-        return trimesh.creation.icosphere(radius=float(geometry.get("radius")))
-    return trimesh.creation.cylinder(float(geometry.get("radius")), float(geometry.get("length")))
+def places() -> Image3:
+    """The same people on other floors, before other walls, under other skies."""
+    parts = []
+    for floor, walls, sky in PLACES:
+        scene, motion = moved(WALKERS[:5], ["walk"] * 5, [1.2] * 5, np.arange(5), 1.2)
+        scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=[[(-5.0, -30.0), (-5.0, 30.0)]]).walls)
+        stage = PhysicsStage(appearance=StageAppearance(floor, walls, sky))
+        camera = SceneCamera(
+            (6.5, 2.0, 1.6), (0.0, 0.0, 0.9), 640, 400, math.radians(34.0), detail=0, shadows=True,
+            renderer="software", antialiasing=8,
+        )  # fmt: skip
+        parts.append(Renderer(scene, {}, stage, motion).images(camera).rgb)
+    return np.vstack([np.hstack(parts[:2]), np.hstack(parts[2:])])
 
 
-def _pose(origin: ET.Element | None) -> np.ndarray:
-    if origin is None:
-        return np.eye(4)
-    turn = [float(v) for v in origin.get("rpy", "0 0 0").split()]
-    out = trimesh.transformations.euler_matrix(*turn, axes="sxyz")
-    out[:3, 3] = [float(v) for v in origin.get("xyz", "0 0 0").split()]
-    return out
+def wheelchairs() -> Image3:
+    """Two people in wheelchairs."""
+    scene = Scene.of([[0.0, -0.7], [0.0, 0.7]], heading=[0.0, 0.6], external=[True, True])
+    people = People.of(["woman-38", "man-60"], [4, 2])
+    motion = PeopleMotion(scene, np.zeros(0, dtype=np.int64), people, riders=[0, 1])
+    motion.begin(scene, [])
+    chairs = {k: Robot.load("wheelchair") for k in range(2)}
+    camera = SceneCamera(
+        (3.6, 1.4, 1.5), (0.0, 0.0, 0.7), 640, 420, math.radians(32.0), detail=0, shadows=True, renderer="software",
+        antialiasing=8,
+    )  # fmt: skip
+    return Renderer(scene, chairs, None, motion).images(camera).rgb
 
 
 if __name__ == "__main__":

@@ -97,7 +97,7 @@ def check(dist: Path) -> int:
 def needed_in_wheel(weights: list[str]) -> list[str]:
     """Return what the wheel must have: every source and asset but the leave-one-out weights, and the licences."""
     version = project()["version"]
-    shipped = {"anchor-net-all.npz", "anchors-all.npz", "social-ways-eth.npz"}
+    shipped = {"anchor-net-open.npz", "anchors-open.npz", "social-ways-eth.npz"}
     apart = {f"crowdbot/assets/predictors/{name}" for name in weights if name not in shipped}
     package = {name.removeprefix("src/") for name in tracked() if name.startswith("src/crowdbot/")}
     licences = f"crowdbot-{version}.dist-info/licenses"
@@ -191,6 +191,7 @@ def dependencies() -> list[str]:
     table = project()
     extras: dict[str, list[str]] = table["optional-dependencies"]  # type: ignore[assignment]
     more = [need for name, needs in extras.items() if name not in ("all", "dev") for need in needs]
+    more = [need for need in more if not need.startswith("crowdbot[")]  # the former name of an extra
     return [*table["dependencies"], *more]  # type: ignore[misc]
 
 

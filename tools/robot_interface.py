@@ -45,7 +45,7 @@ are driven from outside if no robot of the trial has it.
 SERVICE_TEXT = """
 ## Services
 
-The services are those of [simulation_interfaces](https://github.com/ros-simulation/simulation_interfaces) 2.1. An
+The services are those of [simulation_interfaces](https://github.com/ros-simulation/simulation_interfaces) 2.1.0. An
 entity is a robot by its name, or a person as `person_ID`. What is added or moved is there after the next step. A reset,
 and another world, begin another episode (`episode-2.mcap`). A reset of scope 4 removes only what was added.
 """
@@ -66,6 +66,10 @@ CLOCKS = """
 ## Clocks
 
 No clock changes the result: the same orders at the same instants give the same bytes.
+
+With `commands`, programs answer each instant with one velocity command for each robot, however long they compute. The
+instant is sent to new subscribers, and again if nobody answers, since DDS can lose the first messages. All answers to a
+repeated instant are awaited, so that none of them counts for the next one.
 """
 
 

@@ -1,6 +1,6 @@
 """Draw the pictures of docs/how-to/leader-follower.md, crossing.md and encounters.md from rehearsed sessions.
 
-for n in 1 2 3 4 5 6; do crowdbot experiment run leader-follower --participant $n --out data --rehearse; done
+for n in 1 2 3 4 5 6 7 8; do crowdbot experiment run leader-follower --participant $n --out data --rehearse; done
 python tools/study_pictures.py data measures docs/how-to/leader-follower.png
 for n in 1 2 3; do crowdbot experiment run crossing --participant $n --out ways --rehearse; done
 python tools/study_pictures.py ways motion docs/how-to/crossing.png

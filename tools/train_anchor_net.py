@@ -9,8 +9,9 @@
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
 temperature; the last weights are taken, so nothing is chosen by the place that is left out.
-The shipped fold `all` is trained and then described, which limits it to near neighbors. The fold `open` learns only
-from the recordings with stated terms (UCY) and from simulated crowds, with the recipe `general`.
+The default fold `open` learns only from the recordings with stated terms (UCY) and from simulated crowds, with the
+recipe `general`; `train DATA OUT --fold open` makes its weights anew. The fold `all` is trained and then described,
+which limits it to near neighbors.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from crowdbot.prediction.anchor_net.training_data import (
     make_batch,
     training_set,
 )
-from crowdbot.prediction.pretrained_weights import ALL, FOLDS, is_held_out
+from crowdbot.prediction.pretrained_weights import ALL, FOLDS, OPEN, is_held_out
 from crowdbot.prediction.training.loop import TrainingSchedule, train
 from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
@@ -48,20 +49,21 @@ from crowdbot.prediction.training.torch_backend import torch_threads
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
 """Borders of the probabilities that are counted together."""
-OPEN_FOLD = "open"
-OPEN = ("crowds_", "students", "uni_examples")
+CREDITED = ("crowds_", "students", "uni_examples")
 """Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
+OPEN_UPDATES = 2500
+"""Optimizer steps of the fold `open`."""
 CROWDS = 3
 """Simulated scenes per crowd model and layout in the fold `open`."""
-SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "situation_mean",
-         "situation_whitening", "situation_range")  # fmt: skip
+SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "line_share",
+         "situation_mean", "situation_whitening", "situation_range")  # fmt: skip
 
 
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    if fold == OPEN_FOLD:
-        return [tracks for tracks in found if tracks.name.startswith(OPEN)] + simulated_crowds(
+    if fold == OPEN:
+        return [tracks for tracks in found if tracks.name.startswith(CREDITED)] + simulated_crowds(
             CROWDS, seed=1 if folder.name == "val" else 0
         )
     return [tracks for tracks in found if is_held_out(fold, tracks.name) == left_out]
@@ -81,7 +83,8 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     how = _recipe(options.set, fold, seed)
     watched = training_set(recordings(options.data / "val", fold), reverse=False)
     model = AnchorNetTraining(how, training_set(used), watched, [tracks.name for tracks in used])
-    schedule = TrainingSchedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
+    updates = options.updates or (OPEN_UPDATES if fold == OPEN else UPDATES)
+    schedule = TrainingSchedule(updates, check_every=updates, keep_every=500, seed=seed)
     work, folder = time.process_time(), options.out / name
 
     def tell(update: int, total: int) -> None:
@@ -129,7 +132,7 @@ def _recipe(words: list[str], fold: str, seed: int) -> AnchorTraining:
     """Return the settings of the training of a fold; those of the variation may be named too."""
     pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
     fields = {f.name for f in dataclasses.fields(Augmentation)}
-    preset = PRESETS["general" if fold == OPEN_FOLD else "shipped"]
+    preset = PRESETS["general" if fold == OPEN else "shipped"]
     varied = dataclasses.replace(preset.variation, **{k: v for k, v in pairs.items() if k in fields})
     others = {k: v for k, v in pairs.items() if k not in fields}
     return dataclasses.replace(preset, **others, seed=seed, variation=varied)
@@ -237,9 +240,9 @@ def main() -> None:
     parser.add_argument("what", choices=("train", "calibrate", "describe", "score", "reliability"))
     parser.add_argument("data", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL, OPEN_FOLD])
+    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL, OPEN])
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
-    parser.add_argument("--updates", type=int, default=UPDATES)
+    parser.add_argument("--updates", type=int, help=f"default: {OPEN_UPDATES} for the fold open, else {UPDATES}")
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
     parser.add_argument("--eth", type=Path, help="obsmat.txt of eth, its true time base, in place of biwi_eth.txt")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="other settings of the training")

@@ -16,7 +16,7 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot.benchmark import evaluate
-from crowdbot.data import Trajectories, load
+from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Kalman, LeastSquares, Predictor
 
@@ -51,14 +51,26 @@ def read(folder: Path, patterns: tuple[str, ...]) -> list[Trajectories]:
     return found
 
 
+def trial_tracks(name: str) -> list[Trajectories]:
+    """Return the tracks of a built-in trial at 0.4 s."""
+    return [cb.run(cb.load_trial(name)).tracks(STEP)]
+
+
+def thinned(tracks: list[Trajectories], windows: int) -> list[tuple[Windows, Windows]]:
+    """Return past and future of at most so many windows of each recording, evenly spaced."""
+    cut = [one.windows() for one in tracks]
+    every = [max(1, len(past) // windows) for past, _ in cut]
+    return [(past[::n], future[::n]) for (past, future), n in zip(cut, every, strict=True)]
+
+
 def predictors(weights: list[Path]) -> dict[str, tuple[Predictor, int]]:
     """Return the columns of the table: name -> predictor and number of samples."""
     asked: dict[str, tuple[Predictor, int]] = {
         "constant velocity": (ConstantVelocity(), 1), "Kalman": (Kalman(), 1), "least squares": (LeastSquares(), 1),
     }  # fmt: skip
-    nets = {path.parent.name: AnchorNet(file=str(path)) for path in weights} or {"AnchorNet": AnchorNet("all")}
+    nets = {path.parent.name: AnchorNet(file=str(path)) for path in weights} or {"AnchorNet": AnchorNet("open")}
     asked |= {f"{name}, K = 1": (net, 1) for name, net in nets.items()}
-    asked |= {"anchors, 20": (Anchors("all"), 20)}
+    asked |= {"anchors, 20": (Anchors("open"), 20)}
     return asked | {f"{name}, 20": (net, 20) for name, net in nets.items()}
 
 
@@ -74,15 +86,11 @@ def main() -> None:
     print("| data set | persons | " + " | ".join(asked) + " |")
     print("|---" * (len(asked) + 2) + "|")
     for name in options.only:
-        tracks = (
-            read(options.data, RECORDINGS[name]) if name in RECORDINGS else [cb.run(cb.load_trial(name)).tracks(STEP)]
-        )
+        tracks = read(options.data, RECORDINGS[name]) if name in RECORDINGS else trial_tracks(name)
         short = [one.name for one in tracks if np.unique(one.frame).size < ROWS]
         if short:
             print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
-        cut = [one.windows() for one in tracks if one.name not in short]
-        every = [max(1, len(past) // options.windows) for past, _ in cut]
-        cut = [(past[::n], future[::n]) for (past, future), n in zip(cut, every, strict=True)]
+        cut = thinned([one for one in tracks if one.name not in short], options.windows)
         scores = [Score.total([evaluate(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in scores)
         print(f"| {name} | {scores[0].persons} | {cells} |", flush=True)

@@ -6,7 +6,7 @@
 It publishes vision_msgs/Detection2DArray on CAMERA/detections (apt install ros-$ROS_DISTRO-vision-msgs). The wheels of
 crowdbot[ros2-wheels] lack vision_msgs; with --message markers it publishes visualization_msgs/ImageMarker on
 CAMERA/detection_markers, boxes without scores, which viewers draw over the image. It needs rclpy and OpenCV
-(pip install 'crowdbot[detector]'). While an image is searched, newer ones replace each other.
+(pip install 'crowdbot[perception]'). While an image is searched, newer ones replace each other.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     crowdbot run hall.xml --bridge rosbridge --out detected
     python examples/person_detector/detect_rosbridge.py
 
-It needs roslibpy and OpenCV (pip install roslibpy 'crowdbot[detector]') and any rosbridge server: that of crowdbot, or
+It needs roslibpy and OpenCV (pip install roslibpy 'crowdbot[perception]') and any rosbridge server: that of crowdbot, or
 rosbridge_suite of a real robot. While an image is searched, newer ones replace each other, so the answer is never older
 than two searches.
 """

@@ -38,6 +38,16 @@ test("long texts are wrapped and continue on the next page", () => {
   assert.deepEqual(footer(pages[0], 0, pages.length, "Continue").at(-1).action, ["page", 1]);
 });
 
+test("bold titles are wrapped by their own width, and a screen without a text begins at the top", () => {
+  const wide = (text, size, strong = false) => (strong ? 1.2 : 1) * measure(text, size);
+  const question = { ...scale("it"), text: "I remember the room as a place where I have been rather than as pictures that I have seen." };
+  const [page] = boardPages({ text: "", questions: [question] }, {}, wide);
+  const titles = page.filter((box) => box.strong);
+  assert.equal(titles.map((box) => box.text).join(" "), question.text);
+  assert.ok(titles.length > 1 && titles.every((box) => box.x + wide(box.text, box.size, true) <= WIDTH - box.x));
+  assert.equal(titles[0].y, 64);
+});
+
 test("choices and keys are buttons", () => {
   const options = [{ value: "a", text: "one" }, { value: "b", text: "two" }];
   const several = { name: "many", kind: "choice", text: "Which?", required: false, multiple: true, options };

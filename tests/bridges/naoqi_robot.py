@@ -1,8 +1,9 @@
 """A fake NAOqi robot with the real ``qi``: service directory, memory that it rewrites in each cycle, and motion.
 
-    python naoqi_robot.py PORT [still|idle]
+    python naoqi_robot.py PORT [still|idle|loop]
 
-With "idle", it has no program of its own; with "still", no motion either.
+With "idle", it has no program of its own; with "still", no motion either. With "loop", the program commands another
+velocity 20 times a second.
 
 Its own sensors see nothing (3 m, 0). A program on the robot, over a connection of its own, drives forward while the
 front laser of the memory is free for 1 m, and stops otherwise. A line on its input asks for one line of JSON on its
@@ -19,6 +20,7 @@ import time
 import qi
 
 CYCLE = 0.012
+PERIOD = 0.05
 FRONT = "Device/SubDeviceList/Platform/LaserSensor/Front/Horizontal"
 KEYS = [f"{FRONT}/Seg{k:02}/{axis}/Sensor/Value" for k in range(1, 16) for axis in "XY"]
 KEYS += [key.replace("Front", side) for side in ("Left", "Right") for key in KEYS[:30]]
@@ -77,7 +79,20 @@ class Program:
     def __init__(self, url, memory):
         self.url, self.real = url, memory.real
         self.reads = self.virtual = 0
-        self.nearest = math.inf
+        self.nearest, self.sent = math.inf, []
+
+    def loop(self):
+        """Command another velocity 20 times a second, and keep when."""
+        session = qi.Session()
+        session.connect(self.url)
+        memory, motion, due = session.service("ALMemory"), session.service("ALMotion"), time.monotonic()
+        while True:
+            memory.getListData(KEYS[:30])
+            velocity = 0.1 * math.sin(0.37 * len(self.sent) + 0.1)
+            motion.move(velocity, 0.0, 0.0)
+            self.sent.append((velocity, time.monotonic()))
+            due = max(due + PERIOD, time.monotonic() + 0.5 * PERIOD)  # after a hold-up, no burst of commands
+            time.sleep(max(0.0, due - time.monotonic()))
 
     def run(self):
         session = qi.Session()
@@ -115,11 +130,13 @@ def main():
         session.registerService("ALMotion", motion)
     threading.Thread(target=rewrite, args=(memory,), daemon=True).start()
     program = Program(url, memory)
-    if len(sys.argv) == 2:
-        threading.Thread(target=program.run, daemon=True).start()
+    if len(sys.argv) == 2 or "loop" in sys.argv:
+        work = program.loop if "loop" in sys.argv else program.run
+        threading.Thread(target=work, daemon=True).start()
     print("ready", flush=True, file=out)
     for _ in sys.stdin:
         told = {"reads": program.reads, "virtual": program.virtual, "nearest": program.nearest}
+        told |= {"sent": list(program.sent), "place": motion.getRobotPosition(True)}
         print(json.dumps(told | {"values": memory.values}), flush=True, file=out)
     session.close()
 

@@ -2,15 +2,18 @@
 
     python partner.py TRANSPORT ADDRESS drive SECONDS
     python partner.py TRANSPORT ADDRESS clock SECONDS
+    python partner.py TRANSPORT ADDRESS view SECONDS
 
 ``drive`` answers each tick of the clock with a velocity command, connects again when the simulation has gone, and at
 its end prints one line of JSON. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
+``view`` receives scan, odometry, transforms and image, and prints the numbers of messages and bytes.
 For rospy, ADDRESS is not used and the interpreter is that of the system.
 """
 
 import contextlib
 import itertools
 import json
+import os
 import queue
 import signal
 import socket
@@ -21,6 +24,8 @@ import time
 STEP = 50_000_000
 PORTIONS = (13_000_000, 131_000_000, 50_000_000, 207_000_000, 7_000_000, 99_000_000, 1)
 """Portions of time [ns], none a multiple of the step but one."""
+LOOK = 0.002
+"""Real time [s] between two requests for the time, over the protocol that has requests only."""
 SILENT = 1.0
 """Real time [s] without a tick after which the simulation is silent."""
 
@@ -81,7 +86,9 @@ class SocketLink:
 class RosbridgeLink(SocketLink):
     def begin(self):
         self.send(json.dumps({"op": "advertise", "topic": "/robot/cmd_vel", "type": "geometry_msgs/Twist"}))
-        self.send(json.dumps({"op": "subscribe", "topic": "/clock", "queue_length": 100}))
+        self.send(
+            json.dumps({"op": "subscribe", "topic": "/clock", "type": "rosgraph_msgs/Clock", "queue_length": 100})
+        )
         self.send(json.dumps({"op": "subscribe", "topic": "/robot/scan"}))
 
     def time_of(self, data):
@@ -121,7 +128,7 @@ class TcpLink:
     def __init__(self, address):
         host, _, port = address.partition(":")
         self._socket = socket.create_connection((host, int(port)), timeout=30.0)
-        self._now, self._due = 0, time.monotonic()
+        self._now = -1
 
     def ask(self, text):
         try:
@@ -137,9 +144,13 @@ class TcpLink:
         self._now = round(float(found.partition(b"#")[2].partition(b";")[0]) * 1e9)
 
     def tick(self, seconds):
-        time.sleep(max(0.0, self._due - time.monotonic()))  # the client has the clock: 20 requests a second
-        self._due = max(self._due + STEP / 1e9, time.monotonic())
-        return self._now
+        last, end = self._now, time.monotonic() + seconds
+        while time.monotonic() < end:  # replies come to requests only, so it asks for the time
+            self.ask("sim_control=i;")
+            if self._now != last:
+                return self._now
+            time.sleep(LOOK)
+        return None
 
     def drive(self, nanoseconds):
         forward, turn = command_of(nanoseconds)
@@ -170,6 +181,10 @@ class Ros2Link:
         end = time.monotonic() + 60.0
         while time.monotonic() < end and not self._is_matched():
             rclpy.spin_once(self._node, timeout_sec=0.05)
+        end = time.monotonic() + 0.5  # the other side may find this one later
+        while time.monotonic() < end:
+            rclpy.spin_once(self._node, timeout_sec=0.05)
+        self._ticks = queue.SimpleQueue()  # commands in answer to all of them would come at once
 
     def _is_matched(self):
         if "clock" in sys.argv:
@@ -247,6 +262,78 @@ class Ros1Link:
         self._ros.signal_shutdown("done")
 
 
+KINDS = {
+    "/robot/scan": ("sensor_msgs", "LaserScan"), "/robot/odom": ("nav_msgs", "Odometry"),
+    "/tf": ("tf2_msgs", "TFMessage"), "/robot/camera/image": ("sensor_msgs", "Image"),
+}  # fmt: skip
+
+
+def view_ros1(address, take):
+    """Subscribe all topics with rospy."""
+    import rospy
+
+    rospy.init_node("viewer", anonymous=True, disable_signals=True)
+    for topic in KINDS:
+        rospy.Subscriber(topic, rospy.AnyMsg, lambda message: take(len(message._buff)), queue_size=5)
+
+
+def view_ros2(address, take):
+    """Subscribe the topics whose types are installed with rclpy."""
+    import importlib
+    import threading
+
+    import rclpy
+    from rclpy.qos import qos_profile_sensor_data
+    from rclpy.signals import SignalHandlerOptions
+
+    rclpy.init(domain_id=int(address), signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node("viewer")
+    for topic, (package, name) in KINDS.items():
+        with contextlib.suppress(ImportError):
+            kind = getattr(importlib.import_module(f"{package}.msg"), name)
+            node.create_subscription(kind, topic, lambda data: take(len(data)), qos_profile_sensor_data, raw=True)
+    threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+
+
+def view_rosless(address, take):
+    """Subscribe all topics with rosless."""
+    import threading
+
+    import rosless
+
+    node = rosless.Node(int(address))
+
+    def read(subscription):
+        while True:
+            message = subscription.read(0.1)
+            if message is not None:
+                take(len(message if isinstance(message, bytes) else rosless.encode(message.ros_type, message)))
+
+    for topic, (package, name) in KINDS.items():
+        found = node.subscribe(topic, f"{package}/msg/{name}", reliability="best_effort", depth=5)
+        threading.Thread(target=read, args=(found,), daemon=True).start()
+
+
+VIEWS = {"ros1": view_ros1, "ros2": view_ros2, "rosless": view_rosless}
+
+
+def view(start, address, seconds):
+    """Receive the topics, at most for some seconds, and count."""
+    seen, stop = {"messages": 0, "bytes": 0}, []
+    signal.signal(signal.SIGTERM, lambda *_: stop.append(1))
+
+    def take(size):
+        seen["messages"] += 1
+        seen["bytes"] += size
+
+    start(address, take)
+    print("ready", flush=True)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not stop:
+        time.sleep(0.05)
+    return dict(seen)
+
+
 LINKS = {
     "rosbridge": RosbridgeLink, "rosbridge-client": RosbridgeLink, "foxglove": FoxgloveLink, "tcp": TcpLink,
     "ros1": Ros1Link, "ros2": Ros2Link, "rosless": Ros2Link,
@@ -301,5 +388,9 @@ def give_time(kind, address, seconds):
 
 if __name__ == "__main__":
     _, name, place, mode, length = sys.argv
-    work = {"drive": drive, "clock": give_time}[mode]
-    print(json.dumps(work(LINKS[name], place, float(length))), flush=True)
+    if mode == "view":
+        found = view(VIEWS[name], place, float(length))
+    else:
+        found = {"drive": drive, "clock": give_time}[mode](LINKS[name], place, float(length))
+    print(json.dumps(found), flush=True)
+    os._exit(0)  # threads of libraries may wait forever

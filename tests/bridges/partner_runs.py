@@ -1,11 +1,12 @@
 """Runs with a robot program in a process of its own, alike for all transports.
 
-    python partner_runs.py loop|kills|deaths|odd TRANSPORT NUMBER FOLDER
+    python partner_runs.py loop|kills|deaths|server_deaths|odd|load TRANSPORT NUMBER FOLDER
 
 It prints one line of JSON; so a run can be in a network of its own.
 """
 
 import contextlib
+import dataclasses
 import json
 import os
 import random
@@ -20,13 +21,24 @@ import pytest
 from bridge_runs import MemoryTransport, Running, endless_trial
 from ros1_master import PYTHON, RosMaster
 
-from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
-from crowdbot.bridges.rosbridge.server import RosbridgeServer
+from crowdbot.bridges import (
+    LOADED_BRIDGES,
+    BridgeClock,
+    Inbox,
+    RobotInterface,
+    bridge_load,
+    open_transport,
+    run_bridge,
+)
+from crowdbot.bridges.load import viewer as load_viewer
+from crowdbot.bridges.load.bridge_load import LOAD_TOPICS, LoadTraffic
+from crowdbot.bridges.ros2.domain_lock import lock_domain
 from crowdbot.core import CrowdbotError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
 
 HERE = Path(__file__).parent
+VIEWER = load_viewer.__file__
 NETWORK = """
 ip link set lo up
 ip link add v0 type veth peer name v1
@@ -59,6 +71,30 @@ def wait(reached, seconds=60.0, look=0.01):
         time.sleep(look)
 
 
+class OtherServer(contextlib.AbstractContextManager):
+    """A rosbridge server of others, in a process of its own."""
+
+    def __init__(self):
+        self.port = free_port()
+        self.process = None
+        self.start()
+
+    def start(self):
+        """Start it and wait until it listens."""
+        words = [sys.executable, str(HERE / "other_server.py"), str(self.port)]
+        self.process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout.readline() == "ready\n"
+
+    def stop(self):
+        """Kill it."""
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+    def __exit__(self, *error):
+        self.stop()
+
+
 class Meeting(contextlib.ExitStack):
     """A transport of the simulation, and how programs reach it.
 
@@ -77,11 +113,9 @@ class Meeting(contextlib.ExitStack):
             self.master = self.enter_context(RosMaster(folder))
             self.words, self.environment = [PYTHON], self.master.environment
         if transport == "rosbridge-client":
-            empty = RobotInterface(endless_trial(1.0), (), (), ())
-            self.server = RosbridgeServer(port=0)
-            self.server.start(empty, Inbox(empty))
-            self.callback(self.server.stop)
-        self.domain = 1 + (os.getpid() * 7 + 50) % 100
+            self.server = self.enter_context(OtherServer())
+        self.domain, release = lock_domain()
+        self.callback(release)
         self.node = open_transport(self.opening) if served else None
 
     @property
@@ -98,7 +132,7 @@ class Meeting(contextlib.ExitStack):
         """Where programs find it."""
         if self.transport in ("ros1", "ros2", "rosless"):
             return str(self.domain)
-        return f"127.0.0.1:{self.port or (self.server or self.node).port}"
+        return f"127.0.0.1:{self.server.port if self.server else self.port or self.node.port}"
 
     def open(self, mode, seconds):
         """Start a program."""
@@ -106,6 +140,15 @@ class Meeting(contextlib.ExitStack):
         process = subprocess.Popen(
             words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment
         )
+        return process
+
+    def watch(self):
+        """Start a program that receives the topics of :data:`LOAD_TOPICS`, and wait until it is connected."""
+        if not self.server:
+            return self.start("view", 600.0)
+        words = [sys.executable, VIEWER, "rosbridge", str(self.server.port), *LOAD_TOPICS]
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        assert process.stdout.readline() == "ready\n"
         return process
 
     def start(self, mode, seconds):
@@ -138,27 +181,67 @@ def loop(transport, seconds, folder):
 def kills(transport, count, folder):
     """Kill a driving program some times, and return the stops of the robot [s] and what the recording holds."""
     rng, stops = random.Random(count), []
-    memory = MemoryTransport(topics=("/robot/ground_truth/odom",))
-    with Meeting(transport, folder) as meeting:
-        with Running(endless_trial(3600.0), [meeting.node, memory], out=folder / "out") as running:
-            inbox = running.run.port.inbox
-            for _ in range(count):
-                before = inbox.count.received
-                process = meeting.start("drive", 600.0)
-                wait(lambda before=before: inbox.count.received > before + 5)
-                time.sleep(rng.uniform(0.0, 0.3))
-                process.kill()
-                process.communicate()
-                begin = time.monotonic()
-                wait(lambda: speed(memory) == 0.0, 10.0)
-                stops.append(time.monotonic() - begin)
-                memory.sent[:] = memory.sent[-1:]
-        episode = read_episode(folder / "out" / "episode.mcap")
+    memory = OdometryMemory()
+    trial, out = endless_trial(3600.0), folder / "out"
+    with Meeting(transport, folder) as meeting, Running(trial, [meeting.node, memory], out=out) as running:
+        inbox = running.run.port.inbox
+        for _ in range(count):
+            before = inbox.count.received
+            process = meeting.start("drive", 600.0)
+            wait(lambda before=before: inbox.count.received > before + 5)
+            time.sleep(rng.uniform(0.0, 0.3))
+            process.kill()
+            process.communicate()
+            stops.append(time_until_still(memory))
+    return {"stops": stops, **recording_of(folder / "out" / "episode.mcap")}
+
+
+class OdometryMemory(MemoryTransport):
+    """Keeps the latest true odometry of the robot."""
+
+    def __init__(self, topic="/robot/ground_truth/odom"):
+        super().__init__((topic,))
+
+    def publish(self, messages):
+        self.sent = [one for one in messages if one.topic in self.topics] or self.sent
+
+
+def time_until_still(memory):
+    """Wait until the robot stands, and return the real time [s] until then."""
+    begin = time.monotonic()
+    wait(lambda: speed(memory) == 0.0, 10.0)
+    return time.monotonic() - begin
+
+
+def recording_of(path):
+    """Return what an episode holds, and whether it replays to the byte."""
+    episode = read_episode(path)
     moved = float(abs(episode.velocity[:, episode.robots[0]]).max())
-    return {
-        "stops": stops, "outcome": episode.metadata["outcome"], "speed": moved,
-        "equal": replay(folder / "out" / "episode.mcap").equal,
-    }  # fmt: skip
+    return {"outcome": episode.metadata["outcome"], "speed": moved, "equal": replay(path).equal}
+
+
+def server_deaths(transport, count, folder):
+    """Kill the server that the simulation and the program have joined, and return the same as :func:`kills`."""
+    rng, stops = random.Random(count), []
+    memory = OdometryMemory()
+    trial, out = endless_trial(3600.0), folder / "out"
+    with Meeting(transport, folder) as meeting, Running(trial, [meeting.node, memory], out=out) as running:
+        inbox = running.run.port.inbox
+        program = meeting.start("drive", 3600.0)
+        meeting.callback(program.wait)
+        meeting.callback(program.kill)
+        for _ in range(count):
+            before = inbox.count.received
+            wait(lambda before=before: inbox.count.received > before + 5)
+            time.sleep(rng.uniform(0.0, 0.3))
+            meeting.server.stop()
+            stops.append(time_until_still(memory))
+            meeting.server.start()
+        before = inbox.count.received
+        wait(lambda: inbox.count.received > before + 5)
+        program.send_signal(signal.SIGTERM)
+        seen = told(program, 60.0)
+    return {**seen, "stops": stops, **recording_of(folder / "out" / "episode.mcap")}
 
 
 def deaths(transport, count, folder):
@@ -167,7 +250,7 @@ def deaths(transport, count, folder):
     with Meeting(transport, folder, served=False) as meeting:
         words = [sys.executable, "-m", "crowdbot", "run", "frontal", *ENDLESS, "--bridge", meeting.opening, "--out"]
         program = meeting.open("drive", 3600.0)
-        meeting.callback(program.communicate)
+        meeting.callback(program.wait)
         meeting.callback(program.kill)
         for k in range(count):
             out = folder / f"out{k}"
@@ -214,10 +297,32 @@ def odd(transport, seconds, folder):
     return {**seen, "steps": done.steps, "digest": done.digest, "free": free.digest}
 
 
+def load(transport, seconds, folder):
+    """Return the share of a core that a bridge needs to send a scan, odometry, transforms and an image at once."""
+    if transport in LOADED_BRIDGES:
+        return dataclasses.asdict(bridge_load(transport, float(seconds)))
+    traffic = LoadTraffic()
+    with Meeting(transport, folder) as meeting:
+        node, interface = meeting.node, RobotInterface.of(traffic.trial)
+        node.start(interface, Inbox(interface))
+        meeting.callback(node.stop)
+        viewer = meeting.watch()
+        wait(lambda: all(node.wants(topic) for topic in LOAD_TOPICS if (transport, topic) != ("ros2", "/tf")))
+        share, took = traffic.measure(node, float(seconds))
+        if meeting.server:
+            viewer.stdin.write("\n")
+            viewer.stdin.flush()
+        else:
+            viewer.send_signal(signal.SIGTERM)
+        return {"share": share, "seconds": took, **told(viewer, 60.0)}
+
+
 def main():
     """Run one of them."""
     name, transport, number, folder = sys.argv[1:]
-    work = {"loop": loop, "kills": kills, "odd": odd, "deaths": deaths}[name]
+    work = {"loop": loop, "kills": kills, "odd": odd, "deaths": deaths, "server_deaths": server_deaths, "load": load}[
+        name
+    ]
     print(json.dumps(work(transport, int(number), Path(folder))))
 
 

@@ -34,7 +34,7 @@ class Robot:
         rospy.Subscriber("/map", OccupancyGrid, self.on_map)
         rospy.Subscriber("/robot/scan", LaserScan, self.on_scan)
         rospy.Subscriber("/robot/ground_truth/odom", Odometry, self.on_odometry)
-        rospy.Subscriber("/clock", Clock, self.on_clock, queue_size=10, tcp_nodelay=True)
+        self.clock = rospy.Subscriber("/clock", Clock, self.on_clock, queue_size=10, tcp_nodelay=True)
 
     def drive(self, nanoseconds):
         command = Twist()
@@ -67,7 +67,7 @@ class Robot:
         time.sleep(0.5)
         self.ready = True
         print("ready", flush=True)
-        self.drive(self.seen["ticks"][-1] if self.seen["ticks"] else 0)
+        self.drive(self.seen["ticks"][-1] if self.seen["ticks"] else 0)  # a tick may have been its last before this
 
     def look_up(self):
         """Return the pose of the laser scanner in the map."""
@@ -81,7 +81,7 @@ def main():
     robot = Robot()
     robot.wait()
     end, quiet, count = time.monotonic() + float(sys.argv[1]), time.monotonic(), 0
-    while time.monotonic() < end and time.monotonic() - quiet < 1.0:
+    while time.monotonic() < end and (time.monotonic() - quiet < 1.0 or robot.clock.get_num_connections()):
         time.sleep(0.05)
         if len(robot.seen["ticks"]) > count:
             quiet, count = time.monotonic(), len(robot.seen["ticks"])

@@ -1,4 +1,4 @@
-"""A robot program for ROS 2 in a process of its own: it answers each tick of /clock with a command and counts.
+"""A robot program for ROS 2 in a process of its own: it answers each tick of /clock with one command and counts.
 
     python ros2_robot.py DOMAIN SECONDS [LAST]
 
@@ -81,9 +81,7 @@ def main():
         counts = (plain.get_subscription_count(), stamped.get_subscription_count(), node.count_publishers("/clock"))
         if all(counts) and seen["map"]:
             break
-    time.sleep(0.5)
-    seen["ready"] = True
-    drive(seen["ticks"][-1] if seen["ticks"] else 0)
+    seen["ready"] = True  # from now on, one command answers each tick; a tick without an answer is sent again
     end, last = time.monotonic() + seconds, 1e9 * float(sys.argv[3]) if len(sys.argv) > 3 else float("inf")
     while time.monotonic() < end and not (seen["ticks"] and node.count_publishers("/clock") == 0):
         rclpy.spin_once(node, timeout_sec=0.05)

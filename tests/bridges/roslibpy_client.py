@@ -3,14 +3,25 @@
 import json
 import sys
 import threading
+import time
 
 import roslibpy
 
 TWIST = "geometry_msgs/Twist"
 
 
+def wait_for(ros, service):
+    """Wait until a client of the server has advertised a service."""
+    for _ in range(300):
+        if service in ros.get_services():
+            return
+        time.sleep(0.1)
+    raise TimeoutError(service)
+
+
 def look(ros):
     """Ask rosapi and the simulation."""
+    wait_for(ros, "/crowdbot/get_entity_state")
     features = roslibpy.Service(ros, "/crowdbot/get_simulator_features", "simulation_interfaces/GetSimulatorFeatures")
     state = roslibpy.Service(ros, "/crowdbot/get_entity_state", "simulation_interfaces/GetEntityState")
     found = state.call(roslibpy.ServiceRequest({"entity": "robot"}))

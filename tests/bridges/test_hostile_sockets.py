@@ -40,13 +40,19 @@ def attack(url, frames, rng):
 
 def answered(url):
     """Return the state of the simulation, asked by a good client."""
+    call = json.dumps({"op": "call_service", "service": "/crowdbot/get_simulation_state", "id": "good"})
     with connect(url) as ws:
-        ws.send(json.dumps({"op": "call_service", "service": "/crowdbot/get_simulation_state", "id": "good"}))
-        end = time.monotonic() + 30.0
+        ws.send(call)
+        end = time.monotonic() + 60.0
         while time.monotonic() < end:
-            frame = json.loads(ws.recv(timeout=30.0))
-            if frame.get("id") == "good":
+            frame = json.loads(ws.recv(timeout=60.0))
+            if frame.get("id") != "good":
+                continue
+            if frame["result"]:
                 return frame["values"]["state"]["state"]
+            assert "calls wait for the simulation" in frame["values"]  # those of the others are answered first
+            time.sleep(0.2)
+            ws.send(call)
     return None
 
 

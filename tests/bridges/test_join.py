@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import subprocess
 import sys
@@ -220,11 +219,10 @@ def test_a_lost_link_stops_the_robot(tmp_path, capsys):
     assert seen["driven"] < 0.9
 
 
-def test_a_robot_with_ros2_drives_in_a_trial(tmp_path, monkeypatch, capsys):
+def test_a_robot_with_ros2_drives_in_a_trial(domain, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    domain = str(1 + (os.getpid() * 7 + 31) % 100)
-    robot = start_robot("ros2", domain)
+    robot = start_robot("ros2", str(domain))
     words = ("--set", "duration=6", "--set", "end/collision=false")
     assert join(tmp_path, f"ros2:{domain}", *words) == 0
     seen = ended(robot)

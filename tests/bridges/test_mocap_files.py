@@ -224,7 +224,8 @@ def test_mutated_files_are_read_or_refused(reader, data: bytes) -> None:
 def test_open_stream_takes_paths_and_names_what_it_knows(tmp_path: Path) -> None:
     (tmp_path / "walk.bvh").write_bytes(WALK)
     assert open_stream(str(tmp_path / "walk.bvh")).subjects() == ("Hips",)
-    with pytest.raises(InputError, match=r"must be xsens:PORT, natnet:SERVER or a file that ends in .bvh, .csv, .mvnx"):
+    message = r"must be xsens:PORT, natnet:SERVER, vrpn:SERVER or a file that ends in .bvh, .csv, .mvnx"
+    with pytest.raises(InputError, match=message):
         open_stream("vicon:3")
     with pytest.raises(InputError, match="port '99999' must be a number from 0 to 65535"):
         open_stream("xsens:99999")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.bridges.motion_capture import Retargeting, SourceSkeleton
+from crowdbot.bridges.motion_capture import FootLock, Retargeting, SourceSkeleton
 from crowdbot.bridges.motion_capture.rotations import (
     align_vectors,
     normalize,
@@ -145,3 +145,57 @@ def test_a_skeleton_without_limbs_is_refused_with_its_names() -> None:
     lying[15:] = 0.5 * (lying[15:] + lying[15:] * [1.0, -1.0, 1.0])
     with pytest.raises(InputError, match="does not stand in the rest pose"):
         body_axes(ACTOR.names, ACTOR.parents, lying)
+
+
+def walking_actor(time: float) -> tuple[np.ndarray, np.ndarray, list[bool]]:
+    """Return positions and rotations of an actor who walks at 1 m/s, and which foot is on the floor, left and right."""
+    names = {name: k for k, name in enumerate(senders.SEGMENTS)}
+    shift = np.array([time, 0.0, -0.1])  # bent knees
+    position, rotation, down = ACTOR.rest + shift, np.tile(np.eye(3), (23, 1, 1)), []
+    for phase, side in ((0.0, "Left"), (0.5, "Right")):
+        k, share = divmod(time + phase, 1.0)  # a foot stands for 0.6 s and swings for 0.4 s, 1 m further
+        down.append(share < 0.6)
+        swing = max(0.0, share - 0.6) / 0.4
+        hip, knee, foot = (names[f"{side}{name}"] for name in ("UpperLeg", "LowerLeg", "Foot"))
+        place = ACTOR.rest[foot].copy()
+        place[0] = k - phase + 0.3 + 0.5 * (1.0 - math.cos(math.pi * swing))
+        place[2] += 0.08 * math.sin(math.pi * swing)
+        long, short = (float(np.linalg.norm(ACTOR.rest[b] - ACTOR.rest[a])) for a, b in ((hip, knee), (knee, foot)))
+        away = place - position[hip]
+        distance = float(np.linalg.norm(away))
+        pitch = math.atan2(away[0], -away[2])
+        bend = math.acos((long**2 + distance**2 - short**2) / (2.0 * long * distance))
+        position[knee] = position[hip] + long * np.array([math.sin(pitch + bend), 0.0, -math.cos(pitch + bend)])
+        lower = place - position[knee]
+        position[foot] = place
+        rotation[hip] = rotate_about([0.0, 1.0, 0.0], -(pitch + bend))
+        rotation[knee] = rotate_about([0.0, 1.0, 0.0], -math.atan2(lower[0], -lower[2]))
+    return position, rotation, down
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_feet_on_the_floor_do_not_slide_on_a_body_with_other_proportions(k: int) -> None:
+    """Without the lock the feet of the boy slide by 15 cm in each step of the grown-up actor."""
+    body = rest_skeleton(PEOPLE, k)
+    plain, lock = Retargeting(ACTOR, body), FootLock(Retargeting(ACTOR, body))
+    slides: dict[bool, list[float]] = {False: [], True: []}
+    places: dict[tuple[bool, int], list[np.ndarray]] = {}
+    gait = Gait(PEOPLE)
+    for number, time in enumerate(np.arange(0.0, 3.0, 1 / 60)):
+        position, rotation, down = walking_actor(float(time))
+        for held in (False, True):
+            found = lock.pose(number, float(time), position, rotation) if held else plain.pose(position, rotation)
+            standing = gait.posture(gait.start([[found.x, found.y]] * 3, [0.0] * 3))
+            shown = reach_poses(standing, PEOPLE, {k: found.row()}).position[k]
+            for side, name in enumerate(("foot_l", "foot_r")):
+                row = places.setdefault((held, side), [])
+                if down[side]:
+                    row.append(shown[body.bone(name)][:2])
+                elif row:
+                    slides[held].append(float(np.linalg.norm(row[-1] - row[3])))
+                    row.clear()
+            assert found is lock.pose(number, float(time), position, rotation) or not held
+    print(f"{PEOPLE.persons[k].name}: planted feet slide {max(slides[False]):.3f} m, held {max(slides[True]):.4f} m")
+    assert len(slides[True]) >= 5
+    assert max(slides[True]) < 0.005
+    assert max(slides[True]) < 0.2 * max(slides[False]) + 0.002

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -15,11 +17,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import qi
 from bridge_runs import MemoryTransport, Running
+from partner_runs import OdometryMemory, recording_of, time_until_still
 
 from crowdbot.bridges import BridgeClock, open_transport, run_bridge
 from crowdbot.bridges.naoqi import NaoqiBridge
 from crowdbot.bridges.naoqi.memory_keys import memory_values
+from crowdbot.bridges.naoqi.odometry_follower import OdometryFollower
 from crowdbot.bridges.naoqi.robot_link import RewriteCycle
 from crowdbot.core import InputError
 from crowdbot.messages import Messages
@@ -29,9 +34,11 @@ from crowdbot.trials import load_trial, parse_trial
 LEAST = 0.2
 """Least share of virtual reads, also on a computer that has much else to do."""
 HERE = Path(__file__).parent
+ENDLESS = '<end collision="false" goal="false"/>'
+TRUTH = "/pepper/ground_truth/odom"
 TRIAL = """<trial name="naoqi" duration="{seconds}">
   <crowd type="orca"/>
-  <agent x="2.5" y="0"/>
+  {end}<agent x="2.5" y="0"/>
   <robot name="pepper" x="0" y="0"><goal x="9" y="0"/><navigator type="external"/>
     <drive type="omnidirectional" max-speed="0.55" max-acceleration="0.55"/>
     <sensor name="base_laser_front" type="lidar2d" rays="15" field-of-view="1.0472" range-max="3" rate="10"
@@ -45,8 +52,8 @@ TRIAL = """<trial name="naoqi" duration="{seconds}">
 """
 
 
-def trial(seconds):
-    return parse_trial(TRIAL.format(seconds=seconds), place="naoqi")
+def trial(seconds, end=""):
+    return parse_trial(TRIAL.format(seconds=seconds, end=end), place="naoqi")
 
 
 class FakeRobot:
@@ -80,7 +87,7 @@ class FakeRobot:
         self.kill()
 
 
-def wait(reached, seconds=20.0):
+def wait(reached, seconds=60.0):
     end = time.monotonic() + seconds
     while not reached():
         if time.monotonic() > end:
@@ -117,30 +124,139 @@ def test_the_digest_in_odd_portions_is_that_of_a_free_run_and_all_sensors_are_wr
     assert all(f"Device/SubDeviceList/Platform/{one}/Sensor/Value" in memory for one in ("Front/Sonar", "Back/Bumper"))
 
 
-@pytest.mark.sweep
-def test_killed_robots_and_writers_are_noticed_and_connected_again(tmp_path):
-    with FakeRobot() as robot:
+KILLS = pytest.mark.parametrize(
+    "count", [pytest.param(3, marks=pytest.mark.sweep), pytest.param(20, marks=pytest.mark.soak)]
+)
+
+
+@KILLS
+def test_killed_robots_and_writers_are_noticed_and_connected_again(count, tmp_path):
+    """The robot is killed, and every other time the process that writes its memory, too."""
+    rng, stops, memory = random.Random(count), [], OdometryMemory(TRUTH)
+    with FakeRobot("loop") as robot:
         bridge = NaoqiBridge(robot.url)
-        with Running(trial(120.0), [bridge], out=tmp_path) as running:
+        with Running(trial(3600.0, ENDLESS), [bridge, memory], out=tmp_path) as running:
             inbox = running.run.port.inbox
-            wait(lambda: inbox.count.received > 5)
-            os.kill(bridge._process.pid, signal.SIGKILL)
-            wait(lambda: bridge.connections == 2)
-            robot.kill()
-            wait(lambda: bridge._problem)
-            count = inbox.count.received
-            time.sleep(1.5)
-            assert inbox.count.received == count
-            scene = running.run.port.interface
-            assert scene.trial.name == "naoqi"
-            with robot:
-                wait(lambda: bridge.connections == 3)
-                wait(lambda: inbox.count.received > count)
-    episode = read_episode(tmp_path / "episode.mcap")
-    times = [seconds for seconds, _ in episode.orders]
-    stop = max((b - a, a) for a, b in itertools.pairwise(times))[1]
-    speed = abs(episode.velocity[:, episode.robots[0]]).max(axis=-1)
-    assert speed[(episode.times > stop + 1.3) & (episode.times < stop + 1.5)].max() < 1e-6
+            for k in range(count):
+                before, connections = inbox.count.received, bridge.connections
+                wait(lambda before=before: inbox.count.received > before + 5)
+                time.sleep(rng.uniform(0.0, 0.3))
+                if k % 2:
+                    os.kill(bridge._process.pid, signal.SIGKILL)
+                    wait(lambda connections=connections: bridge.connections == connections + 1)
+                    connections += 1
+                robot.kill()
+                wait(lambda: bridge._problem)
+                bridge._problem = ""
+                stops.append(time_until_still(memory))
+                robot.__enter__()
+                wait(lambda connections=connections: bridge.connections == connections + 1)
+            before = inbox.count.received
+            wait(lambda: inbox.count.received > before + 5)
+    assert len(stops) == count
+    assert max(stops) < 4.0  # 0.5 s of simulated time, and braking, on a busy computer
+    seen = recording_of(tmp_path / "episode.mcap")
+    assert seen["speed"] > 0.05
+    assert (seen["outcome"], seen["equal"]) == ("interrupted", True)
+
+
+@KILLS
+def test_killed_simulations_leave_the_robot_its_own_values_and_a_recording_that_can_be_read(count, tmp_path):
+    rng, file = random.Random(count), tmp_path / "pepper.xml"
+    file.write_text(TRIAL.format(seconds=3600, end=ENDLESS))
+    with FakeRobot() as robot, contextlib.ExitStack() as stack:
+        words = [sys.executable, "-m", "crowdbot", "run", str(file), "--bridge", f"naoqi:{robot.url}", "--out"]
+        for k in range(count):
+            before, out = robot.ask()["virtual"], tmp_path / f"out{k}"
+            process = subprocess.Popen([*words, str(out)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            wait(lambda before=before: robot.ask()["virtual"] > before + 20, 120.0)
+            time.sleep(rng.uniform(0.0, 1.0))
+            process.kill()
+            process.wait()
+            time.sleep(0.5)  # the writer ends with the simulation
+            first = robot.ask()
+            time.sleep(0.3)
+            second = robot.ask()
+            assert second["reads"] > first["reads"]
+            assert second["virtual"] == first["virtual"]
+            episode = read_episode(out / "episode.mcap")
+            assert (len(episode.orders) > 0, episode.complete) == (True, False)
+
+
+HELD = 0.08
+"""Time [s] between two lines about the velocity, which come every 50 ms, of which the computer is guilty."""
+THIRTY, TEN_MINUTES = pytest.param(30, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)
+
+
+@pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
+def test_a_control_loop_of_20_hz_loses_no_command(seconds):
+    """The program on the robot reads its memory and commands another velocity in each period."""
+    with FakeRobot("loop") as robot:
+        bridge, came = NaoqiBridge(robot.url), []
+        take = bridge._take
+        bridge._take = lambda fields: (came.append((fields, time.monotonic())), take(fields))
+        with Running(trial(seconds + 60.0, ENDLESS), [bridge]):
+            first = len(robot.ask()["sent"])
+            time.sleep(seconds)
+            sent = robot.ask()["sent"][first:]
+            time.sleep(0.3)
+    told = [(fields["velocity"][0], moment) for fields, moment in came if "velocity" in fields]
+    moments, held = {}, []
+    for velocity, moment in told:
+        moments.setdefault(velocity, moment)
+    for (_, early), (_, late) in itertools.pairwise(told):
+        if late - early > HELD:
+            held.append((early, late))
+    unseen = [k for k, (velocity, _) in enumerate(sent[:-1]) if velocity not in moments]
+    times = [moment for _, moment in sent]
+    lost = [k for k in unseen if not any(a < times[k + 1] and times[k] < b for a, b in held)]
+    delays = sorted(moments[velocity] - moment for velocity, moment in sent if velocity in moments)
+    median, p99 = delays[len(delays) // 2], delays[round(0.99 * (len(delays) - 1))]
+    print(f"naoqi: {len(sent)} commands, {len(lost)} lost, {1e3 * median:.2f} ms, {1e3 * p99:.2f} ms (99 %)")
+    print(f"held up by the computer {len(held)} times; {len(unseen)} commands were over meanwhile")
+    assert len(sent) > 10 * seconds
+    assert lost == []
+    assert len(unseen) < 0.2 * len(sent)
+    assert median < 0.05
+
+
+def test_the_virtual_robot_is_where_the_odometry_of_the_real_one_ends():
+    memory = OdometryMemory(TRUTH)
+    with FakeRobot("idle") as robot:
+        session = qi.Session()
+        with Running(trial(300.0), [NaoqiBridge(robot.url), memory]):
+            session.connect(robot.url)
+            motion = session.service("ALMotion")
+            for velocity in ((0.4, 0.0, 0.5), (0.3, -0.2, -0.8), (0.0, 0.3, 0.0), (-0.2, 0.0, 1.0)):
+                motion.move(*velocity)
+                time.sleep(0.7)
+            motion.stopMove()
+            place = robot.ask()["place"]
+            wait(lambda: math.dist(pose_of(memory)[:2], place[:2]) < 0.01)
+            assert pose_of(memory)[2] == pytest.approx(place[2], abs=0.02)
+            assert math.hypot(*place[:2]) > 0.3
+        session.close()
+
+
+def test_a_follower_corrects_the_pose_in_its_own_frame_and_is_aligned_anew_after_a_jump():
+    follower = OdometryFollower(0.0, 0.0, math.pi / 2)
+    assert follower.command((0.3, 0.1, 0.2), (5.0, 5.0, 1.0)) == pytest.approx((0.3, 0.1, 0.2))
+    follower.note_virtual(0.1, 0.0, math.pi / 2 + 0.1)  # it has gone aside, and turned too far
+    forward, left, turn = follower.command((0.0, 0.0, 0.0), (5.0, 5.0, 1.0))
+    assert (forward, left) == pytest.approx((0.2 * math.sin(0.1), 0.2 * math.cos(0.1)))
+    assert turn == pytest.approx(-0.2)
+    assert follower.command((0.2, 0.0, 0.0), (5.0, 7.5, 1.0)) == pytest.approx((0.2, 0.0, 0.0))  # carried elsewhere
+    assert follower.command((0.2, 0.0, 0.0), (5.0 + math.cos(1.0), 7.5 + math.sin(1.0), 1.0))[0] == pytest.approx(2.2)
+    follower.align()
+    assert follower.command((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) == pytest.approx((0.0, 0.0, 0.0))
+
+
+def pose_of(memory):
+    """Return x, y [m] and heading [rad] of the virtual robot."""
+    pose = memory.sent[-1].message.pose.pose
+    return pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
 
 
 @pytest.mark.parametrize(

@@ -191,17 +191,17 @@ def test_a_node_without_ros_and_one_of_rclpy_drive_to_the_goal(transport, progra
     check(json.loads(done.stdout.splitlines()[-1]))
 
 
-@pytest.mark.soak  # the program keeps its own time, and needs an idle machine
+@pytest.mark.soak  # on a busy computer, half of the reads see the values of the real robot, and the program is slow
 def test_a_program_on_a_pepper_drives_around_a_virtual_person_to_its_goal(tmp_path):
-    """On a busy computer, the virtual robot parts from the real one, so its own outcome is not looked at."""
     trial = load_trial(str(EXAMPLES / "pepper.xml"), duration=600.0)
     goal = trial.robots[0].goal
-    with FakeRobot("idle") as robot, Running(trial, [NaoqiBridge(robot.url)], out=tmp_path):
+    with FakeRobot("idle") as robot, Running(trial, [NaoqiBridge(robot.url)], out=tmp_path) as running:
         words = [sys.executable, str(EXAMPLES / "navigate_naoqi.py"), robot.url, "--goal", f"{goal.x},{goal.y}"]
-        process = subprocess.run(words, capture_output=True, text=True, timeout=200)
+        process = subprocess.run(words, capture_output=True, text=True, timeout=600)
+        done = running.end(60.0)
     assert process.returncode == 0, process.stderr
     assert "arrived after" in process.stdout
+    assert (done.outcome, done.metrics["collision"]) == ("success", 0.0)
     episode = read_episode(tmp_path / "episode.mcap")
     places = episode.position[:, episode.robots[0]]
-    assert places[:, 0].max() > 1.0
     assert abs(places[:, 1]).max() > 0.2  # it has seen the person in its way, who is only in the memory

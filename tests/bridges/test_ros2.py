@@ -49,10 +49,6 @@ def ended(process, seconds=120):
     return json.loads(out.splitlines()[-1])
 
 
-def free_domain(offset):
-    return 1 + (os.getpid() * 7 + offset) % 100
-
-
 class Driver(MemoryTransport):
     """The same commands in memory."""
 
@@ -62,8 +58,8 @@ class Driver(MemoryTransport):
             self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "ros2")
 
 
-def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_is_that_of_a_free_run(tmp_path):
-    trial, domain = load_trial("frontal", duration=4.0), free_domain(0)
+def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_is_that_of_a_free_run(tmp_path, domain):
+    trial = load_trial("frontal", duration=4.0)
     process = robot(domain)
     node = Ros2Node(domain)
     with Running(trial, [node], "commands", out=tmp_path) as running:
@@ -84,8 +80,7 @@ def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_i
     assert set(node.missing) >= {"tf2_msgs/msg/TFMessage", "people_msgs/msg/People"}
 
 
-def test_a_robot_program_drives_in_real_time_and_the_robot_stops_when_it_is_killed(tmp_path):
-    domain = free_domain(1)
+def test_a_robot_program_drives_in_real_time_and_the_robot_stops_when_it_is_killed(tmp_path, domain):
     words = ["run", "frontal", "--set", "duration=16", "--bridge", f"ros2:{domain}", "--out", str(tmp_path)]
     server = subprocess.Popen(
         [sys.executable, "-m", "crowdbot", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -104,8 +99,7 @@ def test_a_robot_program_drives_in_real_time_and_the_robot_stops_when_it_is_kill
     assert speed.max() > 0.3
 
 
-def test_another_program_calls_the_services(tmp_path):
-    domain = free_domain(3)
+def test_another_program_calls_the_services(tmp_path, domain):
     node = Ros2Node(domain)
     with Running(load_trial("frontal", duration=300.0), [node], out=tmp_path) as running:
         answers = ended(robot(domain, program="ros2_services.py"))
@@ -187,7 +181,7 @@ class KeptPublisher:
         return 1
 
 
-def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch):
+def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch, domain):
     """The wheels have no ``tf2_msgs``; a user's ROS has. Its class is made from the definition, as rosidl does it."""
     kind, kept = "tf2_msgs/msg/TFMessage", {}
     package = types.ModuleType("tf2_msgs.msg")
@@ -203,7 +197,7 @@ def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch):
         return kept[topic]
 
     monkeypatch.setattr(rclpy.node.Node, "create_publisher", create_publisher)
-    node = Ros2Node(free_domain(5))
+    node = Ros2Node(domain)
     with Running(load_trial("frontal", duration=1.0), [node], "free") as running:
         running.end(60.0)
     assert kind not in node.missing
@@ -237,8 +231,8 @@ def test_addresses_and_domains():
         Ros2Node(233)
 
 
-def test_another_trial_changes_the_topics():
-    node = Ros2Node(free_domain(2))
+def test_another_trial_changes_the_topics(domain):
+    node = Ros2Node(domain)
     driver = MemoryTransport()
     with Running(load_trial("frontal", duration=1.0), [node, driver], "step"):
         assert "/robot/scan" in node._publishers

@@ -204,9 +204,13 @@ def test_a_frame_that_is_too_large_ends_only_its_own_connection():
 
     async def flood():
         async with aiohttp.ClientSession() as http, http.ws_connect(f"http://127.0.0.1:{server.port}/") as socket:
-            await socket.send_str("[" * (2 << 20))
-            return (await socket.receive(timeout=20)).type, socket.close_code
+            await socket.send_str("[" * ((4 << 20) - 1))
+            first = (await socket.receive(timeout=20)).json()["op"]
+            await socket.send_str("[" * (5 << 20))
+            last = await socket.receive(timeout=20)
+            return first, last.type, socket.close_code, last.extra
 
-    assert asyncio.run(flood()) == (aiohttp.WSMsgType.CLOSE, 1009)
+    seen = ("status", aiohttp.WSMsgType.CLOSE, 1009, "a frame may have at most 4 MiB")
+    assert asyncio.run(flood()) == seen
     assert asyncio.run(connect(server.port)) == "service_response"
     server.stop()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import math
 import socket
 
@@ -9,13 +11,14 @@ import pytest
 from bridge_runs import Running
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 
 from crowdbot.bridges import open_transport
 from crowdbot.bridges.tcp.challenge_protocol import format_reply, read_request
 from crowdbot.bridges.tcp.challenge_server import ChallengeServer
 from crowdbot.core import InputError
 from crowdbot.recording import replay
-from crowdbot.trials import load_trial
+from crowdbot.trials import load_trial, parse_trial
 
 
 class Client:
@@ -87,6 +90,35 @@ def test_a_reset_begins_again_and_robots_are_named():
         assert float(client.ask("clock=0;sim_control=n;")["clock"]) == 0.0
         assert float(client.ask("clock=0.2;vel_cmd=0 0;")["clock"]) == pytest.approx(0.2)
         assert client.ask("clock=0.3;nonsense;") is None
+        client.socket.close()
+
+
+SEEING = """<trial name="seeing" duration="3"><stage><wall points="6,-4 6,4" /></stage><crowd type="orca"/>
+  <robot name="robot" x="0" y="0"><drive type="differential-drive" max-speed="1"/><goal x="5" y="0"/>
+    <navigator type="external"/><sensor name="depth" type="depth-camera" width="8" height="6"/>
+    <sensor name="eye" type="rgb-camera" width="32" height="24" rate="10"/>
+  </robot>
+</trial>"""
+
+
+def test_the_picture_of_a_camera_is_a_jpeg_file_as_the_clients_read_it():
+    running, server = run_server(parse_trial(SEEING, place="seeing"))
+    with running:
+        client = Client(server.port)
+        client.ask("clock=0;vel_cmd=0.5 0;sim_control=i;")
+        first = client.ask("clock=0.2;vel_cmd=0.5 0;sim_control=i;")
+        later = client.ask("clock=1.0;vel_cmd=0.5 0;sim_control=i;")
+        client.socket.close()
+    pictures = [Image.open(io.BytesIO(base64.b64decode(one["camera"]))) for one in (first, later)]
+    assert [(one.format, one.size) for one in pictures] == [("JPEG", (32, 24))] * 2
+    assert pictures[0].tobytes() != pictures[1].tobytes(), "the robot has moved"
+
+
+def test_a_robot_without_a_camera_sends_what_the_challenge_sent_before_the_first_picture():
+    running, server = run_server(load_trial("frontal", duration=1.0))
+    with running:
+        client = Client(server.port)
+        assert client.ask("clock=0.1;vel_cmd=0 0;")["camera"] == "JPG"
         client.socket.close()
 
 

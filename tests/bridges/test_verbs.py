@@ -3,7 +3,7 @@
 import pytest
 from bridge_runs import MemoryTransport, Running
 
-from crowdbot.bridges import SERVICES, RobotInterface, message_of, request_kind, response_kind
+from crowdbot.bridges import SERVICES, RobotInterface, interface_store, message_of, request_kind, response_kind
 from crowdbot.bridges.verbs.verbs import Verbs
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
@@ -86,8 +86,10 @@ def test_people_robots_and_props_are_added_moved_and_removed(tmp_path):
             "robot",
             "bot",
         ]
-        near = {"type": 2, "points": [{"x": 2.0, "y": -0.8}, {"x": 0.5}]}
+        near = {"type": 3, "points": [{"x": 2.0, "y": -0.8}, {"x": 0.5}]}
         assert transport.call("get_entities", {"filters": {"bounds": near}})["entities"] == ["bot"]
+        box = {"type": 1, "points": [{"x": 2.5, "y": -0.5}, {"x": 1.5, "y": -3.0}]}
+        assert transport.call("get_entities", {"filters": {"bounds": box}})["entities"] == ["bot"]
         assert "/bot/cmd_vel" in {one.name for one in transport.interfaces[-1].inputs}
         transport.inbox.receive("/bot/cmd_vel", {"linear": {"x": 0.3}}, "test")
         assert code(transport.call("set_entity_state", {"entity": "person_2", "state": pose(1.0, 1.2)})) == OK
@@ -106,6 +108,66 @@ def test_people_robots_and_props_are_added_moved_and_removed(tmp_path):
         done = running.end()
     assert done.outcome == "interrupted"
     assert replay(done.path).equal
+
+
+def test_a_robot_rests_where_it_is_or_is_moved_as_the_flags_say(trial):
+    transport = MemoryTransport()
+    with Running(trial, [transport], "step"):
+        transport.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.5}}, "test")
+        assert code(transport.call("step_simulation", {"steps": 8})) == OK
+        before = transport.call("get_entity_state", {"entity": "robot"})["state"]
+        assert before["twist"]["linear"]["x"] > 0.1
+        request = {"entity": "robot", "state": pose(9.0, 9.0), "set_twist": True, "set_pose": False}
+        assert code(transport.call("set_entity_state", request)) == OK
+        transport.inbox.receive("/robot/cmd_vel", {"linear": {}}, "test")
+        assert code(transport.call("step_simulation", {"steps": 1})) == OK
+        after = transport.call("get_entity_state", {"entity": "robot"})["state"]
+        assert after["twist"]["linear"]["x"] == pytest.approx(0.0, abs=1e-9)
+        assert after["pose"]["position"]["x"] == pytest.approx(before["pose"]["position"]["x"], abs=1e-6)
+
+
+def test_a_robot_of_a_text_has_the_name_of_the_text_and_a_reset_of_scope_4_removes_it():
+    transport, trial = MemoryTransport(), load_trial("frontal", duration=4.0, bodies="limbs")
+    text = '<robot name="mine" type="turtlebot2" x="3" y="2"><goal x="9" y="2"/><navigator type="external"/></robot>'
+    with Running(trial, [transport], "step"):
+        answer = transport.call("spawn_entity", {"entity_resource": {"resource_string": text}})
+        assert (code(answer), answer["entity_name"]) == (OK, "mine")
+        transport.call("step_simulation", {"steps": 1})
+        assert "mine" in transport.call("get_entities")["entities"]
+        assert code(transport.call("reset_simulation", {"scope": 4})) == OK
+        transport.call("step_simulation", {"steps": 1})
+        assert "mine" not in transport.call("get_entities")["entities"]
+
+
+STANDARD = {
+    "msg/Spawnable": ["entity_resource", "description", "spawn_bounds"],
+    "msg/SpawnEntity": ["name", "allow_renaming", "entity_resource", "entity_namespace", "initial_pose"],
+    "msg/SpawnResult": ["result", "entity_name"],
+    "msg/WorldResource": ["name", "world_resource", "description", "tags"],
+    "msg/SimulatorFeatures": ["features", "spawn_formats", "custom_info"],
+    "msg/EntityState": ["header", "pose", "twist", "acceleration"],
+    "msg/EntityFilters": ["filter", "categories", "tags", "bounds"],
+    "msg/SpawnEntities_Request": ["spawn_requests"],
+    "msg/SpawnEntities_Response": ["result", "results"],
+    "msg/SetEntityState_Request": ["entity", "state", "set_pose", "set_twist", "set_acceleration"],
+    "msg/LoadWorld_Request": ["world_resource", "fail_on_unsupported_element", "ignore_missing_or_unsupported_assets"],
+    "msg/GetAvailableWorlds_Request": ["additional_sources", "filter", "offline_only", "continue_on_error"],
+    "msg/GetSpawnables_Response": ["result", "spawnables"],
+}
+"""Fields of version 2.1.0, from docs.ros.org/en/rolling/p/simulation_interfaces."""
+
+
+def test_the_fields_are_those_of_version_2_1_0_of_the_standard(trial):
+    store = interface_store()
+    found = {kind: [name for name, _ in store.fielddefs[f"simulation_interfaces/{kind}"][1]] for kind in STANDARD}
+    assert found == STANDARD
+    part = dict(store.fielddefs["simulation_interfaces/msg/SpawnEntities_Request"][1])["spawn_requests"]
+    assert "simulation_interfaces/msg/SpawnEntity" in str(part)
+    with Running(trial, [transport := MemoryTransport()], "step"):
+        features = transport.call("get_simulator_features")["features"]["features"]
+        rows = transport.call("get_spawnables")["spawnables"]
+    assert {40, 44, 45, 50} <= set(features), "worlds, available worlds and several entities at once"
+    assert {"person", "robot/pepper"} <= {one["entity_resource"]["uri"] for one in rows}
 
 
 def test_a_reset_begins_the_same_run_again_in_another_file(trial, tmp_path):
@@ -138,6 +200,7 @@ def test_another_world_is_loaded_stopped_and_its_topics_are_announced(trial):
         assert running.run.trial.name == "circle-crossing"
 
 
+MOVING = {**pose(0, 0), "twist": {"linear": {"x": 0.5}}}
 IMPOSSIBLE = [
     ("get_entity_state", {"entity": "robt"}, NOT_FOUND, "did you mean 'robot'"),
     ("get_entity_state", {}, NOT_FOUND, "there is no entity"),
@@ -151,16 +214,22 @@ IMPOSSIBLE = [
     ("get_entities", {"filters": {"filter": "a" * 300}}, FAILED, "at most 200"),
     ("get_entities", {"filters": {"filter": "["}}, FAILED, "no regular expression"),
     ("get_entities", {"filters": {"tags": {"tags": ["x"]}}}, 0, "no tags"),
-    ("get_entities", {"filters": {"bounds": {"type": 0, "points": [1, 2]}}}, 0, "must be a sphere"),
+    ("get_entities", {"filters": {"bounds": {"type": 2, "points": [1, 2]}}}, 0, "must be a box (1) or a sphere (3)"),
     ("set_entity_state", {"entity": "robot", "state": pose(0, 0, "odom")}, 0, "frame map"),
-    ("set_entity_state", {"entity": "robot", "state": pose(float("inf"), 0)}, FAILED, "must be a finite"),
+    ("set_entity_state", {"entity": "robot", "state": pose(float("inf"), 0)}, 101, "must be a finite"),
+    ("set_entity_state", {"entity": "robot", "state": pose(0, 0), "set_pose": False}, FAILED, "nothing is set"),
+    ("set_entity_state", {"entity": "robot", "state": MOVING, "set_twist": True}, 0, "to no other velocity"),
     ("spawn_entity", {}, 104, "give a uri"),
-    ("spawn_entity", {"uri": "cat"}, FAILED, "get_spawnables lists"),
+    ("spawn_entity", {"uri": "cat"}, NOT_FOUND, "get_spawnables lists"),
+    ("spawn_entity", {"uri": "person", "name": "bob"}, 102, "leave the name empty, or allow renaming"),
+    ("spawn_entity", {"uri": "person", "entity_namespace": "/hall"}, 105, "under its name"),
+    ("spawn_entity", {"uri": "person", "initial_pose": pose(0, 0, "odom")}, 109, "frame map"),
+    ("spawn_entities", {"spawn_requests": [{"uri": "cat"}]}, 150, "not all were added"),
     ("spawn_entity", {"uri": "person?speed=fast"}, FAILED, "must be a number"),
     ("spawn_entity", {"uri": "person?colour=1"}, FAILED, "it has goal_x"),
     ("spawn_entity", {"uri": "robot/pepper"}, FAILED, "trials with bodies"),
     ("spawn_entity", {"uri": "robot/pepper", "name": "robot"}, 101, "there is an entity 'robot'"),
-    ("spawn_entity", {"resource_string": "<robot"}, FAILED, "add-element"),
+    ("spawn_entity", {"resource_string": "<robot"}, 106, "add-element"),
     ("load_world", {}, 102, "give a uri"),
     ("load_world", {"world_resource": {"uri": "../../etc/passwd"}}, FAILED, "neither a built-in trial"),
     ("load_world", {"world_resource": {"resource_string": "<trial"}}, 103, "load_world"),

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.calibration import Annealing, Genetic, Geometric, RandomSearch, Search
+from crowdbot.calibration.breeding import breed, keep_fittest
 from crowdbot.calibration.search_state import SearchState
 from crowdbot.core import stream
 
@@ -152,6 +153,37 @@ def test_folding_mirrors_at_the_sides_and_never_leaves_the_box(
     beyond = abs(shift) * side
     assert float(box.fold(np.array([low - beyond]))[0]) == pytest.approx(low + beyond, abs=1e-9)
     assert float(box.fold(np.array([high + beyond]))[0]) == pytest.approx(high - beyond, abs=1e-9)
+
+
+def test_the_pool_of_a_person_is_a_stable_sort_of_costs_that_have_not_expired():
+    rng = np.random.default_rng(5)
+    children, pool = rng.random((5, 2, 3, 2)), rng.random((7, 2, 3, 2))
+    child_cost, cost = rng.integers(0, 4, (5, 2, 3)) * 1.0, np.sort(rng.integers(0, 4, (7, 2, 3)) * 1.0, axis=0)
+    age = rng.integers(0, 4, (7, 2, 3)) * 1.0
+    genes, kept, ages = np.empty((6, 2, 3, 2)), np.empty((6, 2, 3)), np.empty((6, 2, 3))
+    keep_fittest(children, pool, child_cost, cost, age, 3.0, genes, kept, ages)
+    every_age = np.concatenate([np.zeros_like(child_cost), age + 1.0])
+    every = np.where(every_age < 3.0, np.concatenate([child_cost, cost]), np.inf)
+    row = np.argsort(every, axis=0, kind="stable")[:6]
+    assert np.array_equal(kept, np.take_along_axis(every, row, axis=0))
+    assert np.array_equal(ages, np.take_along_axis(every_age, row, axis=0))
+    assert np.array_equal(genes, np.take_along_axis(np.concatenate([children, pool]), row[..., None], axis=0))
+
+
+def test_children_have_the_bits_of_their_definition():
+    rng = np.random.default_rng(6)
+    pool, low, high = rng.uniform(1.0, 3.0, (4, 2, 3, 5)), np.linspace(1.0, 1.4, 5), np.linspace(2.6, 3.0, 5)
+    rank, chance = rng.integers(0, 4, (9, 2, 3, 2)), rng.random((9, 2, 3, 4))
+    place, mutation, change = rng.random((9, 2, 3, 5)), rng.random((9, 2, 3, 5)), rng.standard_normal((9, 2, 3, 5))
+    incumbent, children = rng.uniform(1.0, 3.0, (1, 2, 3, 5)), np.empty((9, 2, 3, 5))
+    breed(pool, rank, chance, place, mutation, change, incumbent, low, high, 0.5, 0.2, 0.6, children)
+    mother = np.take_along_axis(pool, rank[..., 0, None], axis=0)
+    father = np.take_along_axis(pool, rank[..., 1, None], axis=0)
+    share = np.where(chance[..., 2, None] < 0.5, 2.0 * place - 0.5, np.rint(place))
+    value = mother + share * (father - mother) + np.where(mutation * 5 < 1.0, 0.2 * (high - low) * change, 0.0)
+    folded = np.clip(2.0 * np.clip(value, low, high) - value, low, high)
+    expected = np.where(chance[..., 3, None] < 0.6, folded, incumbent)
+    assert children.tobytes() == expected.tobytes()
 
 
 @pytest.mark.parametrize("search", [Genetic(), Annealing()], ids=["genetic", "annealing"])

@@ -70,3 +70,63 @@ def test_wrong_input_is_one_sentence(words, text, capsys):
 def test_options_of_trials_are_rejected_for_an_episode(tmp_path, capsys):
     assert main(["track", str(tmp_path / "none.mcap"), "--starts", "2"]) == 2
     assert "an episode is one run" in capsys.readouterr().err
+
+
+def test_detectors_trackers_and_motion_models_are_combined(tmp_path, capsys):
+    (tmp_path / "near.py").write_text(
+        "from dataclasses import dataclass\nfrom crowdbot.perception import LidarClusters\n\n\n"
+        "@dataclass(frozen=True, kw_only=True)\nclass Near(LidarClusters):\n    max_range: float = 3.0\n"
+    )
+    words = ["--detector", "lidar-clusters", f"{tmp_path}/near.py:Near", "--motion", "constant-velocity", "orca"]
+    joint = ["--tracker", "joint-probabilistic-data-association"]
+    assert main(["track", "crossing-flows", "--duration", "2", *words, *joint, "--json"]) == 0
+    scores = json.loads(capsys.readouterr().out)["scores"]
+    assert len(scores) == 4
+    far, near = (scores[f"{name}, {joint[1]} + orca"]["misses"]["value"] for name in words[1:3])
+    assert far < 0.5 < near
+
+
+def test_scores_are_divided_by_distance(capsys):
+    words = ["track", "crossing-flows", "--duration", "3", "--by"]
+    assert main([*words, "distance", "--json"]) == 0
+    parts = json.loads(capsys.readouterr().out)["scores"]
+    assert list(parts) == ["0 to 3 m", "3 to 6 m", "6 to 9 m", "above 9 m"]
+    near, far = (parts[name]["global-nearest-neighbor"]["mota"]["value"] for name in ("0 to 3 m", "6 to 9 m"))
+    assert near > 0.9
+    assert near >= far
+    assert main([*words, "occlusion"]) == 0
+    assert "occlusion with an occlusion" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--by", "distence"], "scores by 'distence', did you mean 'distance'?"),
+        (["--motion", "helbing"], "helbing"),
+    ],
+)
+def test_wrong_choices_are_one_sentence(words, text, capsys):
+    assert main(["track", "crossing-flows", "--duration", "1", *words]) == 2
+    assert text in capsys.readouterr().err
+
+
+def test_predictors_are_compared_on_true_and_tracked_people(capsys):
+    words = ["track", "crossing-flows", "--duration", "9", "--predictor", "constant-velocity", "kalman"]
+    assert main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["prediction"]["global-nearest-neighbor"]
+    assert list(found) == ["constant-velocity", "kalman"]
+    for inputs in found.values():
+        true, tracked, uncertain = (inputs[name] for name in ("true", "tracked", "tracked, uncertain"))
+        assert true["ade"]["value"] <= tracked["ade"]["value"] < 1.8 * true["ade"]["value"]
+        assert uncertain["inside_90"]["value"] > 0.2
+    assert main(["track", "crossing-flows", "--duration", "2", "--predictor", "kalman"]) == 2
+    assert "nobody is tracked and seen on for 6.4 s" in capsys.readouterr().err
+
+
+def test_five_scenes_are_one_command(capsys):
+    assert main(["track", "--scenes", "--duration", "1"]) == 0
+    shown = capsys.readouterr().out
+    assert all(f"scene {k} " in shown for k in range(1, 6))
+    assert shown.count("mota") == 5
+    assert main(["track", "--scenes", "--json"]) == 2
+    assert "--scenes has no --plot, --trial, --json or --statistics" in capsys.readouterr().err

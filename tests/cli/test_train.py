@@ -158,3 +158,29 @@ def test_without_torch_it_says_what_to_install(capsys, tmp_path, monkeypatch, re
         assert main(["train", what, "--data", str(data), "--updates", "2", "--out", str(tmp_path / "w")]) == 2
         assert "needs the extra [learn]: pip install" in capsys.readouterr().err
     assert not (tmp_path / "w").exists()
+
+
+def test_the_scan_network_is_trained_on_generated_scans(tmp_path, capsys):
+    words = ["train", "scan-network", "--out", str(tmp_path), "--scans", "12", "--epochs", "1"]
+    assert main(words) == 0
+    assert "beams of 12 generated scans" in capsys.readouterr().out
+    assert (tmp_path / "scan-network.npz").stat().st_size > 10_000
+    assert main([*words, "--resume"]) == 2
+    assert "cannot be resumed" in capsys.readouterr().err
+    assert main([*words, "--data", "walk.csv"]) == 2
+    assert "learns from simulated scans" in capsys.readouterr().err
+
+
+def test_the_scan_predictor_is_trained_on_runs(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("crowdbot.cli.train.learned_scene.TRIALS", (("two-way", {"density": "0.3"}),))
+    monkeypatch.setattr("crowdbot.cli.train.learned_scene.DURATION", 3.0)
+    words = ["train", "learned-scene", "--out", str(tmp_path), "--runs", "2", "--epochs", "2"]
+    assert main([*words, "--json"]) == 0
+    fit = json.loads(capsys.readouterr().out)
+    assert fit["samples"] > 50
+    assert len(fit["straight"]) == len(fit["learned"]) == 4
+    assert (tmp_path / "learned-scene.npz").stat().st_size > 10_000
+    assert main([*words, "--resume"]) == 2
+    assert "cannot be resumed; omit --resume" in capsys.readouterr().err
+    assert main([*words[:-3], "0"]) == 2
+    assert "--runs 0 must be at least 1" in capsys.readouterr().err

@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import SMALL, InputError, Neighbors
-from crowdbot.core.neighbors import CROWD, FEW, SPARE, dense, nearest
+from crowdbot.core.model_parameter import dense
+from crowdbot.core.neighbors import CROWD, FEW, SPARE, Seekers, nearest, nearest_of_rows
+from crowdbot.core.neighbors.copies import fill_copies, find_period
 from samples import sample
 
 
@@ -186,3 +188,64 @@ def test_dense_arrays_are_copied_only_if_necessary():
     np.testing.assert_array_equal(dense(2.5, (2, 3), np.dtype(np.int32)), np.full((2, 3), 2))
     with pytest.raises(ValueError, match="broadcast"):
         dense(np.zeros(4), (2, 3), kind)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    seed=st.integers(0, 2**32), copies=st.integers(1, 5), E=st.integers(1, 4), A=st.integers(1, 40), lost=st.booleans()
+)
+def test_copies_of_environments_have_the_same_neighbours_as_alone(seed, copies, E, A, lost) -> None:
+    random = np.random.default_rng(seed)
+    place = np.round(random.uniform(-4.0, 4.0, (E, A, 2)), 1)  # many equal distances
+    if lost:
+        place[random.random((E, A)) < 0.2] = np.nan
+    seen = np.tile(random.random((E, A)) < 0.8, (copies, 1))
+    asking = random.random((copies * E, A)) < 0.8
+    reach = random.choice([0.0, 0.5, 3.0, 20.0], (copies * E, A))
+    most = random.integers(0, 12, (copies * E, A)).astype(np.int32)
+    every = np.tile(place, (copies, 1, 1))
+    period = find_period(every, seen)
+    assert copies * E % period == 0
+    assert period <= E
+    agent = np.empty((copies * E * A, min(11, A)), dtype=np.int32)
+    number = np.empty(copies * E * A, dtype=np.int32)
+    flat = every.reshape(-1, 2), reach.reshape(-1), most.reshape(-1), asking.reshape(-1), seen.reshape(-1)
+    fill_copies(*flat, A, period, agent, number)
+    expected = twin(every, reach, most, seen, asking)
+    assert [row[:count].tolist() for row, count in zip(agent, number, strict=True)] == [
+        row[: agent.shape[1]] for row in expected
+    ]
+
+
+def test_a_batch_of_copies_takes_the_same_neighbours_as_one_of_others() -> None:
+    random = np.random.default_rng(5)
+    place = random.uniform(0.0, 6.0, (6, 30, 2))
+    many = np.tile(place, (20, 1, 1))
+    reach = random.uniform(1.0, 6.0, (120, 30))
+    assert find_period(many, np.ones((120, 30), dtype=np.bool_)) == 6
+    found = nearest(many, reach, 10)
+    moved = many.copy()
+    moved[-1] += 1.0  # no copy
+    assert find_period(moved, np.ones((120, 30), dtype=np.bool_)) == 120
+    other = nearest(moved, reach, 10)
+    assert np.array_equal(found.agent[:-1], other.agent[:-1])
+    assert np.array_equal(found.number[:-1], other.number[:-1])
+    alone = nearest(place, reach[:6], 10)
+    assert np.array_equal(found.agent[:6], alone.agent)
+
+
+@pytest.mark.parametrize("copies", [1, 20])
+def test_copies_may_share_their_neighbours(copies) -> None:
+    random = np.random.default_rng(6)
+    place = np.tile(np.round(random.uniform(0.0, 6.0, (6, 30, 2)), 1), (copies, 1, 1))
+    seen, asking = np.tile(random.random((6, 30)) < 0.9, (copies, 1)), random.random((6 * copies, 30)) < 0.9
+    reach, most = random.uniform(0.0, 6.0, (6 * copies, 30)), random.integers(0, 12, (6 * copies, 30)).astype(np.int32)
+    expected = nearest(place, reach, most, seen, asking)
+    rows = Seekers(place.reshape(-1, 2), reach.reshape(-1), most.reshape(-1), asking.reshape(-1))
+    found = nearest_of_rows(rows, seen.reshape(-1), (6 * copies, 30), 11, shared=True)
+    assert found.agent.shape[0] == 6
+    assert np.array_equal(found.number, expected.number)
+    assert np.array_equal(np.sort(found.order), np.arange(6 * copies * 30))
+    for e, a in np.ndindex(found.number.shape):
+        count = found.number[e, a]
+        assert found.agent[e % 6, a, :count].tolist() == expected.agent[e, a, :count].tolist()

@@ -231,6 +231,33 @@ def test_a_step_shares_the_arrays_that_it_does_not_change():
     assert (scene.time, later.time) == (0.0, 0.5)
 
 
+def test_arrays_of_a_step_are_dense_whatever_the_scene_was_made_of():
+    rng = np.random.default_rng(3)
+    scene = Scene.of(rng.normal(size=(2, 5, 2)), rng.normal(size=(2, 5, 2)), goal=rng.normal(size=(2, 5, 2)))
+    later = scene.advance(scene.velocity, 0.1)
+    for one in (scene, later, later.replace(radius=np.asfortranarray(np.full((2, 5), 0.3))), later.environment(1)):
+        arrays = one.step_arrays()
+        shapes = [(*one.shape, 2)] * 2 + [one.shape] * 2 + [(*one.shape, 2)] + [one.shape] * 4
+        assert [array.shape for array in arrays] == shapes
+        assert all(array.flags.carray for array in arrays)
+        names = ("position", "velocity", "radius", "max_speed", "goal", "preferred_speed", "active", "visible")
+        for name, array in zip((*names, "external"), arrays, strict=True):
+            assert np.array_equal(array, getattr(one, name))
+    wish = later.replace(preferred_velocity=np.ones((2, 5, 2)))
+    assert np.array_equal(wish.step_arrays()[4], np.ones((2, 5, 2)))
+
+
+@pytest.mark.parametrize("external", [False, True])
+def test_next_positions_are_those_of_the_advanced_scene(external):
+    rng = np.random.default_rng(4)
+    scene = Scene.of(
+        rng.normal(size=(3, 6, 2)), rng.normal(size=(3, 6, 2)), active=rng.random((3, 6)) < 0.7,
+        external=(rng.random((3, 6)) < 0.4) & external,
+    )  # fmt: skip
+    chosen = rng.normal(size=(3, 6, 2))
+    assert scene.next_positions(chosen, 0.3).tobytes() == scene.advance(chosen, 0.3).position.tobytes()
+
+
 def test_a_copy_replaces_fields_that_exist():
     scene = _pair()
     other = scene.replace(time=2.0, wall_height=1.0)

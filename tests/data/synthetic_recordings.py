@@ -84,6 +84,70 @@ def sgan_text(path: Path) -> None:
     path.write_text("".join(f"{float(f)}\t{float(id)}\t{x:.10g}\t{y:.10g}\n" for f, id, x, y in rows(25.0, 10)))
 
 
+def ind_tracks(path: Path) -> None:
+    """Write ``NN_tracks.csv``, ``NN_tracksMeta.csv`` and ``NN_recordingMeta.csv`` of inD at 25 Hz."""
+    head = "recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n"
+    own = sorted(rows(25.0), key=lambda r: r[1])
+    body = (f"7,{id},{frame},0,{x:.5f},{y:.5f},0.0,0.0,0.0\n" for frame, id, x, y in own)
+    path.write_text(head + "".join(body))
+    kinds = "".join(f"7,{walker.id},{'bicycle' if walker.id > 9 else 'pedestrian'}\n" for walker in walkers())
+    path.with_name("07_tracksMeta.csv").write_text("recordingId,trackId,class\n" + kinds)
+    path.with_name("07_recordingMeta.csv").write_text("recordingId,frameRate\n7,25.0\n")
+
+
+def jrdb_labels(path: Path) -> None:
+    """Write 3D labels of JRDB at 15 Hz."""
+    clouds: dict[str, list[object]] = {}
+    for frame, id, x, y in rows(15.0):
+        box = {"cx": x, "cy": y, "cz": 0.0, "h": 1.7, "l": 0.5, "w": 0.5, "rot_z": 0.0}
+        clouds.setdefault(f"{frame:06d}.pcd", []).append({"label_id": f"pedestrian:{id}", "box": box})
+    path.write_text(json.dumps({"labels": clouds}))
+
+
+def lcas_csv(path: Path) -> None:
+    """Write a ``data.csv`` of L-CAS at 2.5 rows per second; the last column is the scene."""
+    path.write_text("".join(f"{f},{id},{x:.4f},{y:.4f},0.6,0.8,0\n" for f, id, x, y in rows(2.5)))
+
+
+def wildtrack_frames(path: Path) -> None:
+    """Write the JSON files of WILDTRACK at 2 Hz, and an empty frame; x is 0.6 x + 3 m, which fits its grid."""
+    frames: dict[int, list[object]] = {}
+    for frame, id, x, y in rows(10.0, 5):
+        cell = 480 * round((y + 9.0) / 0.025) + round((0.6 * x + 6.0) / 0.025)
+        frames.setdefault(frame, []).append({"personID": id, "positionID": cell, "views": []})
+    path.parent.mkdir(exist_ok=True)
+    for frame, people in (frames | {max(frames) + 5: []}).items():
+        path.with_name(f"{frame:08d}.json").write_text(json.dumps(people))
+
+
+def thor_magni_csv(path: Path) -> None:
+    """Write a CSV file of THÖR-MAGNI: helmets with centroids or markers [mm], a robot and a box, at 100 Hz."""
+    bodies = [f"Helmet_{walker.id}" for walker in walkers()] + ["DARKO_Robot", "LO1"]
+    names = ["Frame", "Time"]
+    for number, body in enumerate(bodies):
+        marks = [f"{body} - {k} {axis}" for k in (1, 2) for axis in "XYZ"]
+        names += marks + ([f"{body} Centroid_{axis}" for axis in "XYZ"] if number % 2 == 0 else [])
+    found: dict[int, dict[str, tuple[float, float]]] = {}
+    for frame, id, x, y in rows(100.0):
+        found.setdefault(frame, {})[f"Helmet_{id}"] = 1000.0 * x, 1000.0 * y
+    lines = [
+        f"FILE_ID,THOR-Magni_{path.stem}", f"N_BODIES,{len(bodies)}", f"BODY_NAMES,{','.join(bodies)}",
+        f"BODY_ROLES,{','.join(['Visitors-Alone'] * PEOPLE)},Robot,Object,,", ",".join(names),
+    ]  # fmt: skip
+    for frame, places in found.items():
+        cells = [str(frame), f"{frame / 100.0:.2f}"]
+        for number, body in enumerate(bodies):
+            x, y = places.get(body, (3000.0, 2000.0)) if body in places or body not in bodies[:PEOPLE] else ("", "")
+            marks = (
+                ["", "", ""] * 2
+                if x == ""
+                else [f"{x - 20.0:.2f}", f"{y:.2f}", "1", f"{x + 20.0:.2f}", f"{y:.2f}", "1"]
+            )
+            cells += marks + ([str(x), str(y), "1" if x != "" else ""] if number % 2 == 0 else [])
+        lines += [",".join(cells)] * (2 if frame == 200 else 1)
+    path.write_text("\n".join(lines) + "\n")
+
+
 def trajnet_test(path: Path) -> None:
     """Write a TrajNet test file: 12 frames per row, "?" for every row after the eighth of a track."""
     count: dict[int, int] = {}
@@ -276,6 +340,11 @@ SYNTHETIC = {
     "trajectories.sqlite": Synthetic("jupedsim", jupedsim_sqlite, 2, 50.0),
     "hotel.ndjson": Synthetic("trajnetpp", trajnetpp, 10, 25.0),
     "data_8_12.npz": Synthetic("social-ways", social_ways, 1, 2.5, options=(("fps", 2.5),)),
+    "07_tracks.csv": Synthetic("ind", ind_tracks, 1, 25.0),
+    "cubberly.json": Synthetic("jrdb", jrdb_labels, 1, 15.0),
+    "data.csv": Synthetic("lcas", lcas_csv, 1, 2.5),
+    "wildtrack/00000030.json": Synthetic("wildtrack", wildtrack_frames, 5, 10.0),
+    "THOR-Magni_120522_SC1A_R1.csv": Synthetic("thor-magni", thor_magni_csv, 1, 100.0, robots=frozenset({PEOPLE + 1})),
     "n56.csv": Synthetic("csv", csv_table, 10, 25.0),
     "citr.csv": Synthetic("csv", csv_filtered, 1, 29.97, options=(("fps", 29.97),)),
     "times.csv": Synthetic("csv", csv_times, 1, 2.5),

@@ -105,3 +105,11 @@ def test_a_run_continues_from_its_state_and_a_file_is_repeated(tmp_path):
     counts = known["counts"]["npz"]
     assert (counts["next"], counts.get("read", 0) + counts["rejected"]) == (6, 6)
     assert "npz: 6 of 6" in done.stderr
+
+
+@pytest.mark.parametrize("before", ["  \n", "\u2028\n", " \x85"])
+def test_names_of_columns_that_are_not_in_the_first_row_are_missed(tmp_path, before):
+    path = tmp_path / "07_tracks.csv"
+    path.write_text(before + "trackId,frame,xCenter,yCenter\n1,2,3,4\n", encoding="utf-8")
+    with pytest.raises(DataError, match=r"07_tracks\.csv (has no column trackId|line 2)"):
+        load(path)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import DataError, InputError
 from crowdbot.data import FORMATS, load
-from crowdbot.data.readers import juelich
+from crowdbot.data.readers import hdf5_arrays
 
 OBSMAT = "1 1 0.5 0 1.5 0 0 0\n"
 VSP = "1 - the number of splines\n2 - Num of control points\n0 0 0 0 - (2D point)\n1 1 50 0 - (2D point)\n"
@@ -172,8 +172,8 @@ def test_an_hdf5_library_that_loops_without_end_is_stopped(tmp_path, monkeypatch
     program.write_text(
         "from crowdbot.data.readers.hdf5_program import limit_cpu_time\nlimit_cpu_time(1)\nwhile True: pass\n"
     )
-    monkeypatch.setattr(juelich, "PROGRAM", str(program))
-    monkeypatch.setattr(juelich, "SECONDS", 1)
+    monkeypatch.setattr(hdf5_arrays, "PROGRAM", str(program))
+    monkeypatch.setattr(hdf5_arrays, "SECONDS", 1)
     path = tmp_path / "endless.h5"
     with h5py.File(path, "w") as file:
         file["trajectory"] = np.zeros(3)

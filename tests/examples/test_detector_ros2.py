@@ -70,8 +70,7 @@ def test_an_image_is_turned_to_red_green_blue():
 
 
 @pytest.mark.usefixtures("drawing")
-def test_the_process_answers_images_over_ros2(tmp_path, monkeypatch):
-    domain = 1 + (os.getpid() * 7 + 31) % 100
+def test_the_process_answers_images_over_ros2(domain, tmp_path, monkeypatch):
     for name, value in (
         ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"),
         ("ROS_LOG_DIR", str(tmp_path)),

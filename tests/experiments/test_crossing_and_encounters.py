@@ -84,6 +84,14 @@ def test_a_rehearsal_goes_from_consent_to_a_report(name, conditions, request, tm
     tests = json.loads(capsys.readouterr().out)["tests"]
     assert len(tests) == len(found.tests) > 0
     assert all(one["bound"] == pytest.approx(0.6) for one in tests if one["measure"] == "rating.safe")
+    words = ["evaluate", "--participants", str(data)]
+    assert main([*words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["tests"] == tests
+    assert main([*words, "--out", str(tmp_path / "compared")]) == 0
+    assert f"participants: {len(PARTICIPANTS)}" in capsys.readouterr().out
+    assert (tmp_path / "compared" / "report.html").is_file()
+    assert main([*words, "frontal"]) == 2
+    assert "evaluate takes trials, --logs, --real, or --participants" in capsys.readouterr().err
 
 
 def test_a_robot_that_yields_lets_the_participant_pass_first(crossing):

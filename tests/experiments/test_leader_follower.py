@@ -93,7 +93,12 @@ def test_a_rehearsal_goes_from_consent_to_a_report(study, tmp_path, capsys):
         "robot_leads_real": "robot", "robot_leads_vr": "robot",
         "person_leads_real": "participant", "person_leads_vr": "participant",
     }  # fmt: skip
-    assert len(found.tests) == (5 + 2 + 2) * 6  # coordination, looking at the robot, ratings
+    assert len(found.tests) == (5 + 2 + 2) * 6 + 1  # coordination, looking at the robot, ratings; own lag of followers
+    for trial in found.trials:  # without a headset the delay of the avatar is the whole latency
+        late = 0.08 if trial.condition.endswith("vr") else 0.0
+        own = trial.values.get("own_lag", trial.values["lag"] - late)
+        assert own == pytest.approx(trial.values["lag"] - late)
+        assert ("own_lag" in trial.values) == (trial.labels["leader"] == "robot")
     assert {trial.labels["view"] for trial in found.trials} == {"head"}
     assert all(trial.values["looking"] > 0.9 for trial in found.trials)  # face to face
     report = tmp_path / "report.html"

@@ -91,6 +91,23 @@ def test_every_room_lists_what_it_shows():
     assert [name for name, room in rooms.items() if len(set(room.__all__)) != len(room.__all__)] == []
 
 
+def _type_checked_names(path):
+    """Return the names that a module imports for type checkers and documentation only."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    blocks = [n for n in tree.body if isinstance(n, ast.If) and ast.unparse(n.test) == "TYPE_CHECKING"]
+    imports = [n for block in blocks for n in block.body if isinstance(n, ast.ImportFrom)]
+    return {alias.asname or alias.name for one in imports for alias in one.names}
+
+
+def test_names_that_a_room_loads_on_first_use_are_there_for_type_checkers():
+    rooms = [path for path in SOURCES if path.name == "__init__.py" and "def __getattr__" in path.read_text("utf-8")]
+    assert rooms
+    for path in rooms:
+        room = importlib.import_module(".".join(["crowdbot", *path.parent.relative_to(ROOT / "src/crowdbot").parts]))
+        eager = {name for name in room.__all__ if name in vars(room) and not hasattr(vars(room)[name], "__path__")}
+        assert set(room.__all__) - eager <= _type_checked_names(path), path
+
+
 def test_the_front_door_opens_on_every_name():
     for name in crowdbot.__all__:
         assert getattr(crowdbot, name) is not None

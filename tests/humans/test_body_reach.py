@@ -38,7 +38,7 @@ def turned(yaw: float, pitch: float = 0.0, roll: float = 0.0) -> tuple[float, ..
 
 
 def eyes(posture: Posture, k: int) -> Floats:
-    offset = eye_offsets()[PEOPLE.body[k]] * PEOPLE.scale[k]
+    offset = eye_offsets(PEOPLE)[k]
     return np.asarray(posture.position[k, HEAD] + posture.rotation[k, HEAD] @ offset)
 
 

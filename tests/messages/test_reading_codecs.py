@@ -30,6 +30,7 @@ from reading_comparison import same
 
 SENSORS: dict[str, Sensor] = {
     "Scan": sensors.Lidar2D(rays=31, noise=Gaussian(0.01)),
+    "PulsedScan": sensors.PulsedLidar2D(rays=31, noise=Gaussian(0.01), scan_time=0.1, beam_width=0.02, echoes=2),
     "PointCloud": sensors.Lidar3D(columns=24, noise=Gaussian(0.01)),
     "RangeReading": sensors.Ultrasound(),
     "DepthImage": sensors.DepthCamera(width=12, height=9),
@@ -68,7 +69,7 @@ def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
     assert kinds == {
         "Scan": "Scan", "PointCloud": "Cloud", "RangeReading": "Echo", "DepthImage": "DepthImage",
         "ImuReading": "Inertial", "Odometry": "Odometry", "RgbImage": "Picture", "BumperReading": "Touch",
-        "TrackedPeople": "Tracked",
+        "TrackedPeople": "Tracked", "PulsedScan": "PulsedScan",
     }  # fmt: skip
     assert "facing" in names
     assert "cos_incidence" not in names

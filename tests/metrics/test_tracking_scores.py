@@ -8,7 +8,17 @@ import pytest
 import tracking_reference
 
 from crowdbot.core import InputError
-from crowdbot.metrics import TrackComparison, clear_mot, gospa, hota, identity_f1, ospa, track_latency, tracking_scores
+from crowdbot.metrics import (
+    TrackComparison,
+    clear_mot,
+    count_occlusions,
+    gospa,
+    hota,
+    identity_f1,
+    ospa,
+    track_latency,
+    tracking_scores,
+)
 
 ROWS = json.loads(tracking_reference.FILE.read_text(encoding="utf-8"))
 
@@ -88,3 +98,35 @@ def test_wrong_tables_are_rejected():
         TrackComparison.of([{}], [{}, {}])
     with pytest.raises(InputError, match=r"hidden has shape \[3, 2\]"):
         TrackComparison(np.zeros((3, 1, 2)), np.zeros((3, 1, 2)), np.zeros((3, 2), dtype=bool))
+
+
+def hidden_table(after):
+    """Return a person tracked as 5, hidden for 0.4 s, and then tracked as ``after``."""
+    rows = [{5: (0.0, 0.0)}] * 3 + [{}] * 4 + [after] * 3
+    hidden = [[]] * 3 + [[0]] * 4 + [[]] * 3
+    return TrackComparison.of([{0: (0.0, 0.0)}] * 10, rows, hidden)
+
+
+@pytest.mark.parametrize(("after", "kept"), [({5: (0.1, 0.0)}, 1), ({6: (0.1, 0.0)}, 0), ({}, 0)])
+def test_an_occlusion_keeps_the_identity_or_not(after, kept):
+    found = count_occlusions(hidden_table(after), 0.1 * np.arange(10))
+    assert (found.total, found.kept, found.people.tolist()) == (1, kept, [True])
+
+
+def test_short_occlusions_and_people_who_were_never_tracked_do_not_count():
+    assert count_occlusions(hidden_table({5: (0.0, 0.0)}), 0.05 * np.arange(10), least=0.3).total == 0
+    nobody = TrackComparison.of([{0: (0, 0)}] * 9, [{}] * 9, [[]] * 3 + [[0]] * 4 + [[]] * 2)
+    assert count_occlusions(nobody, 0.1 * np.arange(9)).total == 0
+    to_the_end = TrackComparison.of([{0: (0, 0)}] * 9, [{5: (0, 0)}] * 9, [[]] * 3 + [[0]] * 6)
+    assert count_occlusions(to_the_end, 0.1 * np.arange(9)).total == 0
+
+
+def test_a_subset_has_the_tracks_of_its_people_only():
+    table = TrackComparison.of([{0: (0, 0), 1: (5, 0)}] * 2, [{3: (0.1, 0), 4: (5, 0.1), 5: (9, 9)}] * 2)
+    people = np.array([[True, False]] * 2)
+    part = table.subset(people, np.zeros((2, 3), dtype=bool), 0.5)
+    scores = tracking_scores(part, [0.0, 0.1])
+    assert scores["mota"] == 1.0
+    other = tracking_scores(table.subset(~people, np.ones((2, 3), dtype=bool), 0.5), [0.0, 0.1])
+    assert other["false_tracks"] == 1.0
+    assert other["misses"] == 0.0

@@ -16,6 +16,7 @@ from crowdbot.core import InputError, Scene, stream
 from crowdbot.core.geometry import time_to_contact, time_to_segment
 from crowdbot.models import ORCA, CollisionFreeSpeed, CostModel, Heuristics, PLEdestrians, PowerLaw, SocialForce
 from crowdbot.models.costs import (
+    CollisionDistance,
     Effort,
     FreeWay,
     GoalForce,
@@ -31,6 +32,7 @@ from crowdbot.models.costs import (
 )
 
 EVERY = [
+    CollisionDistance(),
     Effort(),
     FreeWay(),
     GoalForce(),
@@ -57,6 +59,7 @@ def straight(scene):
     [
         ("PLEdestrians", CostModel(Effort(), **SAMPLED), 1.0),
         ("Moussaid", CostModel(FreeWay(sight_distance=8.0), **SAMPLED), 0.999),  # one tie of two sides
+        ("VanToll", CostModel(CollisionDistance(), **SAMPLED), 0.97),
         ("PowerLaw", CostModel(GoalForce() + PowerLawForce(), **UMANS), 1.0),
         ("ORCA", CostModel(HalfPlanes(time_horizon=3.0), relaxation_time=0.1, **UMANS), 0.985),  # not in contact
     ],

@@ -16,7 +16,16 @@ from crowdbot.core import InputError, Scene, Walls
 from crowdbot.core.geometry import time_to_segment
 from crowdbot.models import ORCA
 from crowdbot.models.velocity_obstacles.linear_program import best_velocity
-from crowdbot.models.velocity_obstacles.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
+from crowdbot.models.velocity_obstacles.orca_lines import (
+    BLOCK,
+    BLOCK_ROWS,
+    LINE,
+    avoid_agent,
+    avoid_agents,
+    avoid_edge,
+    edges_in_reach,
+    edges_of,
+)
 
 SCENES = ["blocks100", "bottleneck12", "circle250", "corridor_bidir", "crossing90", "hetero", "hetero_dense"]
 
@@ -140,6 +149,26 @@ def test_overlapping_agents_part_within_the_step():
     assert line[0] == pytest.approx([-1.0, 0.0, 0.0, 1.0])  # half of 0.2 m in 0.1 s
     avoid_agent(line, 0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.5, 2.0, 0.1, 0.5, -1.0)
     assert line[0] == pytest.approx([1.0 - 2.5, 0.0, 0.0, 1.0])  # the same place and velocity: the given side
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32), held=st.integers(1, BLOCK), spread=st.sampled_from([0.2, 2.0, 20.0]))
+def test_lines_of_a_block_have_the_bits_of_one_line_at_a_time(seed, held, spread):
+    rng = np.random.default_rng(seed)
+    block = np.full((BLOCK_ROWS, BLOCK), np.nan)
+    block[:2, :held], block[2:4, :held] = rng.normal(0.0, spread, (2, held)), rng.normal(0.0, 1.0, (2, held))
+    block[4, :held], block[5, :held] = rng.uniform(0.2, 0.8, held), rng.choice([0.5, 1.0], held)
+    mine, horizon, dt = rng.normal(0.0, 1.0, 2), rng.uniform(0.2, 8.0), rng.uniform(0.01, 0.4)
+    block[:4, 0] = 0.0, 0.0, *mine  # the same place and velocity have no direction
+    best = rng.normal(0.0, 1.0, 2)
+    violated = avoid_agents(block, held, *mine, horizon, dt, *best)
+    line = np.empty((1, 4))
+    assert violated == 1 + sum(left_of(block[LINE:, n][None], best) > 0.0 for n in range(1, held))
+    assert np.isnan(block[LINE + 2, 0])
+    for n in range(1, held):
+        x, y, vx, vy, reach, share = block[:LINE, n]
+        avoid_agent(line, 0, x, y, *mine, vx, vy, reach, horizon, dt, share, 1.0)
+        assert line[0].tobytes() == block[LINE:, n].tobytes()
 
 
 L_SHAPED = [(-4.0, 1.0), (-2.0, 1.0), (-2.0, 2.0), (-3.0, 2.0), (-3.0, 3.0), (-4.0, 3.0)]

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from model_crowds import crowd
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models import ORCA, Boids, Mixture, SocialForce
+from crowdbot.models import ORCA, Boids, Mixture, SocialForce, agent_rows
+from crowdbot.models.agent_rows import LIMIT, RADIUS, VX, VY, WISH_X, WISH_Y, X, Y, begin_rows
 from crowdbot.models.model import begin_step, desired_velocity, movable, rows
 
 
@@ -38,6 +39,30 @@ def test_a_step_begins_with_the_values_of_the_scene(seed, preferred, dt):
     np.testing.assert_array_equal(start.desired, desired_velocity(scene, dt))
 
 
+@pytest.mark.parametrize("serial", [agent_rows.SERIAL, 3])
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), preferred=st.booleans(), limited=st.booleans())
+def test_rows_have_the_values_of_the_scene_on_one_thread_and_on_several(serial, seed, preferred, limited):
+    scene = _scene(seed, preferred)
+    before, agent_rows.SERIAL = agent_rows.SERIAL, serial
+    try:
+        found = begin_rows(scene, 0.1, 0.7 if limited else None)
+    finally:
+        agent_rows.SERIAL = before
+    start = begin_step(scene, 0.1)
+    top = np.full((3, 8), 0.7) if limited else scene.max_speed
+    for columns, values in (
+        ([X, Y], scene.position), ([VX, VY], scene.velocity), ([WISH_X, WISH_Y], start.desired),
+        ([RADIUS], scene.radius[..., None]), ([LIMIT], top[..., None]),
+    ):  # fmt: skip
+        np.testing.assert_array_equal(found.agents[:, columns], values.reshape(24, -1))
+    np.testing.assert_array_equal(found.walking, start.walking.ravel())
+    np.testing.assert_array_equal(found.seen, start.seen.ravel())
+    np.testing.assert_array_equal(found.external, scene.external.ravel())
+    np.testing.assert_array_equal(found.velocity, start.velocity)
+    assert np.shares_memory(found.out, found.velocity)
+
+
 def test_values_of_absent_agents_are_arbitrary():
     scene = _scene(1)
     gone = ~scene.active
@@ -57,6 +82,9 @@ def test_the_first_wrong_value_of_an_active_agent_is_named(name, value):
     values[1, 3:] = value
     with pytest.raises(InputError, match=rf"^scene: {name} .* of agent 3 in environment 1 is not finite or larger"):
         begin_step(scene.replace(**{name: values}), 0.1)
+    with pytest.raises(InputError, match=rf"^scene: {name} .* of agent 3 in environment 1 is not finite or larger"):
+        begin_rows(scene.replace(**{name: values}), 0.1)
+    begin_rows(scene.replace(**{name: values}, active=np.arange(8) < np.array([[8], [3], [8]])), 0.1)
     begin_step(scene.replace(**{name: values}, active=np.arange(8) < np.array([[8], [3], [8]])), 0.1)
 
 

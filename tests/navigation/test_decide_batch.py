@@ -25,7 +25,17 @@ from crowdbot.navigation.goal_motion import exact_distance
 from crowdbot.sensors import Odometry, Scan
 
 LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
-OTHERS = ("external", "follower", "process", "ros2", "rosbridge", "scan-map", "sinusoid")
+OTHERS = (
+    "external",
+    "follower",
+    "predicted-occupancy",
+    "process",
+    "real-robot",
+    "ros2",
+    "rosbridge",
+    "scan-map",
+    "sinusoid",
+)
 """Navigators that do not decide here, or have a memory; they have tests of their own."""
 NAVIGATORS = {name: kind for name, kind in builtin_classes(navigation, Navigator).items() if name not in OTHERS}
 ROOM = Walls.of([[(-6.0, -4.0), (6.0, -4.0)], [(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)], [(-6.0, 5.0), (6.0, 5.0)]])

@@ -15,7 +15,9 @@ BUILTIN = builtin_classes(navigation, navigation.Navigator)
 OTHERS = (
     navigation.ExternalNavigator,
     navigation.FollowerNavigator,
+    navigation.PredictedOccupancyNavigator,
     navigation.ProcessNavigator,
+    navigation.RealRobotNavigator,
     navigation.Ros2Navigator,
     navigation.RosbridgeNavigator,
     navigation.ScanMapNavigator,
@@ -36,7 +38,18 @@ def meeting(people=(), **changes):
 
 def test_the_room_shows_its_contracts():
     names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "rds", "social-force", "straight"}
-    names |= {"follower", "policy", "process", "ros2", "rosbridge", "scan-map", "sinusoid", "time-elastic-band"}
+    names |= {
+        "follower",
+        "policy",
+        "predicted-occupancy",
+        "process",
+        "real-robot",
+        "ros2",
+        "rosbridge",
+        "scan-map",
+        "sinusoid",
+        "time-elastic-band",
+    }
     assert set(BUILTIN) == names
     assert all(hasattr(navigation, name) for name in navigation.__all__)
 

@@ -10,8 +10,12 @@ from crowdbot.core import InputError, Pose, Scene, builtin_classes, stream
 from crowdbot.perception import CloudClusters, Coverage, Detections, LidarClusters
 from crowdbot.sensors import Gaussian, Lidar2D, Lidar3D, PointCloud, Scan
 
-DETECTORS = builtin_classes(perception, perception.Detector)
 SENSORS = {Scan: Lidar2D(rays=720), PointCloud: Lidar3D(columns=900)}
+DETECTORS = {
+    name: kind
+    for name, kind in builtin_classes(perception, perception.Detector).items()
+    if kind.reads[0] in SENSORS and kind is not perception.ScanNetwork
+}
 PLACES = [[2.0, 0.5], [-3.0, 1.0], [0.5, -4.0], [4.0, -3.0]]
 
 

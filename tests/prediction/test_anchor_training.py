@@ -14,8 +14,8 @@ import torch
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.prediction.anchor_net.agent_frame import AGENT_FEATURES, NEAR, NEIGHBOR_FEATURES, PREDICTED_ROWS
+from crowdbot.prediction.anchor_net.forward_pass import network_output
 from crowdbot.prediction.anchor_net.network_shapes import NEEDED
-from crowdbot.prediction.anchor_net.predictor import network_output
 from crowdbot.prediction.anchor_net.training import (
     AnchorNetTraining,
     AnchorTraining,

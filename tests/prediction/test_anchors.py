@@ -88,14 +88,14 @@ def test_the_place_decides_which_set_is_taken(crowd: Maker) -> None:
     here = crowd()
     there = dataclasses.replace(here, source="crowds_zara02.txt")
     assert np.array_equal(Anchors().predict(there, 12, 20).position, Anchors("zara2").predict(here, 12, 20).position)
-    assert np.array_equal(Anchors().predict(here, 12, 20).position, Anchors("all").predict(here, 12, 20).position)
+    assert np.array_equal(Anchors().predict(here, 12, 20).position, Anchors("open").predict(here, 12, 20).position)
     assert "made is not named after a training place" in Anchors().note(here)
     assert Anchors().note(there) == ""
 
 
 def test_places_are_told_by_the_names_of_recordings() -> None:
     assert [fold_of(f"{begins[0]}.txt") for begins in FOLDS.values()] == list(FOLDS)
-    assert fold_of("uni_examples.txt") == "all"
+    assert fold_of("uni_examples.txt") == "open"
     assert is_held_out("univ", "students003_train.txt")
     assert not is_held_out("univ", "crowds_zara01_train.txt")
     assert not is_held_out("all", "students003_train.txt")
@@ -116,7 +116,7 @@ def test_centres_are_those_of_heaps() -> None:
 
 
 def test_wrong_wishes_are_one_sentence(crowd: Maker, tmp_path) -> None:
-    with pytest.raises(InputError, match=r"fold 'zara'; did you mean|fold 'zara'.*it is one of auto, all, eth"):
+    with pytest.raises(InputError, match=r"fold 'zara'; did you mean|fold 'zara'.*it is one of auto, open, all, eth"):
         Anchors("zara")
     with pytest.raises(InputError, match="belong together"):
         Anchors(shapes=np.zeros((3, 12, 2)))

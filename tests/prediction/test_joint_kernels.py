@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import stream
@@ -23,6 +23,11 @@ Maker = Callable[..., Windows]
 LIMIT = 0.4
 seeds = st.integers(0, 10_000)
 NOBODY = np.zeros(2, dtype=bool)
+
+
+def rooms(path: np.ndarray) -> np.ndarray:
+    """Return half of the limit for everyone."""
+    return np.full(len(path), 0.5 * LIMIT)
 
 
 def cuts(p: np.ndarray, q: np.ndarray, a: np.ndarray, b: np.ndarray) -> bool:
@@ -55,18 +60,23 @@ def test_two_people_are_moved_apart_along_their_closest_line(seed: int, first: b
     rng = stream(seed, "pairs")
     path = np.cumsum(rng.normal(0.0, 0.3, (2, 6, 2)), axis=1)
     fixed = np.array([first, second])
-    away = path[0] - path[1]
+    rows = path[0] - path[1]
+    fine = np.linspace(0.0, 5.0, 5001)
+    away = np.stack([np.interp(fine, np.arange(6), rows[:, axis]) for axis in (0, 1)], axis=1)
     distance = np.linalg.norm(away, axis=1)
-    when = int(np.argmin(distance))
-    moved = separate_paths(path, fixed, LIMIT, 1)
+    at = int(np.argmin(distance))
+    when = fine[at]
+    moved = separate_paths(path, fixed, rooms(path), 1)
     expected = path.copy()
-    if distance[when] < LIMIT and not fixed.all():
-        missing = (1.02 * LIMIT - distance[when]) * away[when] / distance[when]
+    if distance[at] < LIMIT and not fixed.all():
+        missing = (1.02 * LIMIT - distance[at]) * away[at] / distance[at]
         grown = np.minimum(1.0, np.arange(1.0, 7.0) / (when + 1.0))[:, None] * missing
         share = 1.0 if fixed.any() else 0.5
         expected[0] += 0.0 if first else share * grown
         expected[1] -= 0.0 if second else share * grown
-    np.testing.assert_allclose(moved, expected, atol=1e-12)
+    assume(abs(distance[at] - LIMIT) > 1e-4)
+    assume(distance[at] > 0.02)
+    np.testing.assert_allclose(moved, expected, atol=0.02)
 
 
 @settings(max_examples=15, deadline=None)
@@ -75,20 +85,22 @@ def test_separation_does_not_depend_on_the_order_of_people(seed: int) -> None:
     rng = stream(seed, "many")
     path = rng.normal(0.0, 0.5, (4, 1, 2)) + np.cumsum(rng.normal(0.0, 0.1, (4, 5, 2)), axis=1)
     fixed, order = rng.random(4) < 0.3, rng.permutation(4)
-    moved = separate_paths(path, fixed, LIMIT, 3)
-    np.testing.assert_allclose(separate_paths(path[order], fixed[order], LIMIT, 3), moved[order], atol=1e-9)
+    moved = separate_paths(path, fixed, rooms(path), 3)
+    np.testing.assert_allclose(
+        separate_paths(path[order], fixed[order], rooms(path[order]), 3), moved[order], atol=1e-9
+    )
     np.testing.assert_array_equal(moved[fixed], path[fixed])
 
 
 def test_people_at_one_place_are_moved_across_their_way() -> None:
     step = np.arange(1.0, 5.0)[:, None]
     same = np.stack([step * [0.5, 0.0]] * 2)
-    moved = separate_paths(same, NOBODY, LIMIT, 1)
+    moved = separate_paths(same, NOBODY, rooms(same), 1)
     assert np.all(moved[..., 0] == same[..., 0])
     np.testing.assert_allclose(np.abs(moved[:, :, 1]), 0.51 * LIMIT)
     assert np.all(moved[0, :, 1] == -moved[1, :, 1])
     far = np.stack([step * [0.5, 0.0], step * [0.5, 0.0] + [0.0, LIMIT]])
-    np.testing.assert_array_equal(separate_paths(far, NOBODY, LIMIT, 12), far)
+    np.testing.assert_array_equal(separate_paths(far, NOBODY, rooms(far), 12), far)
 
 
 def collisions(path: np.ndarray, choice: np.ndarray) -> int:
@@ -108,18 +120,18 @@ def sides(*people: list[float]) -> np.ndarray:
 @pytest.mark.parametrize("order", [0.0, 0.3, 1.0])
 def test_futures_are_exchanged_if_that_saves_collisions(order: float) -> None:
     both_meet = sides([0.0, 5.0], [0.1, 5.1])
-    assert assign_futures(both_meet, LIMIT, order, 8).tolist() == [[1, 0], [0, 1]]
-    assert assign_futures(both_meet, LIMIT, order, 0).tolist() == [[0, 1], [0, 1]]
+    assert assign_futures(both_meet, rooms(both_meet), order, 8).tolist() == [[1, 0], [0, 1]]
+    assert assign_futures(both_meet, rooms(both_meet), order, 0).tolist() == [[0, 1], [0, 1]]
     nobody_meets = sides([0.0, 5.0], [0.5, 5.5])
-    assert assign_futures(nobody_meets, LIMIT, order, 8).tolist() == [[0, 1], [0, 1]]
+    assert assign_futures(nobody_meets, rooms(nobody_meets), order, 8).tolist() == [[0, 1], [0, 1]]
 
 
 def test_futures_are_exchanged_only_if_they_cost_less_than_a_collision() -> None:
     # of three futures the outer ones meet; the cheapest exchanges are those with the neighbor in probability
     path = sides([0.0, 20.0, 5.0], [0.1, 10.0, 15.0])
-    assert assign_futures(path, LIMIT, 0.3, 8).tolist() == [[1, 0, 2], [0, 1, 2]]
-    assert assign_futures(path, LIMIT, 6.0, 8).tolist() == [[0, 1, 2], [0, 1, 2]]  # two moves by 1/3: 12 / 9 > 1
-    assert assign_futures(path, LIMIT, 4.0, 8).tolist() == [[1, 0, 2], [0, 1, 2]]  # 8 / 9 < 1
+    assert assign_futures(path, rooms(path), 0.3, 8).tolist() == [[1, 0, 2], [0, 1, 2]]
+    assert assign_futures(path, rooms(path), 6.0, 8).tolist() == [[0, 1, 2], [0, 1, 2]]  # two moves by 1/3: 12 / 9 > 1
+    assert assign_futures(path, rooms(path), 4.0, 8).tolist() == [[1, 0, 2], [0, 1, 2]]  # 8 / 9 < 1
 
 
 @settings(max_examples=20, deadline=None)
@@ -127,7 +139,7 @@ def test_futures_are_exchanged_only_if_they_cost_less_than_a_collision() -> None
 def test_no_single_exchange_saves_another_collision(seed: int) -> None:
     rng = stream(seed, "local")
     path = rng.normal(0.0, 1.0, (4, 1, 1, 2)) + np.cumsum(rng.normal(0.0, 0.3, (4, 4, 6, 2)), axis=2)
-    choice = assign_futures(path, LIMIT, 0.0, 50)
+    choice = assign_futures(path, rooms(path), 0.0, 50)
     least = collisions(path, choice)
     for a in range(4):
         for k in range(4):
@@ -146,12 +158,13 @@ def test_modes_are_weighted_by_the_mean_probability_of_people(windows: Maker) ->
     past = two_beside(windows, robot=[[False, False]])
     place = np.swapaxes(sides([0.0, 5.0], [0.1, 5.1]), 0, 2).swapaxes(0, 1)[None]
     share = np.array([[[0.8, 0.2], [0.6, 0.4]]])
-    found, weight = coordinate_modes(past, place, share, LIMIT)
-    assert found[0, :, 0, :, 1].tolist() == [[5.0, 0.1], [0.0, 5.1]]
-    np.testing.assert_allclose(weight, [[0.4, 0.6]])
+    found, weight, own = coordinate_modes(past, place, share, LIMIT)
+    assert found[0, :, 0, :, 1].tolist() == [[0.0, 5.1], [5.0, 0.1]]
+    np.testing.assert_allclose(weight, [[0.6, 0.4]])
+    np.testing.assert_allclose(own, [[[0.8, 0.4], [0.2, 0.6]]])
     np.testing.assert_array_equal(coordinate_modes(past, place, share, 0.0)[0], place)
     robot = two_beside(windows, robot=[[False, True]])
-    np.testing.assert_allclose(coordinate_modes(robot, place, share, LIMIT)[1], [[0.2, 0.8]])
+    np.testing.assert_allclose(coordinate_modes(robot, place, share, LIMIT)[1], [[0.8, 0.2]])
 
 
 def test_draws_stay_in_their_block(windows: Maker) -> None:

@@ -16,7 +16,7 @@ ASSETS = Path(weight_files.__file__).parents[1] / "assets" / "predictors"
 def wheel(tmp_path, monkeypatch):
     """Make a package folder as the wheel has it, without leave-one-out weights, and a folder for them."""
     package, extra = tmp_path / "package", tmp_path / "weights"
-    for name in ("SHA256SUMS", "anchor-net-all.npz"):
+    for name in ("SHA256SUMS", "anchor-net-open.npz"):
         (package / name).parent.mkdir(exist_ok=True)
         (package / name).write_bytes((ASSETS / name).read_bytes())
     extra.mkdir()
@@ -31,8 +31,8 @@ def test_every_file_has_its_hash():
 
 
 def test_weights_of_the_package_come_first(wheel):
-    (wheel / "anchor-net-all.npz").write_bytes(b"something else")
-    assert find_weights("anchor-net", "all").parent.name == "package"
+    (wheel / "anchor-net-open.npz").write_bytes(b"something else")
+    assert find_weights("anchor-net", "open").parent.name == "package"
 
 
 def test_weights_outside_the_package_are_found_and_checked(wheel):
@@ -47,7 +47,7 @@ def test_missing_weights_are_named_in_a_sentence(wheel):
     with pytest.raises(DataError) as found:
         find_weights("anchor-net", "zara1")
     assert str(found.value) == (
-        "anchor-net-zara1.npz is not installed, since the wheel has no leave-one-out weights: unpack"
+        "anchor-net-zara1.npz is not installed, since the wheel has the default weights only: unpack"
         f" crowdbot-weights.zip of the release into {wheel}, or set CROWDBOT_WEIGHTS to a folder that has it"
     )
 

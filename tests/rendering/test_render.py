@@ -265,9 +265,11 @@ def test_a_mistake_is_said_in_a_sentence(mistake: str, tmp_path: Path, capsys: p
 def test_without_a_way_to_draw_nothing_is_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("MUJOCO_GL", "disabled")
     gl_context.backend.cache_clear()
+    plain = LEAN.replace("<camera ", '<camera renderer="opengl" ', 1)
     try:
         with pytest.raises(InputError, match="MUJOCO_GL = 'disabled' must be one of egl, osmesa"):
-            list(render_images(load_trial("frontal")))
+            list(render_images(parse_trial(plain)))
+        assert len(list(render_images(parse_trial(LEAN)))) == 1  # the rasteriser needs no graphics library
     finally:
         gl_context.backend.cache_clear()
 

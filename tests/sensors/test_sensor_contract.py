@@ -38,7 +38,7 @@ def arrays(reading):
         value = getattr(reading, field.name)
         if field.name == "estimate":
             found |= {"estimate": value.position, "estimate_heading": value.heading}
-        elif isinstance(value, np.ndarray) and field.name not in ("angles", "elevation", "azimuth"):
+        elif isinstance(value, np.ndarray) and field.name not in ("angles", "elevation", "azimuth", "beam_time"):
             found[field.name] = value
     return found
 
@@ -213,7 +213,7 @@ def test_every_noise_composes_on_every_range_sensor(name):
 
 def test_the_room_shows_its_contracts():
     expected = {"lidar2d", "lidar3d", "ultrasound", "infrared", "depth-camera", "rgbcamera", "bumper", "imu"}
-    assert expected | {"wheel-odometry", "ground-truth-people"} == set(SENSORS)
+    assert expected | {"wheel-odometry", "ground-truth-people", "pulsed-lidar2d", "exposed-camera"} == set(SENSORS)
     assert set(NOISES) == set(EXAMPLES)
     assert all(hasattr(sensors, name) for name in sensors.__all__)
     assert len(set(sensors.__all__)) == len(sensors.__all__)
@@ -245,5 +245,7 @@ def test_a_sensor_of_the_older_contract_says_what_to_write():
 def test_skins_are_asked_for_in_one_way(kind):
     assert not kind().sees_skins
     assert kind().with_skins().sees_skins == ("skins" in kind.__dataclass_fields__)
-    assert kind.spatial == (kind.__name__ in ("DepthCamera", "Infrared", "Lidar3D", "RGBCamera", "Ultrasound"))
-    assert kind.renders == (kind is sensors.RGBCamera)
+    assert kind.spatial == (
+        kind.__name__ in ("DepthCamera", "ExposedCamera", "Infrared", "Lidar3D", "RGBCamera", "Ultrasound")
+    )
+    assert kind.renders == issubclass(kind, sensors.RGBCamera)

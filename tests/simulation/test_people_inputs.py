@@ -72,3 +72,11 @@ def test_tracking_needs_a_laser_scanner():
     begin, end = text.index("<sensor"), text.index("</robot>")
     with pytest.raises(TrialError, match="no laser scanner"):
         parse_trial(text[:begin] + text[end:])
+
+
+def test_a_rolling_scanner_replays_from_its_keyframes(tmp_path):
+    text = trial_xml(load_trial("crossing-flows", duration=12.0))
+    rolling = text.replace('type="lidar2d"', 'type="pulsed-lidar2d" scan-time="0.05" beam-width="0.01"')
+    assert rolling != text
+    record(parse_trial(rolling), 3, tmp_path / "episode.mcap")
+    assert replay(tmp_path / "episode.mcap", begin=11.0).equal

@@ -138,7 +138,7 @@ def test_a_navigator_with_a_forecast_replays_branches_and_is_equal_in_a_batch(wo
 
 
 def test_own_weights_lie_in_the_folder_of_the_trial(tmp_path: Path) -> None:
-    source = Path(prediction.__file__).parent.parent / "assets" / "predictors" / "anchor-net-all.npz"
+    source = Path(prediction.__file__).parent.parent / "assets" / "predictors" / "anchor-net-open.npz"
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / "own.npz").write_bytes(source.read_bytes())
     (tmp_path / "out.npz").write_bytes(source.read_bytes())

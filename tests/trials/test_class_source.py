@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging.config
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,15 @@ def test_a_check_runs_no_code_and_a_run_says_whose_it_loads(tmp_path: Path, caps
     assert "loads code" not in capsys.readouterr().err
     assert main(["run", str(trial)]) in (0, 1)
     assert (tmp_path / "ran").exists()
+    assert "loads code from shy.py" in capsys.readouterr().err
+
+
+def test_a_package_that_sets_up_logging_does_not_hide_whose_code_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trial = trial_with(tmp_path, SHY, 'space="0.7"')
+    logging.config.dictConfig({"version": 1})
+    assert main(["run", str(trial)]) in (0, 1)
     assert "loads code from shy.py" in capsys.readouterr().err
 
 

@@ -326,6 +326,20 @@ def test_zones_of_journeys_need_room() -> None:
         parse_trial(inside)
 
 
+@pytest.mark.parametrize(("way", "loop"), [(18, True), (16, False)])
+def test_portals_that_lead_into_each_other_are_found(way: int, loop: bool) -> None:
+    text = f"""<trial name="p" duration="60"><stage walkable="-11,-8 11,-8 11,8 -11,8"/><crowd type="orca"/>
+    <journey name="on"><direction heading="0"/></journey>
+    <spawner count="5" zone="-7,-7 7,-7 7,7 -7,7" journey="on"/>
+    <portal zone="8,-8 11,-8 11,8 8,8" dx="-{way}"/>
+    <portal name="west" zone="-11,-8 -8,-8 -8,8 -11,8" dx="{way}"/></trial>"""
+    if loop:
+        with pytest.raises(TrialError, match="<portal> leads into the portal 'west' that leads back into it; move its"):
+            parse_trial(text)
+    else:
+        assert len(parse_trial(text).portals) == 2
+
+
 def test_flows_made_in_python_are_checked_too() -> None:
     with pytest.raises(InputError, match="Journey: stops is empty; it must hold at least one: stops, in order"):
         Journey(name="none", stops=[])

@@ -92,7 +92,7 @@ def test_the_head_of_the_avatar_is_where_the_headset_is():
         pose = settled(BodyEstimator(SIZE), head=(0.5, -0.3, height), pitch=pitch)
         found = posture(pose)
         b = shapes().bone("head")
-        eye = found.position[0, b] + found.rotation[0, b] @ (eye_offsets()[PEOPLE.body[0]] * PEOPLE.scale[0])
+        eye = found.position[0, b] + found.rotation[0, b] @ eye_offsets(PEOPLE)[0]
         assert np.linalg.norm(eye - pose.head[:3]) < 0.02
 
 

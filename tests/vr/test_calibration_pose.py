@@ -12,7 +12,7 @@ def samples(body="man-30", stature=1.75, stretch=1.0, down=0.0, heading=0.3, noi
     """Return what a headset measures of a person whose arms are `stretch` times those of a body."""
     people = People.of([body], height=stature)
     bones = rest_skeleton(people)
-    eyes = bones.head[bones.bone("head")] + eye_offsets()[int(people.body[0])] * float(people.scale[0])
+    eyes = bones.head[bones.bone("head")] + eye_offsets(people)[0]
     arm = stretch * float(people.measures.arm[0].sum())
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])

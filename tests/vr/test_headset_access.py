@@ -105,8 +105,13 @@ def test_the_window_of_a_headset_may_look_answer_and_stop_only(tmp_path):
             for name in ("vr.set", "vr.release_robots", "vr.resume", "simulator.run", "experiments.open",
                          "experiments.answers", "experiments.next", "jobs.start", "nothing"):  # fmt: skip
                 assert (await answer(name))["error"] == f"a headset may not call {name!r}"
-            assert (await answer("vr.stop_robots"))["result"] == []
-            assert "result" in await answer("simulator.show_frame")
+            stopped = await answer("vr.stop_robots")
+            assert stopped.get("result") == [], stopped
+            for _ in range(600):
+                if "nothing is open" not in (shown := await answer("simulator.show_frame")).get("error", ""):
+                    break
+                await asyncio.sleep(0.1)  # the trial is being prepared
+            assert "result" in shown, shown
             assert "error" in await answer("experiments.finish_screen", index=0, answers={})
             assert seen <= {"vr.state", "simulator.status", "simulator.opened", "experiments.state"}
 

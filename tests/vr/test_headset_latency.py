@@ -63,6 +63,7 @@ def test_added_delay_is_in_the_latency_within_5_ms(added):
         assert np.abs(errors).max() < 0.5 * 0.004  # what the simulation sees is as old as the log says
     for name in ("motion", "picture"):
         more = late.stream.latency.median(name) - plain.stream.latency.median(name)
+        print(f"added {1e3 * added:.0f} ms: {name} has {1e3 * more:.2f} ms more")
         assert more == pytest.approx(added, abs=0.005)
     assert plain.stream.latency.median("motion") == pytest.approx(0.02, abs=0.005)
     assert plain.stream.latency.median("picture") == pytest.approx(0.05, abs=0.005)

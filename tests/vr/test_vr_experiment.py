@@ -1,22 +1,15 @@
 """A participant in a headset in the session of an experiment: seats, bodies, recordings, pauses, withdrawal."""
 
-import asyncio
-import dataclasses
 import json
-import threading
-import time
 
 import numpy as np
 import pytest
-from headset_messages import message
+from headset_sessions import Headset, open_session, phase, until
 
 from crowdbot.core import InputError
 from crowdbot.experiments import read_log, withdraw
-from crowdbot.navigation import ExternalNavigator
 from crowdbot.recording import read_episode, replay
-from crowdbot.trials import load_trial
-from crowdbot.vr import VR_DESKS, RobotStop, TrialSeats, read_headset_recording
-from crowdbot.web import AppSession, Workspace
+from crowdbot.vr import read_headset_recording
 
 EXPERIMENT = """<experiment name="visit"><instructions name="consent" text="Do you take part?">
 <choice name="agree" text="Yes or no?"><option value="yes"/><option value="no" ends="true"/></choice></instructions>
@@ -28,58 +21,11 @@ TRIAL = """<trial name="meet" duration="{duration}"><stage/><crowd type="orca"/>
 <navigator type="straight" speed="0.5"/></robot><end goal="false" collision="false"/></trial>"""
 
 
-class Headset:
-    """Sends poses of a head at 1.6 m from a thread, with a clock that is 5 s ahead."""
-
-    def __init__(self, desk):
-        self.told, self.head, self.hands = [], (0.1, 0.0, 1.6), {}
-        self.person = desk.arrive(self.told.append)
-        self._ends, self._desk = threading.Event(), desk
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
-
-    def _run(self):
-        number, exchange = 0, None
-        while not self._ends.wait(0.015):
-            number += 1
-            more = {} if exchange is None else {"clock": np.array(exchange)}
-            data = message(time.monotonic() + 5.0, head=self.head, number=number, **self.hands, **more)
-            exchange = (*self.person.take(data)["clock"], time.monotonic() + 5.0)
-
-    def stop(self, cut=False):
-        self._ends.set()
-        self._thread.join()
-        self._desk.depart(self.person, cut)
-
-
 @pytest.fixture
 def session(tmp_path):
     """A session with an experiment of one trial; the duration of the trial is in the file."""
-    folder = tmp_path / "files"
-    folder.mkdir()
-    (folder / "visit.xml").write_text(EXPERIMENT)
-    (folder / "meet.xml").write_text(TRIAL.format(duration=1))
-    desks = tuple(
-        type("SimulatorDesk", (one,), {"first": "meet.xml"}) if one.name == "simulator" else one for one in VR_DESKS
-    )
-    loop = asyncio.new_event_loop()
-    made = AppSession("main", Workspace(folder), desks, loop)
-    yield made
-    made.close()
-    loop.close()
-
-
-def until(check):
-    end = time.monotonic() + 60
-    while not (found := check()):
-        if time.monotonic() > end:
-            raise TimeoutError("nothing happens within 60 s")
-        time.sleep(0.03)
-    return found
-
-
-def phase(desk, *wanted):
-    return until(lambda: (state := desk.greet()) and state["phase"] in wanted and state)
+    with open_session(tmp_path / "files", {"visit.xml": EXPERIMENT, "meet.xml": TRIAL.format(duration=1)}) as opened:
+        yield opened
 
 
 def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
@@ -172,18 +118,6 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     until(lambda: not vr.state()["experiment"])
     names = sorted(one.name for one in folder.rglob("participant-001/*/*.headset"))
     assert names == ["guest-2.headset", "guest.headset"]
-
-
-def test_a_robot_with_a_connection_of_its_own_is_refused(tmp_path):
-    class Driven(ExternalNavigator):
-        source = "module:function"
-
-    path = tmp_path / "meet.xml"
-    path.write_text(TRIAL.format(duration=1))
-    trial = load_trial(path)
-    trial = dataclasses.replace(trial, robots=(dataclasses.replace(trial.robots[0], navigator=Driven()),))
-    with pytest.raises(InputError, match="robot 'robot' is driven over a connection of its navigator"):
-        TrialSeats(trial, tmp_path, RobotStop(), lambda _: False)
 
 
 def test_rooms_are_saved_and_loaded(session):

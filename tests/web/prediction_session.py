@@ -12,8 +12,8 @@ class LonelySession:
 
     name = "main"
 
-    def __init__(self, folder):
-        self.workspace, self.events = Workspace(folder), []
+    def __init__(self, folder, readable=()):
+        self.workspace, self.events = Workspace(folder, readable), []
         self.jobs = JobBoard(self.workspace, SessionLimits(), self.tell)
 
     def tell(self, event, data):
@@ -26,9 +26,9 @@ class LonelySession:
 class DeskCaller:
     """Calls commands of a prediction desk as the page does."""
 
-    def __init__(self, folder):
-        self.session = LonelySession(folder)
-        self.desk = PredictionDesk(self.session)
+    def __init__(self, folder, kind=PredictionDesk, readable=()):
+        self.session = LonelySession(folder, readable)
+        self.desk = kind(self.session)
         self.folder = self.session.workspace.folder
 
     def __call__(self, command, /, **arguments):

@@ -21,7 +21,8 @@ def text_of(page):
 
 def draw(page, tool, *places):
     """Click places of the canvas, as shares of its width and height."""
-    page.get_by_role("button", name=tool, exact=True).click()
+    if tool is not None:
+        page.get_by_role("button", name=tool, exact=True).click()
     box = page.locator(".editor canvas").bounding_box()
     for x, y in places:
         page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
@@ -76,6 +77,27 @@ def test_a_trial_is_drawn_checked_saved_and_opened_again(editor, app):
     page.get_by_role("button", name="hall.xml").click()
     wait_for_text(page, "<agent")
     assert text_of(page) == saved
+
+
+def test_rare_elements_are_chosen_from_a_list_and_drawn(editor):
+    page = editor
+    page.get_by_role("option", name="trial").first.click()
+    page.locator(".inspector").get_by_label("world").select_option("physics")
+    wait_for_text(page, 'world="physics"')
+    corners = ((0.2, 0.3), (0.4, 0.5))
+    for name in ("ramp", "stairs", "platform", "threshold", "avatar"):
+        page.get_by_label("More tools").select_option(name)
+        draw(page, None, *corners)
+        wait_for_text(page, f"<{name} ")
+        page.keyboard.press("Escape")
+        assert page.get_by_label("More tools").input_value() == ""
+    page.get_by_text("No errors").wait_for()
+    trial = parse_trial(text_of(page))
+    ramp, stairs, platform, threshold = trial.stage.ground
+    assert (ramp.x, ramp.y, ramp.length) == (stairs.x, stairs.y, pytest.approx(threshold.width, abs=0.01))
+    assert platform.length > 0.0
+    assert platform.width > 0.0
+    assert trial.avatars[0].name == "you"
 
 
 def test_an_element_is_dragged_and_the_xml_follows(editor):
@@ -246,3 +268,22 @@ def test_the_scale_of_a_floor_plan_is_set_with_two_points(editor, app, tmp_path)
     wait_for_text(page, 'map="plan.yaml"')
     page.wait_for_function("() => crowdbot.tab('editor').tab.model.state.rings.length > 0")
     assert (app.folder / "plan.yaml").read_text().splitlines()[1].startswith("resolution: 0.05")
+
+
+def test_run_opens_the_trial_in_the_simulator(editor, app):
+    """By keyboard, and again right after the run of another trial."""
+    page = editor
+    status = "crowdbot.tab('simulator')?.status"
+    for name in ("first", "second"):
+        page.get_by_label("XML of the trial").fill(
+            f'<trial name="{name}" duration="9"><crowd type="orca"/><agent x="0" y="0" goal="4,0"/></trial>'
+        )
+        page.wait_for_function(f"() => crowdbot.tab('editor').tab.model.state.text.includes('\"{name}\"')")
+        page.get_by_role("button", name="Run", exact=True).focus()
+        page.keyboard.press("Enter")
+        page.wait_for_function("() => crowdbot.keys.active === 'simulator'")
+        page.wait_for_function(f"() => {status}?.trial === '{name}' && {status}.time > 0")
+        page.keyboard.press("Space")  # the picture has the focus
+        page.wait_for_function(f"() => {status}.trial === '{name}' && ['paused', 'ended'].includes({status}.state)")
+        page.get_by_role("tab", name="Editor").click()
+    assert len(list(app.folder.glob("*.xml"))) == 1

@@ -3,6 +3,7 @@
 import pytest
 
 TAB = "#tab=evaluation"
+STATUS = "crowdbot.tab('simulator').status"
 
 
 @pytest.fixture
@@ -23,8 +24,14 @@ def test_navigators_are_compared_and_a_run_is_chosen(results, app):
     assert rows.count() == 3
     page.get_by_role("button", name="2 runs").first.click()
     page.get_by_role("heading", name="frontal, straight").wait_for()
-    page.get_by_role("button", name="Watch seed 1").click()
-    page.wait_for_function("() => crowdbot.keys.active === 'simulator'")
+    for seed in (1, 0):  # also right after the run of another one
+        page.get_by_role("button", name=f"Watch seed {seed}").focus()
+        page.keyboard.press("Enter")
+        page.wait_for_function("() => crowdbot.keys.active === 'simulator'")
+        page.wait_for_function(f"() => {STATUS}.name === 'evaluations/first/row-1-seed-{seed}.mcap'")
+        page.wait_for_function(f"() => {STATUS}.time > 0 && {STATUS}.trial === 'frontal' && {STATUS}.seed === {seed}")
+        assert page.evaluate(f"{STATUS}.time > {STATUS}.duration - 6")
+        page.get_by_role("tab", name="Evaluation").click()
     assert (app.folder / "evaluations/first/row-1.xml").is_file()
     assert (app.folder / "evaluations/first/report.html").is_file()
 

@@ -244,6 +244,7 @@ def test_results_can_be_saved_as_tables(desk):
     same = pd.read_parquet(io.BytesIO(desk.desk.resource("frames.parquet", {}).data))
     assert frames.frame.tolist() == same.frame.tolist() == desk.desk.greet()["recording"]["frames"]
     people = pd.read_csv(io.BytesIO(desk.desk.resource("people.csv", {}).data))
+    assert len(pd.read_parquet(io.BytesIO(desk.desk.resource("people.parquet", {}).data))) == len(people)
     score = desk.desk.greet()["predictors"][0]["results"]["clean"]["score"]
     assert (len(people), people.ade.mean()) == (score["persons"], pytest.approx(score["ade"]))
     gif = desk.desk.resource("animation.gif", {"index": "2"})

@@ -50,6 +50,14 @@ def run(page, rows):
     page.get_by_role("button", name="Run", exact=True).click()
     expect(page.locator(".metrics tbody tr")).to_have_count(rows, timeout=LONG)
     expect(page.get_by_role("button", name="Cancel")).to_be_disabled(timeout=LONG)
+    assert overhang(page) <= 0
+
+
+def overhang(page):
+    """Pixels of the table of metrics that are seen only after scrolling sideways."""
+    return page.evaluate(
+        "(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)(document.querySelector('.table-place'))"
+    )
 
 
 def test_a_first_prediction_by_mouse(tab, app, axe, capsys):
@@ -117,6 +125,8 @@ def test_degraded_input_shows_its_difference(tab):
     expect(page.get_by_role("region", name="Predictors")).to_contain_text("gaussian-noise(sd=0.1 m)")
     run(page, 2)
     row = page.locator(".metrics tr[data-input=degraded]")
+    expect(row).to_have_count(1)
+    assert overhang(page) <= 0
     assert float(row.locator("td").last.inner_text()) > 0.1
     page.get_by_role("combobox", name="Input that is drawn").select_option("degraded")
     page.get_by_role("combobox", name="Export or copy").select_option("Copy as command line")

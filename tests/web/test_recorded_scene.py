@@ -1,13 +1,32 @@
 """The picture of an episode from its records equals that of its simulation, and needs no simulation."""
 
+import base64
+import dataclasses
+import gzip
+import json
+import re
+import struct
+
 import numpy as np
 import pytest
 from simulator_session import ready, simulator, wait_until
 
 from crowdbot.core import EpisodeError
-from crowdbot.recording import RecordedSimulation, read_episode, record
+from crowdbot.recording import RecordedSimulation, open_run, read_episode, record
+from crowdbot.simulation import PushOrder
 from crowdbot.trials import load_trial, parse_trial
-from crowdbot.web.scene import LAYERS, RecordedScene, WalkingBodies, instant_frame, scene_frame, simulation_reason
+from crowdbot.web.scene import (
+    LAYERS,
+    RecordedScene,
+    WalkingBodies,
+    episode_events,
+    instant_frame,
+    scene_frame,
+    simulation_reason,
+    write_player,
+)
+from crowdbot.web.simulator.inspection import inspect_agent
+from crowdbot.web.state_frame import StateFrame
 
 HALL = """
 <trial name="hall" duration="2" world="physics">
@@ -163,3 +182,94 @@ def test_doors_are_simulated(tmp_path):
         desk.seek(0.4)
         assert desk.session.frames[-1].arrays["doors"].shape == (1,)
         assert desk._player._run is not None
+
+
+PUSHED = """
+<trial name="pushed" duration="3" world="physics" balance="true" step="0.05"><stage/><crowd type="orca"/>
+  <agent x="0" y="0" body="woman-72" speed="0.001"/><agent x="0" y="4" body="man-24" speed="0.001"/></trial>
+"""
+RAMP = """
+<trial name="ramp" duration="10" world="physics"><stage walkable="-2,-2 8,-2 8,2 -2,2">
+  <ramp x="2" y="0" length="3" width="3" height="0.24"/><platform x="5" y="0" length="3" width="3" height="0.24"/>
+  </stage><crowd type="orca"/><agent x="5" y="1" body="man-24" speed="0.001"/>
+  <robot name="bot" type="turtlebot2" x="-1" y="0" default-sensors="false"><goal x="6" y="0"/>
+  <navigator type="straight"/></robot></trial>
+"""
+
+
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory):
+    """An episode in which one of two people is pushed and falls."""
+    folder = tmp_path_factory.mktemp("pushed")
+    with open_run(parse_trial(PUSHED), out=folder) as running:
+        while running.outcome is None:
+            running.step([PushOrder(person=0, force=900, duration=0.25)] if running.simulation.tick == 4 else [])
+    return folder / "episode.mcap"
+
+
+def test_who_has_fallen_lies_as_in_the_simulation(pushed):
+    with RecordedSimulation(pushed) as recorded:
+        episode, simulation = read_episode(pushed), recorded.trial_simulation()
+        assert simulation_reason(simulation, episode, recorded.changes()) == ""
+        scene = RecordedScene(simulation, episode)
+        for seconds, lies in ((2.5, True), (0.1, False), (2.9, True)):
+            found = instant_frame(scene.at(seconds)).arrays
+            expected = scene_frame(recorded.at(seconds)).arrays
+            assert np.abs(found["pelvis"] - expected["pelvis"]).max() < 0.02
+            assert bool(found["pelvis"][0, 2] < 0.5) == lies
+            assert found["pelvis"][1, 2] > 0.8
+            if lies:
+                assert np.abs(found["bones"][0].astype(int) - expected["bones"][0]).max() <= 2
+        heights = [instant_frame(scene.at(0.2 + 0.02 * k)).arrays["pelvis"][0, 2] for k in range(80)]
+        assert np.abs(np.diff(heights)).max() < 0.17  # no jump between two records: the body falls by 0.7 m
+
+
+def test_the_inspector_tells_the_balance(pushed):
+    with RecordedSimulation(pushed) as recorded:
+        for seconds, person, word in ((0.1, 0, "upright"), (2.5, 0, "falls, lies or gets up"), (2.5, 1, "upright")):
+            assert ["balance", word, ""] in inspect_agent(recorded.at(seconds), person)["rows"]
+
+
+def test_falls_and_pushes_are_events(pushed):
+    events = episode_events(read_episode(pushed))
+    assert [one.kind for one in events] == ["push", "fall"]
+    assert events[0] == (0.2, "push", "person 0 is pushed with 900 N for 0.25 s")
+    assert events[1].about == "person 0 falls forward"
+    assert 0.25 < events[1].time < 1.0
+
+
+def test_a_recording_without_poses_of_falls_is_shown_upright(pushed):
+    with RecordedSimulation(pushed) as recorded:
+        episode = dataclasses.replace(read_episode(pushed), fall_poses=())
+        scene = RecordedScene(recorded.trial_simulation(), episode)
+        assert instant_frame(scene.at(2.5)).arrays["pelvis"][0, 2] > 0.8
+
+
+def test_a_player_file_shows_who_has_fallen(pushed, tmp_path):
+    text = write_player(pushed, tmp_path / "pushed.html").path.read_text(encoding="utf-8")
+    packed = re.search(r'<script id="episode"[^>]*>([^<]*)</script>', text).group(1)
+    data = gzip.decompress(base64.b64decode(packed))
+    (size,) = struct.unpack_from("<I", data)
+    at, heights = 4 + size, []
+    for name, length in json.loads(data[4:at]):
+        if name == "frame":
+            heights.append(StateFrame.decode(data[at : at + length]).arrays["pelvis"][0, 2])
+        at += length
+    assert heights[0] > 0.8
+    assert heights[-1] < 0.5
+
+
+def test_a_robot_on_a_ramp_is_tilted_without_a_simulation(tmp_path):
+    record(parse_trial(RAMP), 0, tmp_path / "ramp.mcap")
+    with RecordedSimulation(tmp_path / "ramp.mcap") as recorded:
+        episode, simulation = read_episode(tmp_path / "ramp.mcap"), recorded.trial_simulation()
+        assert simulation_reason(simulation, episode, recorded.changes()) == ""
+        scene = RecordedScene(simulation, episode)
+        for seconds in (0.5, 4.0, 9.0):
+            found, expected = (
+                instant_frame(scene.at(seconds)).arrays,
+                scene_frame(recorded.at(seconds)).arrays,
+            )
+            assert np.abs(found["links"] - expected["links"]).max() < 1e-4
+            assert np.abs(found["pelvis"] - expected["pelvis"]).max() < 0.02
+        assert np.ptp([scene.episode.tilts[:, 0, 2]]) > 0.07

@@ -1,11 +1,14 @@
 """The simulator desk: runs equal those of the command line, every change is an order that replays, episodes play."""
 
+import json
+import shlex
 import time
 
 import numpy as np
 import pytest
 from simulator_session import ended, ready, simulator, wait_until
 
+from crowdbot.cli import main
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import branch, read_episode, record, replay
 from crowdbot.trials import load_trial
@@ -224,17 +227,66 @@ def test_a_window_that_is_busy_costs_nothing_and_sees_the_end_of_a_pause(tmp_pat
 
 def test_open_names_a_file_or_a_builtin_trial(tmp_path):
     (tmp_path / "one.xml").write_text("<trial/>")
-    desks, readable = opened_first(DESKS, str(tmp_path / "one.xml"))
+    desks, readable, tab = opened_first(DESKS, str(tmp_path / "one.xml"))
     assert desks[0].first == str(tmp_path / "one.xml")
     assert readable == (tmp_path,)
+    assert tab == ""
     with pytest.raises(InputError, match="did you mean 'frontal'"):
         opened_first(DESKS, "fronta")
     with pytest.raises(InputError, match="does not exist"):
         opened_first(DESKS, "none.mcap")
+    (tmp_path / "two.csv").write_text("0 1 0.0 0.0\n10 1 0.5 0.0\n")
+    found = opened_first(DESKS, str(tmp_path / "two.csv"))
+    assert found.tab == "prediction"
+    assert [one.first for one in found.desks if one.name == "prediction"] == [str(tmp_path / "two.csv")]
+    (tmp_path / "words.txt").write_text("no tracks")
+    with pytest.raises(InputError, match=r"words\.txt: neither a trial .* nor a recording of people"):
+        opened_first(DESKS, str(tmp_path / "words.txt"))
+    (tmp_path / "result.json").write_text("{}")
+    assert opened_first(DESKS, str(tmp_path)).tab == "evaluation"
 
 
-def test_thumbnails_are_pictures_of_the_builtin_trials(tmp_path):
+def test_the_copied_command_and_program_give_the_same_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with simulator(tmp_path / "files") as desk:
+        opened(desk, seed=3, settings={"duration": "2", "robot/drive/max-speed": "0.5"})
+        command, program = desk.command_line(), desk.python()
+        assert command == f"crowdbot run {TRIAL} --seed 3 --set duration=2 --set robot/drive/max-speed=0.5"
+        desk.speed(None)
+        desk.play()
+        ended(desk)
+        digest = read_episode(desk.session.workspace.folder / desk.save("own.mcap")).digest
+        desk.restart()
+        ready(desk)
+        desk.pause()
+        desk.order({"order": "add-person", "x": 0.0, "y": 6.0, "goal_x": 0.0, "goal_y": -6.0})
+        wait_until(lambda: desk._player.given == 1)
+        note = "# without 1 order: save the run and use crowdbot replay for the same run"
+        assert desk.command_line() == f"{note}\n{command}"
+        desk.open_episode("own.mcap")
+        ready(desk)
+        replay, again = desk.command_line(), desk.python()
+    assert main([*shlex.split(command)[1:], "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["digest"] == digest
+    exec(program, {})
+    assert capsys.readouterr().out.split()[1] == digest
+    assert replay == "crowdbot replay files/own.mcap"
+    assert main(shlex.split(replay)[1:]) == 0
+    capsys.readouterr()
+    exec(again, {})
+    assert capsys.readouterr().out.split()[1:] == [digest, "True"]
+
+
+def test_thumbnails_are_pictures_of_the_trials(tmp_path):
+    for name, crowd in (("own", "orca"), ("code", "mine.py:Mine")):
+        agent = '<agent x="0" y="0" goal="3,0"/>'
+        text = f'<trial name="{name}" duration="5"><crowd type="{crowd}"/>{agent}</trial>'
+        (tmp_path / f"{name}.xml").write_text(text)
+    (tmp_path / "mine.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')")
     with simulator(tmp_path) as desk:
+        assert desk.resource("thumbnail/own.xml.svg", {}).data.count(b"<circle") == 1
+        assert desk.resource("thumbnail/code.xml.svg", {}).data.startswith(b"<svg")
+        assert not (tmp_path / "ran").exists()  # a list runs no code
         found = desk.resource("thumbnail/frontal.svg", {})
         assert found.kind == "image/svg+xml"
         assert found.data.startswith(b"<svg")

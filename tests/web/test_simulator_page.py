@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from crowdbot.recording import read_episode, record, replay
+from crowdbot.simulation import PushOrder
 from crowdbot.trials import load_trial
-from crowdbot.web.simulator.simulator_desk import FIRST
+from crowdbot.web.simulator import FIRST
 
 FRONTEND = Path(__file__).parents[2] / "frontend"
 VIEW = "window.crowdbot._views.get('simulator')"
@@ -72,6 +73,21 @@ def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
     assert page.evaluate(f"{VIEW}.plots.rows.length") > 1
 
 
+def test_a_view_that_is_changed_while_it_loads_is_no_error(page, files):
+    wait(page, f"{VIEW}.picture.scene.info().people > 20 && {VIEW}._listing === null", FIRST_RUN / 1000)
+    wait(page, f"{VIEW}.picture._loading === null")
+    page.evaluate(
+        f"""async () => {{
+          const {{ picture }} = {VIEW}, {{ scene }} = picture, load = scene.load.bind(scene);
+          scene.load = async (description) => {{ await load(description); picture.setView("2d"); }};
+          await picture._load();
+        }}"""
+    )
+    wait(page, f"{VIEW}.picture.view === '2d' && {VIEW}.picture.scene.info().people > 20")
+    assert page.locator(".message.error").count() == 0
+    wait(page, "document.querySelectorAll('[aria-label=\"Choose a person or robot\"] option').length > 20")
+
+
 def test_a_run_is_steered_saved_and_replays(page, files):
     show_from_above(page)
     open_trial(page, "circle-crossing")
@@ -96,6 +112,7 @@ def test_a_run_is_steered_saved_and_replays(page, files):
     page.get_by_label("y [m]", exact=True).fill("3")
     page.get_by_role("button", name="Set goal").click()
     page.get_by_role("cell", name="2.00, 3.00 m").wait_for()
+    page.get_by_label("Force of a push [N]").fill("150")
     page.get_by_role("button", name="Push +x").click()
     wait(page, f"{VIEW}.status.orders === 3")
 
@@ -105,7 +122,9 @@ def test_a_run_is_steered_saved_and_replays(page, files):
     page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="circle-crossing-seed").wait_for()
     saved = next(files.glob("circle-crossing-seed-*.mcap"))
-    assert len(read_episode(saved).orders) == 4
+    orders = [order for _, order in read_episode(saved).orders]
+    assert len(orders) == 4
+    assert PushOrder(person=6, force=150, source="app") in orders
     assert replay(saved).equal
 
 
@@ -113,8 +132,9 @@ def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):
     show_from_above(page)
     open_trial(page, "static-crowd")
     page.get_by_label("Choose a person or robot").focus()
-    wait(page, "[...document.querySelectorAll('option')].some((one) => one.value.startsWith('robot'))")
-    robot = page.evaluate("[...document.querySelectorAll('option')].find((one) => one.value.startsWith('robot')).value")
+    people = page.evaluate("crowdbot.connection.call('simulator.people')")
+    robot = next(f"robot {one['id']}" for one in people if one["kind"] == "robot")
+    wait(page, f"[...document.querySelectorAll('option')].some((one) => one.value === '{robot}')")
     page.get_by_label("Choose a person or robot").select_option(robot)
     page.get_by_role("button", name="Drive").click()
     page.locator(".drive").wait_for()

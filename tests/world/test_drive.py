@@ -186,7 +186,7 @@ def test_the_lateral_acceleration_is_kept_once_it_is_reached(forward, turn, star
         max_speed=2.0, max_turn_rate=3.0, max_acceleration=2.0, max_turn_acceleration=6.0, max_lateral_acceleration=most
     )
     pose, twist = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(start / 3.0, turning / 3.0), 1)
-    for _ in range(round(1.5 / dt)):
+    for _ in range(math.ceil(1.5 / dt) + 1):
         pose, twist = drive.step(pose, twist, Twist(forward, turn), dt)
     assert abs(twist.forward[0] * twist.turn[0]) <= most + 1e-9
     goal = np.clip(forward, -2.0, 2.0)

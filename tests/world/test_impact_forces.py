@@ -11,9 +11,8 @@ from crowdbot.humans import Gait, People, limb_chain, striking_mass
 from crowdbot.simulation import AvatarOrder, RobotPoseOrder, Simulation, SimulationRun, VelocityOrder
 from crowdbot.trials import parse_trial
 from crowdbot.world import two_body_force
+from crowdbot.world.physics.balance.recovery import BRACE, GRIP, REACTION, STEPPING, recovery_force
 from crowdbot.world.physics.body_region_limits import region_of
-from crowdbot.world.physics.limb_poses import guard_limbs
-from crowdbot.world.physics.recovery import BRACE, GRIP, REACTION, STEPPING, recovery_force
 from samples import sample
 
 TRIAL = """<trial name="impact" duration="20" world="physics" physics-step="{step}"><stage/><crowd type="orca"/>
@@ -130,16 +129,6 @@ def test_a_rod_that_hangs_free_has_the_mass_of_mechanics():
         mass[k] = 3.0 if name == "upperarm_l" else 1e-9
     found = striking_mass(start, end, mass, "upperarm_l", 1.0, np.array([1.0, 0.0, 0.0]))
     assert found == pytest.approx(1.0, rel=1e-4)
-
-
-def test_limbs_return_slowly_towards_what_they_touched():
-    moved = np.zeros((2, 17, 6))
-    moved[..., [0, 3]], moved[..., [2, 5]] = 0.0075, 0.004
-    found = guard_limbs(moved, np.array([[1.0, 0.0], [-1.0, 0.0]]), 0.001)
-    np.testing.assert_allclose(found[0, :, [0, 3]], 0.001)
-    np.testing.assert_allclose(found[1], moved[1])
-    np.testing.assert_allclose(found[0, :, [2, 5]], 0.004)
-    np.testing.assert_array_equal(guard_limbs(moved, np.zeros((2, 2)), 0.001), moved)
 
 
 def test_recovery_waits_braces_and_steps():

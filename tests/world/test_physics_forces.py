@@ -18,9 +18,9 @@ from crowdbot.world import (
     region_of,
     two_body_force,
 )
+from crowdbot.world.physics.balance.recovery import REACTION
 from crowdbot.world.physics.body_region_limits import reduced_mass, softness
 from crowdbot.world.physics.people_bodies import GIVEN
-from crowdbot.world.physics.recovery import REACTION
 from crowdbot.world.urdf import Box, LinkShape
 from samples import sample
 

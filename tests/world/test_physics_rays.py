@@ -57,9 +57,9 @@ def test_rays_equal_mujocos_on_people_walls_and_props(world, height):
     slots = np.flatnonzero(world._people_bodies.agent >= 0)
     held = world._people_bodies  # limbs of who was touched lag behind the walk, so the engine gets the walk
     place = scene.position[0, held.agent[slots]]
-    held._late[slots] = False
+    held._fresh[slots], held._late[slots] = True, False
     ends = world.people.ends[world.people.row[held.agent[slots]]]
-    held._pose(slots, ends - np.tile(np.column_stack([place, np.zeros(len(place))]), 2)[:, None])
+    held._move(slots, ends - np.tile(np.column_stack([place, np.zeros(len(place))]), 2)[:, None])
     held.install(world.engine_model)
     for axis in (0, 1):
         world.data.qpos[held._place[slots] + axis] = place[:, axis]

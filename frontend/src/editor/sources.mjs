@@ -1,6 +1,7 @@
 // Dialogs of the editor: open a built-in trial or a file, bring a map or a file in, save.
 import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { field, h } from "../ui/dom.mjs";
+import { upload } from "../ui/upload.mjs";
 import { makeFloorScale } from "./floor_scale.mjs";
 
 /** Shows what a trial may start from. */
@@ -46,7 +47,7 @@ async function useMap(name, model) {
 function floor(app, model, close) {
   const scale = makeFloorScale();
   const use = async () => {
-    const [name] = await upload(scale.picture.files, app);
+    const [name] = await uploadAll(scale.picture.files, app);
     const map = name && (await model.call("floor", { picture: name, resolution: Number(scale.size.value) }));
     if (!map) return;
     close();
@@ -70,23 +71,18 @@ function maps(names, model, close) {
 }
 
 /** Sends files to the folder of the app and returns their names there. */
-async function upload(files, app) {
+async function uploadAll(files, app) {
   const names = [];
   for (const file of files) {
-    const url = `api/${app.connection.session}/upload?${new URLSearchParams({ name: file.name })}`;
-    const done = await attempt(async () => {
-      const answer = await fetch(url, { method: "POST", body: file });
-      if (!answer.ok) throw new Error((await answer.text()).trim());
-      return answer.json();
-    });
-    if (!done) break;
-    names.push(done.name);
+    const name = await attempt(() => upload(app, file));
+    if (!name) break;
+    names.push(name);
   }
   return names;
 }
 
 async function send(files, app, start) {
-  for (const name of await upload(files, app)) {
+  for (const name of await uploadAll(files, app)) {
     say(`${name} is in the folder of the app`);
     if (name.endsWith(".xml")) await start({ file: name });
   }

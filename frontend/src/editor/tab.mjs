@@ -78,7 +78,11 @@ class EditorTab {
       this.toolButtons.set(name, one);
       return one;
     };
-    return h("span", { class: "row", role: "toolbar", "aria-label": "Tools" }, add("select", "Select", "Esc", null), TOOLS.map((one) => add(one.name, one.title, one.key, one)));
+    const rare = TOOLS.filter((one) => one.more);
+    const choose = (event) => this.use(rare.find((one) => one.name === event.target.value) ?? null);
+    this.more = h("select", { "aria-label": "More tools", onchange: choose }, h("option", { value: "" }, "More…"), rare.map((one) => h("option", { value: one.name }, `${one.title} (${one.key})`)));
+    const buttons = TOOLS.filter((one) => !one.more).map((one) => add(one.name, one.title, one.key, one));
+    return h("span", { class: "row", role: "toolbar", "aria-label": "Tools" }, add("select", "Select", "Esc", null), buttons, this.more);
   }
 
   grid() {
@@ -89,6 +93,7 @@ class EditorTab {
   use(tool) {
     this.view.use(tool);
     for (const [name, one] of this.toolButtons) one.setAttribute("aria-pressed", String(name === (tool?.name ?? "select")));
+    this.more.value = tool?.more ? tool.name : "";
     this.tellTool();
   }
 
@@ -154,8 +159,7 @@ class EditorTab {
     const saved = await this.model.call("save", { file: name });
     if (!saved) return;
     this.model.take(saved);
-    this.app.select("simulator");
-    document.dispatchEvent(new CustomEvent("open-trial", { detail: { file: saved.file } }));
+    await this.app.openInSimulator({ file: saved.file });
   }
 
   askConflict() {

@@ -15,6 +15,34 @@ const freeName = (tree, tag, base) => {
   return `${base}${i}`;
 };
 
+const angle = ([a, b]) => plain(Math.atan2(b[1] - a[1], b[0] - a[0]));
+const middle = ([a, b]) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+const length = ([a, b]) => plain(Math.max(0.1, Math.hypot(b[0] - a[0], b[1] - a[1])));
+
+/** Tools that are needed less often; they are in a list beside the buttons. */
+const MORE = [
+  { name: "ramp", title: "Ramp", key: "1", more: true, mode: "arrow", into: "stage", xml: (p) => `<ramp ${xy(middle(p))} heading="${angle(p)}" length="${length(p)}" height="0.3"/>` },
+  { name: "stairs", title: "Stairs", key: "2", more: true, mode: "arrow", into: "stage", xml: (p) => `<stairs ${xy(middle(p))} heading="${angle(p)}" steps="${Math.max(1, Math.round(length(p) / 0.29))}"/>` },
+  {
+    name: "platform",
+    title: "Platform",
+    key: "3",
+    more: true,
+    mode: "area",
+    into: "stage",
+    xml: ([a, b, c]) => `<platform ${xy(middle([a, c]))} length="${plain(b[0] - a[0])}" width="${plain(c[1] - b[1])}"/>`,
+  },
+  { name: "threshold", title: "Threshold", key: "4", more: true, mode: "arrow", into: "stage", xml: (p) => `<threshold ${xy(middle(p))} heading="${plain(Math.atan2(p[1][1] - p[0][1], p[1][0] - p[0][0]) - Math.PI / 2)}" width="${length(p)}"/>` },
+  {
+    name: "avatar",
+    title: "Avatar",
+    key: "5",
+    more: true,
+    mode: "arrow",
+    xml: (p, tree) => `<avatar name="${freeName(tree, "avatar", "you")}" source="external" ${xy(p[0])} heading="${angle(p)}"/>`,
+  },
+];
+
 /**
  * Each tool: name, title, key, mode ("line": corners one by one, "area": two opposite corners, "two-areas": two areas,
  * "point", "arrow": two points), into: the parent ("stage" or the trial), and xml(points, tree).
@@ -56,6 +84,7 @@ export const TOOLS = [
     mode: "arrow",
     xml: ([a, b], tree) => `<camera name="${freeName(tree, "camera", "camera")}" ${xy(a)} heading="${plain(Math.atan2(b[1] - a[1], b[0] - a[0]))}"/>`,
   },
+  ...MORE,
 ];
 
 const stageOf = (tree) => tree.children.find((one) => one.tag === "stage");

@@ -248,12 +248,13 @@ export class EditorView {
     const ratio = window.devicePixelRatio || 1;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
-    this.drawGrid(context);
+    const step = this.drawGrid(context);
     for (const ring of this.model.state?.rings ?? []) this.line(context, ring, true, STYLES.solid);
     for (const shape of this.shapes) this.drawShape(context, shape);
     drawWays(context, this.ways, { pixel: (one) => this.pixel(one), colour: this.colour, chosen: this.model.chosen });
     this.drawPeople(context);
     this.drawPoints(context);
+    this.drawScale(context, step);
     if (!this.shapes.length && !this.points.length) this.drawHint(context);
     if (this.drag?.kind === "band") this.line(context, rectangle(this.drag.from, this.drag.at), true, { stroke: "--focus", dash: [4, 3] });
   }
@@ -280,6 +281,22 @@ export class EditorView {
     for (let y = this.origin[1] % (step * this.scale); y < h; y += step * this.scale) context.rect(0, y, w, 0);
     context.stroke();
     context.globalAlpha = 1;
+    return step;
+  }
+
+  /** Shows the length of a cell of the grid. */
+  drawScale(context, step) {
+    const [x, y, size] = [14, this.canvas.clientHeight - 14, step * this.scale];
+    context.strokeStyle = context.fillStyle = this.colour("--ink");
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(x, y - 5);
+    context.lineTo(x, y);
+    context.lineTo(x + size, y);
+    context.lineTo(x + size, y - 5);
+    context.stroke();
+    context.font = "12px system-ui, sans-serif";
+    context.fillText(`${step} m`, x + size + 6, y + 1);
   }
 
   drawShape(context, shape) {

@@ -1,6 +1,8 @@
 // Evaluation tab: compare navigators, see the table, watch a run.
+import { copyText } from "../ui/copy.mjs";
 import { attempt } from "../ui/dialog.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
+import { upload } from "../ui/upload.mjs";
 import { makeStrips } from "./strips.mjs";
 
 const GOOD = new Set(["success"]);
@@ -39,6 +41,7 @@ class EvaluationTab {
     this.bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Progress of the evaluation" });
     this.note = h("p", { class: "note", "aria-live": "polite" });
     this.list = h("ul", { class: "sources" });
+    this.file = h("input", { type: "file", accept: ".json", onchange: () => this.add(this.file.files[0]) });
     const start = (event) => {
       event.preventDefault();
       this.start();
@@ -62,7 +65,21 @@ class EvaluationTab {
       this.note,
       h("h2", {}, "Evaluations"),
       this.list,
+      field("Open the result.json of crowdbot evaluate", this.file),
     );
+  }
+
+  /** Opens a result of the command line. */
+  async add(file) {
+    const name = file && (await attempt(async () => this.app.connection.call("evaluation.add", { file: await upload(this.app, file) })));
+    this.file.value = "";
+    if (name) await this.open(name);
+  }
+
+  /** Opens the result that the server was started with. */
+  async openFirst(file) {
+    const name = await this.call("add", { file });
+    if (name) await this.open(name, true);
   }
 
   async greet(state) {
@@ -73,6 +90,7 @@ class EvaluationTab {
     const names = [...sources.files, ...sources.trials.map((one) => one.name)];
     const shown = this.app.address.get("evaluation");
     if (!this.table && shown && state.evaluations.some((one) => one.name === shown && one.done)) await this.open(shown, true);
+    else if (!this.table && !shown && state.first) await this.openFirst(state.first);
     fill(this.trials, names.map((one) => h("option", { selected: chosen.size ? chosen.has(one) : one === "frontal" }, one)));
     this.trials.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
     this.known.textContent = `With parameters, such as "orca safety=0.2". Built-in: ${sources.navigators.join(", ")}`;
@@ -129,25 +147,31 @@ class EvaluationTab {
     const choice = h(
       "select",
       { onchange: () => ((this.statistic = Number(choice.value)), this.show()) },
-      table.statistics.map((one, i) => h("option", { value: i, selected: i === this.statistic }, one)),
+      table.titles.map((one, i) => h("option", { value: i, selected: i === this.statistic }, one)),
     );
     const report = this.app.connection.address("evaluation", `${table.name}/report.html`);
     fill(
       this.main,
       h("h2", {}, table.name),
       h("p", { class: "note" }, h("code", {}, table.command)),
+      h(
+        "div",
+        { class: "row" },
+        h("button", { type: "button", onclick: () => copyText(table.command, "Copy as command line") }, "Copy as command line"),
+        table.python ? h("button", { type: "button", onclick: () => copyText(table.python, "Copy as Python") }, "Copy as Python") : null,
+      ),
       this.rows(),
       h("ul", { class: "comparisons" }, table.comparisons.map((one) => h("li", {}, one))),
       h("div", { class: "row" }, field("Picture of each run by", choice), table.report ? h("a", { href: report, target: "_blank", rel: "noopener" }, "Report") : null),
-      makeStrips(table.cells, this.statistic, table.statistics[this.statistic], (cell, seed) => this.watch(cell, seed)),
-      h("p", { class: "note" }, "Circle: success. Cross: collision or error. Square: timeout. Choose a mark to watch the run."),
+      makeStrips(table.cells, this.statistic, table.titles[this.statistic], (cell, seed) => this.watch(cell, seed)),
+      h("p", { class: "note" }, "Circle: success. Cross: collision, fall or error. Square: timeout. Choose a mark to watch the run."),
       this.runs(),
     );
   }
 
   rows() {
-    const { cells, statistics } = this.table;
-    const head = ["Trial", "Navigator", "Robot", "Visible", "Senses", ...statistics, "Runs"];
+    const { cells, statistics, titles } = this.table;
+    const head = ["Trial", "Navigator", "Robot", "Visible", "Senses", ...titles, "Runs"];
     const row = (cell) =>
       h(
         "tr",
@@ -172,7 +196,7 @@ class EvaluationTab {
     const failures = cell.runs.filter((run) => !GOOD.has(run.outcome));
     const shown = this.onlyFailures && failures.length ? failures : cell.runs;
     const toggle = h("input", { type: "checkbox", checked: this.onlyFailures, onchange: () => ((this.onlyFailures = toggle.checked), this.show()) });
-    const head = ["Seed", "Outcome", ...this.table.statistics, "Message", ""];
+    const head = ["Seed", "Outcome", ...this.table.titles, "Message", ""];
     const row = (run) =>
       h(
         "tr",
@@ -193,10 +217,13 @@ class EvaluationTab {
   }
 
   async watch(cell, seed) {
+    if (this.watching) return;
+    this.watching = true;
+    this.note.textContent = `Recording the run with seed ${seed}`;
     const found = await this.call("watch", { name: this.table.name, cell, seed });
-    if (!found) return;
-    this.app.select("simulator");
-    document.dispatchEvent(new CustomEvent("open-trial", { detail: found }));
+    this.watching = false;
+    this.note.textContent = this.state.running ? `${this.state.running} is running` : "";
+    if (found) await this.app.openInSimulator({ file: found.episode, at: found.at });
   }
 }
 

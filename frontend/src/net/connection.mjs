@@ -12,12 +12,16 @@ export class Connection extends EventTarget {
     super();
     this._name = socket;
     this.session = session;
-    this.open = false;
     this._calls = new Map();
     this._frames = new Map();
     this._number = 0;
     this._failures = 0;
     this._connect();
+  }
+
+  /** Whether a command reaches the server; a socket that is closing takes none, although "lost" comes later. */
+  get open() {
+    return this._socket.readyState === WebSocket.OPEN;
   }
 
   /** Calls a command such as "simulator.open" and returns its result; rejects with the sentence of the server. */
@@ -54,7 +58,6 @@ export class Connection extends EventTarget {
     const socket = new WebSocket(url);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
-      this.open = true;
       this._failures = 0;
       this._emit("connected");
     };
@@ -69,9 +72,7 @@ export class Connection extends EventTarget {
       try {
         await this._frames.get(frame.channel)?.(frame);
       } finally {
-        if (this._socket.readyState === WebSocket.OPEN) {
-          this._socket.send(JSON.stringify({ drawn: frame.sequence }));
-        }
+        if (this.open) this._socket.send(JSON.stringify({ drawn: frame.sequence }));
       }
       return;
     }
@@ -84,7 +85,6 @@ export class Connection extends EventTarget {
   }
 
   _lost() {
-    this.open = false;
     for (const { reject } of this._calls.values()) reject(new Error("the connection to the server was lost"));
     this._calls.clear();
     this._emit("lost");

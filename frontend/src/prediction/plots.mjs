@@ -13,7 +13,7 @@ const PAUSE = 400; // between two updates while a run goes on [ms]
 
 export function makePlots(store) {
   const place = h("div", {});
-  const shown = FIRST.map((one) => ({ ...one }));
+  const shown = [...FIRST, ...linked(store)].map((one) => ({ ...one }));
   const horizon = { key: "", plot: null };
   let timer = null;
 
@@ -67,8 +67,13 @@ export function makePlots(store) {
     shown.splice(shown.indexOf(one), 1);
     one.plot?.destroy();
     one.box?.remove();
+    remember();
   }
 
+  const remember = () => {
+    const own = shown.slice(FIRST.length).map(({ variable, person }) => (person === null ? variable : `${variable}@${person}`));
+    store.app.remember({ curves: own.join(",") || null });
+  };
   const later = () => {
     timer ??= setTimeout(update, PAUSE);
   };
@@ -78,10 +83,20 @@ export function makePlots(store) {
   });
   store.on("plot", (one) => {
     shown.push({ ...one });
+    remember();
     later();
   });
   const add = h("button", { type: "button", onclick: () => openVariables(store) }, "Add plot…");
   return h("section", { "aria-label": "Plots" }, h("div", { class: "heading" }, h("h2", {}, "Plots"), add), place);
+}
+
+/** The plots that the address names. */
+function linked(store) {
+  const found = (store.app.address.get("curves") ?? "").split(",").filter(Boolean);
+  return found.map((one) => {
+    const [variable, person] = one.split("@");
+    return { variable, person: /^\d+$/.test(person ?? "") ? Number(person) : null };
+  });
 }
 
 async function openVariables(store) {

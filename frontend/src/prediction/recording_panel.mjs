@@ -1,7 +1,8 @@
 // Opens recordings: files of the session, dropped files, examples; shows and corrects format, time base and units.
-import { openDialog, say } from "../ui/dialog.mjs";
+import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
+import { upload } from "../ui/upload.mjs";
 
 export function makeRecordingPanel(store, root) {
   const facts = h("div", {}, h("p", {}, "No recording is open."));
@@ -50,7 +51,7 @@ export async function openRecording(store) {
   const entry = (text, note, action) => h("li", {}, h("button", { type: "button", onclick: take(action) }, text), h("small", {}, note));
   const files = found.files.map((one) => entry(one.name, `${bytes(one.bytes)}, ${new Date(one.changed * 1000).toLocaleString()}`, () => store.call("open", { file: one.name })));
   const examples = found.examples.map((one) => entry(one.name, one.about, () => store.call("example", { name: one.name })));
-  input.addEventListener("change", take(() => upload(store, input.files[0])));
+  input.addEventListener("change", take(() => openFile(store, input.files[0])));
   const dialog = openDialog(
     "Open a recording",
     [
@@ -68,15 +69,9 @@ export async function openRecording(store) {
 const bytes = (count) => (count < 1e6 ? `${Math.ceil(count / 1e3)} kB` : `${(count / 1e6).toFixed(1)} MB`);
 
 /** Sends a file to the folder of the session; returns its name, or undefined after a message. */
-export async function send(store, file) {
-  const address = `api/${store.app.connection.session}/upload?${new URLSearchParams({ name: file.name })}`;
-  const answer = await fetch(address, { method: "POST", body: file }).catch((error) => ({ ok: false, text: () => error.message }));
-  if (answer.ok) return (await answer.json()).name;
-  say(`${file.name}: ${(await answer.text()).trim()}`, "error");
-  return undefined;
-}
+const send = (store, file) => attempt(() => upload(store.app, file));
 
-async function upload(store, file) {
+async function openFile(store, file) {
   const name = file && (await send(store, file));
   return name && store.call("open", { file: name });
 }
@@ -91,7 +86,7 @@ function listenForDrops(store, root) {
     event.preventDefault();
     root.classList.remove("dropping");
     const [file] = event.dataTransfer.files;
-    if (file) upload(store, file);
+    if (file) openFile(store, file);
   });
 }
 

@@ -3,6 +3,9 @@ import { decodeFrame } from "../net/state_frame.mjs";
 import { attempt } from "../ui/dialog.mjs";
 
 const NUMBERS = { frame: "index", person: "person" };
+const LAYERS = { walls: true, background: true, observed: true, truth: true, predicted: true, ids: false, density: false, seen: true };
+
+const words = (text) => (text ?? "").split(",").filter(Boolean);
 
 export class Store extends EventTarget {
   constructor(app) {
@@ -13,9 +16,10 @@ export class Store extends EventTarget {
     this.index = 0;
     this.person = null;
     this.frame = null;
-    this.hidden = new Set();
-    this.layers = { walls: true, background: true, observed: true, truth: true, predicted: true, ids: false, density: false, seen: true };
-    this.input = "clean";
+    this.hidden = new Set(words(app.address.get("hidden")));
+    this.layers = { ...LAYERS };
+    for (const name of words(app.address.get("layers"))) if (name in LAYERS) this.layers[name] = !LAYERS[name];
+    this.input = app.address.get("input") === "degraded" ? "degraded" : "clean";
     this._loading = null;
     for (const [word, name] of Object.entries(NUMBERS)) {
       const text = app.address.get(word);
@@ -38,7 +42,7 @@ export class Store extends EventTarget {
     this.board = board;
     const now = board.recording;
     const other = before?.file !== now?.file || JSON.stringify(before?.options) !== JSON.stringify(now?.options);
-    if (!board.degradation) this.input = "clean";
+    if (now && !board.degradation) this.input = "clean";
     if (now) this.index = Math.min(this.index, now.windows - 1);
     if (other && before) {
       this.index = 0;
@@ -66,11 +70,14 @@ export class Store extends EventTarget {
 
   show(layer, visible) {
     this.layers[layer] = visible;
+    const changed = Object.keys(LAYERS).filter((name) => this.layers[name] !== LAYERS[name]);
+    this.app.remember({ layers: changed.join(",") || null });
     this.emit("view");
   }
 
   setInput(input) {
     this.input = input;
+    this.app.remember({ input: input === "degraded" ? input : null });
     this.load();
     this.emit("view");
   }
@@ -78,6 +85,7 @@ export class Store extends EventTarget {
   hide(key, hidden) {
     if (hidden) this.hidden.add(key);
     else this.hidden.delete(key);
+    this.app.remember({ hidden: [...this.hidden].join(",") || null });
     this.load();
   }
 

@@ -2,6 +2,7 @@
 import { copyText } from "../ui/copy.mjs";
 import { h } from "../ui/dom.mjs";
 import { say } from "../ui/dialog.mjs";
+import { save } from "../ui/save.mjs";
 
 const LAYERS = [
   ["observed", "Observed"],
@@ -52,6 +53,7 @@ function actions(store, scene) {
     ["frames.csv", "Results by frame as CSV", () => fetchFile(store, "frames.csv")],
     ["people.csv", "Results by person as CSV", () => fetchFile(store, "people.csv")],
     ["frames.parquet", "Results by frame as Parquet", () => fetchFile(store, "frames.parquet")],
+    ["people.parquet", "Results by person as Parquet", () => fetchFile(store, "people.parquet")],
   ];
 }
 
@@ -67,11 +69,4 @@ async function fetchFile(store, path, query = {}) {
   if (!answer.ok) return say((await answer.text()).trim(), "error");
   const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition") ?? "")?.[1] ?? path;
   return save(await answer.blob(), name);
-}
-
-/** Saves a blob as a file of the browser. */
-function save(blob, name) {
-  const link = h("a", { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

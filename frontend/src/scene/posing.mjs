@@ -40,6 +40,14 @@ export function poseBones({ count, who, pelvis, bones, body, scale, heads, paren
   }
 }
 
+/** Where the trunk of person i points in the plan, x and y; its length is 0 upright and 1 lying. */
+export function leanOf(bones, i) {
+  const at = 4 * BONES * i;
+  const [w, x, y, z] = [bones[at], bones[at + 1], bones[at + 2], bones[at + 3]];
+  const unit = 2 / (w * w + x * x + y * y + z * z);
+  return [unit * (x * z + w * y), unit * (y * z - w * x)];
+}
+
 const turned = new Float64Array(3);
 
 /** Writes the vector a, b, c turned by the quaternion x, y, z, w into `turned`. */

@@ -1,12 +1,16 @@
 // People, robots and overlays of a scene seen from above.
+import { leanOf } from "../scene/posing.mjs";
 import { drawCollisions, drawDensity, drawPaths } from "./crowd_layers.mjs";
 import { trace } from "./plan.mjs";
 
 const FORCE = 0.004;
+/** Sine of the tilt from which a person is drawn lying, and parts of the stature: head, shoulders, feet, half width. */
+const LYING = 0.5;
+const BODY = { head: 0.4, shoulders: 0.2, feet: -0.5, width: 0.1 };
 
 /** Shoulders and head in the colours of clothes and hair, on the disc of the person; a line is the velocity. */
 export function drawPeople(context, state, look, pixel, mark) {
-  const { who, ids, place } = state.frame.arrays;
+  const { who, ids, place, bones } = state.frame.arrays;
   const { people, regions } = state.description;
   const [top, hair] = [regions.indexOf("top"), regions.indexOf("hair")];
   for (let i = 0; i < state.people; i++) {
@@ -14,6 +18,13 @@ export function drawPeople(context, state, look, pixel, mark) {
     const rider = people.rider[who[i]];
     const radius = rider ? 0.24 : people.radius[who[i]];
     const colors = people.colors[who[i]];
+    const [leanX, leanY] = leanOf(bones, i);
+    if (Math.hypot(leanX, leanY) > LYING) {
+      const [clothes, head] = [top, hair].map((k) => `#${colors.slice(6 * k, 6 * k + 6)}`);
+      drawLying(context, { x, y, leanX, leanY, height: people.height[who[i]], clothes, head }, look, pixel);
+      if (mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
+      continue;
+    }
     context.beginPath();
     context.arc(x, y, radius, 0, 2 * Math.PI);
     context.fillStyle = look.ink;
@@ -40,6 +51,33 @@ export function drawPeople(context, state, look, pixel, mark) {
     line(context, x, y, x + 0.6 * vx, y + 0.6 * vy, look.ink, 1.5 * pixel);
     if (!rider && mark?.kind === "person" && mark.id === ids[i]) ring(context, x, y, radius + 0.14, look.mark, 3 * pixel);
   }
+}
+
+/** A body on the floor, or on the way to it, seen from above: legs, shoulders and head along the trunk. */
+function drawLying(context, { x, y, leanX, leanY, height, clothes, head }, look, pixel) {
+  const length = height * Math.hypot(leanX, leanY);
+  const half = BODY.width * height;
+  context.save();
+  context.translate(x, y);
+  context.rotate(Math.atan2(leanY, leanX));
+  context.strokeStyle = look.ink;
+  context.lineWidth = pixel;
+  context.fillStyle = look.wallTop;
+  context.beginPath();
+  context.roundRect(BODY.feet * length, -0.8 * half, (BODY.shoulders - BODY.feet) * length, 1.6 * half, 0.6 * half);
+  context.fill();
+  context.stroke();
+  context.fillStyle = clothes;
+  context.beginPath();
+  context.ellipse(0.5 * BODY.shoulders * length, 0, 0.9 * BODY.shoulders * length, 1.3 * half, 0, 0, 2 * Math.PI);
+  context.fill();
+  context.stroke();
+  context.fillStyle = head;
+  context.beginPath();
+  context.arc(BODY.head * length, 0, 0.6 * half, 0, 2 * Math.PI);
+  context.fill();
+  context.stroke();
+  context.restore();
 }
 
 /** Footprint with an arrow ahead. */

@@ -90,6 +90,16 @@ export class Scene2D {
     this._view.fit(this.state.description.bounds);
   }
 
+  /** Middle x, y [m] and scale [pixel/m] of the view, for setViewpoint(). */
+  viewpoint() {
+    return [this._view.x, this._view.y, this._view.scale];
+  }
+
+  /** Shows a viewpoint(); other numbers are ignored. */
+  setViewpoint(numbers) {
+    if (numbers.length === 3 && numbers[2] > 0) [this._view.x, this._view.y, this._view.scale] = numbers;
+  }
+
   /** Person or robot at a point of the canvas [CSS pixels], or null. */
   pick(px, py) {
     if (!this.state.frame) return null;

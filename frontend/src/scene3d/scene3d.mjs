@@ -118,6 +118,16 @@ export class Scene3D {
     this._views.overview(this.state.description);
   }
 
+  /** Where the camera is, as numbers for setViewpoint(). */
+  viewpoint() {
+    return this._views.viewpoint();
+  }
+
+  /** Moves the camera to a viewpoint() of the same camera. */
+  setViewpoint(numbers) {
+    this._views.setViewpoint(numbers);
+  }
+
   /** Person or robot at a point of the canvas [CSS pixels], or null. */
   pick(x, y) {
     if (!this.state.frame) return null;

@@ -113,6 +113,26 @@ export class Views {
     this.controls.update();
   }
 
+  /** In the first person how the head is turned; beside somebody the way from the target to the camera; else also the target. */
+  viewpoint() {
+    if (this.firstPerson) return [...this._gaze];
+    const { target } = this.controls;
+    const way = this.camera.position.clone().sub(target).toArray();
+    return this.name === "follow" || this.name === "beside" ? way : [...way, ...target.toArray()];
+  }
+
+  /** Moves the camera to numbers of viewpoint() of the same camera; others are ignored. */
+  setViewpoint(numbers) {
+    if (numbers.length !== this.viewpoint().length) return;
+    if (this.firstPerson) {
+      this._gaze = [0, 0];
+      return this._turnHead(...numbers);
+    }
+    if (numbers.length > 3) this.controls.target.fromArray(numbers, 3);
+    this.camera.position.fromArray(numbers).add(this.controls.target);
+    this._start = false;
+  }
+
   /** Moves the camera before a picture. */
   update(state) {
     if (!state.frame) return;

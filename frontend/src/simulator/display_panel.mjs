@@ -6,8 +6,10 @@ import { fill, h } from "../ui/dom.mjs";
 import { CameraPanel } from "./camera_panel.mjs";
 
 export class DisplayPanel {
-  constructor(app, picture) {
+  /** @param {() => void} looked called after another camera was chosen */
+  constructor(app, picture, looked = () => {}) {
     this.app = app;
+    this.looked = looked;
     this.picture = picture;
     const views = [["3d", "In space"], ["2d", "From above"]];
     this.view = h("select", { "aria-label": "View", onchange: () => this._chooseView() }, views.map(([value, text]) => h("option", { value, selected: value === picture.view }, text)));
@@ -82,12 +84,14 @@ export class DisplayPanel {
     scene.setCamera(name);
     this.camera.value = name;
     this.picture.wake();
+    this.looked();
   }
 
   reset() {
     this.picture.scene.reset();
     this.camera.value = this.picture.scene.camera;
     this.picture.wake();
+    this.looked();
   }
 
   _chooseView() {

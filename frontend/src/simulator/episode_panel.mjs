@@ -22,7 +22,7 @@ export class EpisodePanel {
     this.events = events;
     fill(this.list, events.map((one) => h("li", { class: one.kind.replace(" ", "-") },
       h("button", { type: "button", onclick: () => this.parts.transport.seek(one.time) }, `${one.time.toFixed(1)} s  ${one.kind}: ${one.about}`))));
-    if (!events.length) fill(this.list, h("li", { class: "faint" }, "No contact, near miss or stall"));
+    if (!events.length) fill(this.list, h("li", { class: "faint" }, "No contact, fall, near miss or stall"));
   }
 
   /** Jumps to the next event (1) or to the one before (-1). */

@@ -2,7 +2,8 @@
 import { attempt } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 
-const PUSH = 0.3;
+/** Directions of a push: text, and angle in the world [rad]. */
+const PUSHES = [["+x", 0], ["−x", Math.PI], ["+y", Math.PI / 2], ["−y", -Math.PI / 2]];
 
 export class Inspector {
   /** @param {{chosen(kind, id), tool(name), drive(name), values(path)}} actions */
@@ -17,16 +18,20 @@ export class Inspector {
     this.buttons = h("div", { class: "buttons" });
     this.x = h("input", { type: "number", step: "any", "aria-label": "x [m]" });
     this.y = h("input", { type: "number", step: "any", "aria-label": "y [m]" });
+    this.force = h("input", { type: "number", min: 1, max: 5000, step: "any", value: 200, "aria-label": "Force of a push [N]" });
+    this.duration = h("input", { type: "number", min: 0.01, max: 10, step: "any", value: 0.2, "aria-label": "Duration of a push [s]" });
+    this.pushes = h("div", { class: "push" }, h("span", {}, "Push [N], [s]"), this.force, this.duration,
+      PUSHES.map(([text, direction]) => h("button", { type: "button", "aria-label": `Push ${text}`, onclick: () => this.push(direction) }, text)));
     this.place = h("div", { class: "place" }, h("span", {}, "x, y [m]"), this.x, this.y,
       h("button", { type: "button", onclick: () => this.goal(this._point()) }, "Set goal"),
       h("button", { type: "button", onclick: () => this.move(this._point()) }, "Move there"));
-    this.element = h("details", { open: true }, h("summary", {}, "Inspector"), h("div", { class: "chosen" }, this.list), h("table", {}, this.table), this.buttons, this.place);
+    this.element = h("details", { open: true }, h("summary", {}, "Inspector"), h("div", { class: "chosen" }, this.list), h("table", {}, this.table), this.buttons, this.pushes, this.place);
     this._show(null);
   }
 
   async refresh() {
     const people = await this.app.connection.call("simulator.people").catch(() => []);
-    const text = (one) => `${one.kind} ${one.name || one.id}`;
+    const text = (one) => (one.name === one.kind ? one.name : `${one.kind} ${one.name || one.id}`);
     fill(this.list, h("option", { value: "" }, "nobody chosen"), people.map((one) => h("option", { value: `${one.kind} ${one.id}` }, text(one))));
     this.list.value = this.chosen ? `${this.chosen.kind} ${this.chosen.id}` : "";
   }
@@ -41,10 +46,13 @@ export class Inspector {
 
   /** Asks for the state of the chosen one. */
   async update() {
+    if (!this.chosen) this._show(null);
     if (!this.chosen || this._asking) return;
     this._asking = true;
+    const { chosen } = this;
     try {
-      this._show(await this.app.connection.call("simulator.inspect", { id: this.chosen.id }));
+      const state = await this.app.connection.call("simulator.inspect", { id: chosen.id });
+      if (this.chosen?.id === chosen.id) this._show(state);
     } catch {
       this._show(null);
     } finally {
@@ -60,6 +68,11 @@ export class Inspector {
 
   move(point) {
     if (this.state && point) this.order({ order: "move", person: this.state.id, ...point });
+  }
+
+  /** Pushes the chosen person with the force and duration of the fields. */
+  push(direction) {
+    if (this.state) this.order({ order: "push", person: this.state.id, force: Number(this.force.value), direction, duration: Number(this.duration.value) });
   }
 
   remove() {
@@ -88,6 +101,7 @@ export class Inspector {
     fill(this.table, (state?.rows ?? []).map(([name, value, unit]) =>
       h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, unit ? `${value} ${unit}` : String(value)))));
     this.place.hidden = !state || !this.live;
+    this.pushes.hidden = this.place.hidden || state.kind !== "person";
     const now = state && `${state.kind} ${state.id} ${this.live}`;
     if (now === this._made) return;
     this._made = now;
@@ -97,7 +111,6 @@ export class Inspector {
 
   _buttons({ kind, name, values }) {
     const button = (text, action) => h("button", { type: "button", onclick: action }, text);
-    const push = (text, x, y) => button(text, () => this.move({ x: this.state.x + PUSH * x, y: this.state.y + PUSH * y }));
     const found = [
       button("Goal by click", () => this.actions.tool("goal")),
       button("Move by click", () => this.actions.tool("move")),
@@ -105,9 +118,8 @@ export class Inspector {
       button("Remove", () => this.remove()),
     ];
     if (kind === "person") {
-      const row = [push("Push +x", 1, 0), push("Push −x", -1, 0), push("Push +y", 0, 1), push("Push −y", 0, -1)];
       if (name) found.push(button("Walk as this person", () => this.actions.drive("avatar", name)));
-      return [...found, ...row];
+      return found;
     }
     const choice = h("select", { "aria-label": "Navigator", onchange: () => this._navigator(choice.value) }, this.navigators.map((one) => h("option", {}, one)));
     const own = this.state.rows.find(([key]) => key === "navigator");

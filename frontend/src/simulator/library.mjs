@@ -2,6 +2,7 @@
 import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
+import { upload } from "../ui/upload.mjs";
 
 export class Library {
   constructor(app) {
@@ -20,6 +21,7 @@ export class Library {
     const [trials] = await Promise.all([this.app.connection.call("simulator.trials"), this.loadEpisodes()]);
     fill(this.trials, trials.map((trial) => this._trial(trial)));
     this._filter();
+    this.mark(this._current);
   }
 
   async loadEpisodes() {
@@ -42,12 +44,15 @@ export class Library {
   /** Marks what is open. */
   mark(name) {
     for (const one of this.element.querySelectorAll("button[aria-current]")) one.removeAttribute("aria-current");
-    this.trials.querySelector(`button[data-name="${CSS.escape(name ?? "")}"]`)?.setAttribute("aria-current", "true");
+    this._current = name ?? "";
+    const found = this.trials.querySelector(`button[data-name="${CSS.escape(this._current)}"]`);
+    found?.setAttribute("aria-current", "true");
+    if (found) this.trials.scrollTop += found.getBoundingClientRect().top - this.trials.getBoundingClientRect().top - 4;
   }
 
-  _trial({ name, title, built_in, parameters }) {
-    const picture = built_in && h("img", { src: this.app.connection.address("simulator", `thumbnail/${name}.svg`), alt: "", loading: "lazy" });
-    const button = h("button", { type: "button", "data-name": name, title, onclick: () => this.open(name) }, picture || null,
+  _trial({ name, title, parameters }) {
+    const picture = h("img", { src: this.app.connection.address("simulator", `thumbnail/${encodeURIComponent(name)}.svg`), alt: "", loading: "lazy" });
+    const button = h("button", { type: "button", "data-name": name, title, onclick: () => this.open(name) }, picture,
       h("span", {}, h("strong", {}, name), h("small", {}, title)));
     const more = parameters.length
       ? h("button", { type: "button", class: "more", "aria-label": `Settings of ${name}`, onclick: () => this._settings(name, parameters) }, "Settings")
@@ -75,10 +80,7 @@ export class Library {
     const file = this.file.files[0];
     if (!file) return;
     await attempt(async () => {
-      const { session } = this.app.connection;
-      const answer = await fetch(`api/${session}/upload?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
-      if (!answer.ok) throw new Error((await answer.text()).trim());
-      const { name } = await answer.json();
+      const name = await upload(this.app, file);
       await (name.endsWith(".mcap") ? this.openEpisode(name) : this.open(name));
       await this.load();
     });

@@ -62,10 +62,22 @@ export class Picture {
     this.motion.clear();
   }
 
+  /** Asks for what stands still, and for the newest frame. */
+  renew() {
+    this._loading ??= this._load().catch((error) => say(error.message, "error"));
+  }
+
   /** Text over the picture. */
   say(text) {
     if (this.note.textContent !== text) this.note.textContent = text;
     this.note.hidden = !text;
+  }
+
+  /** The picture as a PNG file, null while there is none. */
+  png() {
+    if (!this.scene?.state.frame) return null;
+    this.scene.render(); // a canvas in space keeps its pixels until the end of the task only
+    return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
   }
 
   set shown(shown) {
@@ -164,11 +176,12 @@ export class Picture {
   async _load() {
     try {
       const description = await this.app.connection.call(`${this.desk}.description`);
+      const { scene } = this;
       if (description.revision !== undefined) {
-        await this.scene.load(description);
-        this.actions.loaded?.(description);
+        await scene.load(description);
+        if (scene === this.scene) this.actions.loaded?.(description); // another view loads with its first frame
       }
-      if (this.motion.newest && this.scene.apply(this.motion.newest)) this.preview(null);
+      if (this.motion.newest && this.scene?.apply(this.motion.newest)) this.preview(null);
       this.wake();
     } finally {
       this._loading = null;

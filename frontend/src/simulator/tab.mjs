@@ -11,9 +11,12 @@ import { PlotsPanel } from "./plots_panel.mjs";
 import { Tools } from "./tools.mjs";
 import { Transport, speedText } from "./transport.mjs";
 import { ValuesPanel } from "./values_panel.mjs";
+import { ViewLink } from "./view_link.mjs";
 
 const SUMMARY = 5000;
 const PING = 2000;
+/** Longest time [ms] that the lists wait for the first picture. */
+const LATER = 700;
 
 /** What is shown until a run is prepared. */
 function preparation({ compiling, recorded }) {
@@ -51,16 +54,25 @@ class SimulatorView {
     this.plots.know(state.plots);
     this.display.predicts(state.predictor);
     this.display.images.take(state.cameras);
+    this.link.read();
     this._opened(state.source, state.status);
     this.plots.begin(state.history);
     this._take(state.status);
+    if (state.status.state !== "none") this.picture.renew();
+    clearTimeout(this._listing);
+    this._listing = setTimeout(() => this._list(), LATER);
+  }
+
+  /** Asks for the lists; the picture comes first, because the server answers in turn. */
+  _list() {
+    clearTimeout(this._listing);
+    this._listing = null;
     this.library.load().catch((error) => say(error.message, "error"));
     this.app.connection.call("simulator.names").then((names) => {
       this.tools.know(names);
       this.inspector.navigators = names.navigators;
       this.display.know(names.predictors);
     }, () => {});
-    if (state.status.state !== "none") this.app.connection.call("simulator.show_frame").catch(() => {});
   }
 
   _make() {
@@ -75,13 +87,21 @@ class SimulatorView {
     this.values = new ValuesPanel(app);
     this.drive = new Drive(app, { started: (subject) => this._driving(subject), stopped: () => this.display.look("free") });
     this.inspector = new Inspector(app, {
-      chosen: (hit) => this.picture.mark(hit?.kind ?? null, hit?.id),
+      chosen: (hit) => {
+        this.picture.mark(hit?.kind ?? null, hit?.id);
+        this.link.note();
+      },
       tool: (name) => this.tools.choose(name),
       drive: (kind, name) => this.drive.start(kind, name),
       values: (path) => this.values.open(path),
     });
     this.tools = new Tools(app, { inspector: this.inspector, picture: this.picture, became: (name) => this._became(name) });
-    this.display = new DisplayPanel(app, this.picture);
+    this.display = new DisplayPanel(app, this.picture, () => this.link.note());
+    this.link = new ViewLink(app, this.picture, {
+      look: (name) => this.display.look(name),
+      select: (hit) => this.inspector.select(hit),
+      chosen: () => this.inspector.chosen,
+    });
     this.plots = new PlotsPanel(app);
     this.episode = new EpisodePanel(app, { transport: this.transport, library: this.library, names: () => this.tools.names });
     this.line = h("p", { class: "status-line" });
@@ -142,7 +162,9 @@ class SimulatorView {
   }
 
   _loaded() {
+    if (this._listing) this._list();
     this.display.loaded();
+    this.link.restore();
     this.inspector.refresh();
     if (this._waiting) {
       const name = this._waiting;

@@ -2,6 +2,7 @@
 import { attempt, openDialog } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
+import { makeExport } from "./export_menu.mjs";
 
 const HINTS = {
   person: ["Click where the person starts", "Click the goal of the person"],
@@ -23,7 +24,8 @@ export class Tools {
     this.buttons = [button("person", "Add person"), button("robot", "Add robot"), button("you", "Be a person")];
     this.robot = h("select", { "aria-label": "Type of a new robot" });
     this.exact = h("button", { type: "button", onclick: () => this._dialog() }, "Add at x, y…");
-    this.element = h("div", { class: "tools", role: "group", "aria-label": "Change the scene" }, this.buttons, this.robot, this.exact);
+    this.scene = h("span", { class: "tools", role: "group", "aria-label": "Change the scene" }, this.buttons, this.robot, this.exact);
+    this.element = h("div", { class: "tools" }, this.scene, makeExport(app, parts.picture));
   }
 
   know(names) {
@@ -33,7 +35,7 @@ export class Tools {
   }
 
   set live(live) {
-    this.element.hidden = !live;
+    this.scene.hidden = !live;
     if (!live) this.choose(null);
   }
 

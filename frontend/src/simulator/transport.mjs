@@ -30,6 +30,7 @@ export class Transport {
       this.run, this.stepButton, track, this.clock, this.speed, this.again, this.seed, this.save);
     this._target = null;
     this._seeking = false;
+    this._speeds = 0; // changes of the speed that the server has not confirmed
   }
 
   toggle() {
@@ -44,8 +45,7 @@ export class Transport {
   change(by) {
     const at = SPEEDS.findIndex((one) => one === this.status.speed);
     const next = SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, (at < 0 ? 3 : at) + by))];
-    this.status.speed = next;
-    return this._call("speed", { speed: next });
+    return this._setSpeed(next);
   }
 
   /** Jumps by a time [s] in an episode. */
@@ -71,7 +71,7 @@ export class Transport {
   }
 
   show(status) {
-    this.status = status;
+    this.status = this._speeds ? { ...status, speed: this.status.speed } : status;
     const episode = status.kind === "episode";
     const goes = status.state === "running" || status.state === "preparing";
     this.run.textContent = goes ? "Pause" : "Run";
@@ -88,7 +88,7 @@ export class Transport {
       this.scrubber.setAttribute("aria-valuetext", `${time.toFixed(1)} s`);
     } else this.progress.value = status.duration ? Math.min(1, time / status.duration) : 0;
     this.clock.textContent = `${time.toFixed(1)} / ${(status.duration ?? 0).toFixed(0)} s`;
-    if (document.activeElement !== this.speed) this.speed.value = String(status.speed);
+    if (document.activeElement !== this.speed) this.speed.value = String(this.status.speed);
   }
 
   /** Marks events on the scrubber. */
@@ -102,7 +102,19 @@ export class Transport {
   }
 
   _chooseSpeed() {
-    this._call("speed", { speed: this.speed.value === "null" ? null : Number(this.speed.value) });
+    this._setSpeed(this.speed.value === "null" ? null : Number(this.speed.value));
+  }
+
+  /** Shows a speed at once and keeps it until the server has confirmed the newest change. */
+  async _setSpeed(speed) {
+    this.status.speed = speed;
+    this.speed.value = String(speed);
+    this._speeds += 1;
+    try {
+      await this._call("speed", { speed });
+    } finally {
+      this._speeds -= 1;
+    }
   }
 
   _seek() {

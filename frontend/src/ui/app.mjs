@@ -1,6 +1,6 @@
 // App: the frame of the page: header, tabs, theme, connection state, keys, address.
 import { Connection } from "../net/connection.mjs";
-import { messageRegion, openDialog } from "./dialog.mjs";
+import { attempt, messageRegion, openDialog, say } from "./dialog.mjs";
 import { fill, h } from "./dom.mjs";
 import { Keys, keyName } from "./keys.mjs";
 
@@ -40,6 +40,20 @@ export class App {
     this.keys.active = tab.name;
     this.remember({ tab: tab.name });
     this._views.get(tab.name).show?.();
+  }
+
+  /** Shows the simulator, where a trial runs, or an episode plays from an instant [s]. */
+  async openInSimulator({ file, seed = null, at = null }) {
+    const episode = file.endsWith(".mcap");
+    const found = await attempt(() =>
+      episode
+        ? this.connection.call("simulator.open_episode", { name: file, at, paused: false })
+        : this.connection.call("simulator.open", { name: file, seed }),
+    );
+    if (found === undefined) return;
+    for (const remark of found?.remarks ?? []) say(remark);
+    this.select("simulator");
+    this.tab("simulator").picture.canvas.focus();
   }
 
   /** Writes values into the address of the page, so that a link shows the same; null removes one. */

@@ -156,13 +156,13 @@ export class Board {
     if (this.screen) this._paint();
   }
 
-  _measure(text, size) {
-    this._pen.font = font(size);
+  _measure(text, size, strong = false) {
+    this._pen.font = font(size, strong);
     return this._pen.measureText(text).width;
   }
 
   _draw() {
-    const pages = boardPages(this.screen, this.values, (text, size) => this._measure(text, size), this._typing);
+    const pages = boardPages(this.screen, this.values, (...how) => this._measure(...how), this._typing);
     this.pages = pages.length;
     this.page = Math.max(0, Math.min(this.page, pages.length - 1));
     const page = this._typing ? pages[0] : pages[this.page];

@@ -12,13 +12,13 @@ const KEYS = ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,.'"];
  * Returns the pages of a screen: [[{x, y, w, h, kind, text, action?, chosen?}]].
  * @param {{text: string, questions: object[]}} screen as the server tells it
  * @param {object} values answers by the names of questions
- * @param {(text: string, size: number) => number} measure width of a text in pixels
+ * @param {(text: string, size: number, strong?: boolean) => number} measure width of a text in pixels
  * @param {{name: string, typed: string}|null} typing question whose keys are shown
  */
 export function boardPages(screen, values, measure, typing = null) {
   if (typing) return [keyboard(screen.questions.find((one) => one.name === typing.name), typing.typed, measure)];
   const blocks = [];
-  for (const text of lines(screen.text, 40, WIDTH - 2 * EDGE, measure)) blocks.push([LINE, (y) => [label(text, EDGE, y, 40)]]);
+  for (const text of screen.text ? lines(screen.text, 40, WIDTH - 2 * EDGE, measure) : []) blocks.push([LINE, (y) => [label(text, EDGE, y, 40)]]);
   if (screen.text && screen.questions.length) blocks.push([LINE / 2, () => []]);
   for (const one of screen.questions) blocks.push(question(one, values[one.name] ?? null, measure));
   return divide(blocks);
@@ -54,7 +54,7 @@ function divide(blocks) {
 
 /** Height and boxes of a question. */
 function question(one, value, measure) {
-  const title = lines(one.text + (one.unit ? ` [${one.unit}]` : "") + (one.required ? "" : " (optional)"), 38, WIDTH - 2 * EDGE, measure);
+  const title = lines(one.text + (one.unit ? ` [${one.unit}]` : "") + (one.required ? "" : " (optional)"), 38, WIDTH - 2 * EDGE, bold(measure));
   const head = (y) => title.map((text, k) => ({ ...label(text, EDGE, y + LINE * k, 38), strong: true }));
   const top = LINE * title.length + 6;
   if (one.kind === "scale") {
@@ -72,7 +72,7 @@ function question(one, value, measure) {
   if (one.kind === "choice") {
     const chosen = [value ?? []].flat();
     return [
-      top + (ROW + GAP) * one.options.length + 16,
+      top + (ROW + GAP) * one.options.length + 30,
       (y) => [
         ...head(y),
         ...one.options.map((option, k) => ({
@@ -82,12 +82,12 @@ function question(one, value, measure) {
       ],
     ];
   }
-  return [top + ROW + 26, (y) => [...head(y), { ...button(value === null ? "point here to write" : String(value), EDGE, y + top, WIDTH - 2 * EDGE, ROW), left: true, chosen: value !== null, action: ["write", one.name] }]];
+  return [top + ROW + 46, (y) => [...head(y), { ...button(value === null ? "point here to write" : String(value), EDGE, y + top, WIDTH - 2 * EDGE, ROW), left: true, chosen: value !== null, action: ["write", one.name] }]];
 }
 
 /** Keys to write an answer: digits for a number, else letters. */
 function keyboard(one, typed, measure) {
-  const boxes = lines(one.text, 38, WIDTH - 2 * EDGE, measure).slice(0, 3).map((text, k) => ({ ...label(text, EDGE, EDGE + LINE * k, 38), strong: true }));
+  const boxes = lines(one.text, 38, WIDTH - 2 * EDGE, bold(measure)).slice(0, 3).map((text, k) => ({ ...label(text, EDGE, EDGE + LINE * k, 38), strong: true }));
   boxes.push({ ...button(typed, EDGE, 250, WIDTH - 2 * EDGE, ROW), left: true });
   const rows = one.kind === "number" ? ["123", "456", "789", "-0."] : KEYS;
   const wide = one.kind === "number" ? 260 : (WIDTH - 2 * EDGE) / 10;
@@ -100,6 +100,7 @@ function keyboard(one, typed, measure) {
   return boxes;
 }
 
+const bold = (measure) => (text, size) => measure(text, size, true);
 const label = (text, x, y, size) => ({ kind: "label", text, x, y, size });
 const button = (text, x, y, w, h) => ({ kind: "button", text, x, y, w, h });
 

@@ -16,6 +16,7 @@ export class HeadsetLink {
     this.sent = 0;
     this.skipped = 0;
     this.avatar = null;
+    this._before = null;
     this.refusal = "";
     this.answered = -Infinity;
     this.offset = NaN;
@@ -56,6 +57,7 @@ export class HeadsetLink {
 
   _connect() {
     const url = new URL(`api/${this._session}/headset`, location.href);
+    if (this._before) url.searchParams.set("avatar", this._before);
     url.protocol = url.protocol.replace("http", "ws");
     const socket = new WebSocket(url);
     socket.onmessage = (event) => this._receive(JSON.parse(event.data), now());
@@ -87,6 +89,7 @@ export class HeadsetLink {
       this.answered = at;
     }
     if (message.avatar) this.avatar = message.avatar;
+    if (this.avatar) this._before = this.avatar;
     if (message.refused) this.refusal = message.refused;
     this._tell(message);
   }

@@ -4,6 +4,7 @@ import { Connection } from "../net/connection.mjs";
 import { Scene3D } from "../scene3d/scene3d.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { HeadsetLink, now } from "./headset_link.mjs";
+import { Limits } from "./limits.mjs";
 import { Board } from "./board.mjs";
 import { EYE_FEATURES, readPoses, vibrate } from "./headset_poses.mjs";
 import { Mirror } from "./mirror.mjs";
@@ -22,6 +23,7 @@ export class VrPage {
     this.session = address.get("session") ?? "main";
     this.connection = new Connection(this.session, "headset-window");
     this.room = new Room();
+    this.robotLimits = new Limits("#0ca5b8");
     this.link = null;
     this.state = null;
     this.status = null;
@@ -51,7 +53,7 @@ export class VrPage {
     this.scene = new Scene3D(this.canvas, (path, query) => this.feed.address(path, query));
     this.feed = new SceneFeed(this.connection, this.scene, (text) => this._say(text));
     this.feed.listen(now);
-    this.scene.engine.scene.add(this.room.group);
+    this.scene.engine.scene.add(this.room.group, this.robotLimits.group);
     this.board = new Board({ draft: (answers) => this._draft(answers), finish: (answers) => this._finish(answers) });
     this.pointers = new Pointers(this.board);
     this.body = new OwnBody(this.scene.engine);
@@ -93,8 +95,10 @@ export class VrPage {
 
   _take(state) {
     this.state = state;
-    this.room.set(state.rooms.person);
-    this.feed.delay = state.settings.picture_delay;
+    this.room.set(state.rooms[this._participant()?.room ?? "person"]);
+    this.robotLimits.set(state.rooms.robot);
+    this.robotLimits.show(state.robot_margin ?? Infinity);
+    this.feed.delay = this._participant()?.picture_delay ?? state.settings.picture_delay;
   }
 
   _takeExperiment(state) {
@@ -207,6 +211,7 @@ export class VrPage {
     if (lost) this.room.say("Tracking is lost.\nStand still.");
     else if (refusal) this.room.say(refusal);
     else if (cut) this.room.say("The connection is lost.\nStand still or take the headset off.");
+    else if (!this.scene.state.frame) this.room.say("Loading the room.");
     else if (this._posing()) this.room.say("Stand upright.\nStretch both arms out to the sides\nand hold still.");
     else if (!this.experiment?.open && this.status?.state === "paused") this.room.say("Paused by the operator.");
     else this.room.say("");
@@ -241,9 +246,14 @@ export class VrPage {
     return this.state?.pose?.avatar === this.link.avatar && this.link.avatar !== null;
   }
 
+  /** What the server says about this participant. */
+  _participant() {
+    return this.state?.participants.find((one) => one.avatar === this.link?.avatar);
+  }
+
   /** Id of the participant's own avatar, or null; between two trials it is that of the picture that still stands. */
   _own() {
-    const id = this.state?.participants.find((one) => one.avatar === this.link?.avatar)?.id ?? null;
+    const id = this._participant()?.id ?? null;
     if (id !== null) this._ownBefore = id;
     const between = this.experiment?.open && this.experiment.phase !== "running";
     return id ?? (between ? this._ownBefore : null);

@@ -1,26 +1,21 @@
 // Room: the real room of the participant in the virtual one: where the headset is, the limits, hands, and a veil.
 import * as THREE from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+import { inside, Limits } from "./limits.mjs";
 
 const AXES = new THREE.Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
-const NEAR = 0.9;
-const HIGH = 2.2;
-const GAP = 0.25;
 const SKIN = "#e0ac8a";
 
 export class Room {
   constructor() {
-    this.group = new THREE.Group();
+    this.limits = new Limits("#ff5c00");
+    this.group = this.limits.group;
     this.rig = new THREE.Group();
     this.rig.quaternion.setFromRotationMatrix(AXES);
     this.camera = new THREE.PerspectiveCamera(75, 1, 0.05, 300);
     this.rig.add(this.camera);
     this.group.add(this.rig);
     this.margin = Infinity;
-    this._corners = [];
-    this._limits = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: "#ff5c00", transparent: true, opacity: 0, depthTest: false }));
-    this._limits.renderOrder = 8;
-    this.group.add(this._limits);
     this._shapes = { fist: fist(), open: openHand() };
     this._hands = { left: hand(), right: hand() };
     for (const one of Object.values(this._hands)) this.rig.add(one);
@@ -30,12 +25,7 @@ export class Room {
 
   /** Places the room; place has x, y, z, heading [m], [rad] and limits [[x, y], ...]. */
   set(place) {
-    this.group.position.set(place.x, place.y, place.z);
-    this.group.rotation.z = place.heading;
-    if (JSON.stringify(place.limits) === JSON.stringify(this._corners)) return;
-    this._corners = place.limits;
-    this._limits.geometry.dispose();
-    this._limits.geometry = fence(place.limits);
+    this.limits.set(place);
   }
 
   /** Shows hands where they are, and the limits before they are reached; `parts` are transforms of the headset. */
@@ -49,9 +39,8 @@ export class Room {
       mesh.quaternion.copy(one.orientation);
     }
     const points = [head, ...Object.values(hands)].filter(Boolean).map(({ position: p }) => [-p.z, -p.x]);
-    this.margin = Math.min(Infinity, ...points.map((point) => inside(point, this._corners)));
-    this._limits.material.opacity = this._corners.length ? Math.max(0, Math.min(1, (NEAR - this.margin) / (NEAR - 0.3))) : 0;
-    this._limits.visible = this._limits.material.opacity > 0;
+    this.margin = Math.min(Infinity, ...points.map((point) => inside(point, this.limits.corners)));
+    this.limits.show(this.margin);
   }
 
   /** Draws no hands: the avatar of the participant has some. */
@@ -61,7 +50,7 @@ export class Room {
 
   /** Opacity of the limits, for tests. */
   get warning() {
-    return this._limits.visible ? this._limits.material.opacity : 0;
+    return this.limits.warning;
   }
 
   /** Fades the picture towards black: 0 shows it, 1 hides it. Returns the opacity that is reached. */
@@ -89,35 +78,6 @@ export class Room {
   get said() {
     return this._said ?? "";
   }
-}
-
-/** Distance [m] of a point from the sides of a polygon, negative outside; infinite without a polygon. */
-export function inside([x, y], corners) {
-  if (corners.length < 3) return Infinity;
-  let gap = Infinity;
-  let within = false;
-  corners.forEach(([ax, ay], k) => {
-    const [bx, by] = corners[(k + 1) % corners.length];
-    const [dx, dy] = [bx - ax, by - ay];
-    const share = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / Math.max(dx * dx + dy * dy, 1e-12)));
-    gap = Math.min(gap, Math.hypot(x - ax - share * dx, y - ay - share * dy));
-    if (ay > y !== by > y && x < ax + ((y - ay) / dy) * dx) within = !within;
-  });
-  return within ? gap : -gap;
-}
-
-function fence(corners) {
-  const points = [];
-  corners.forEach(([ax, ay], k) => {
-    const [bx, by] = corners[(k + 1) % corners.length];
-    const count = Math.max(1, Math.round(Math.hypot(bx - ax, by - ay) / GAP));
-    for (let i = 0; i < count; i++) {
-      const [x, y] = [ax + ((bx - ax) * i) / count, ay + ((by - ay) * i) / count];
-      points.push(x, y, 0, x, y, HIGH);
-    }
-    for (let z = 0; z <= HIGH + 0.01; z += HIGH / 8) points.push(ax, ay, z, bx, by, z);
-  });
-  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
 }
 
 function hand() {

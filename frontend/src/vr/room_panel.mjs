@@ -2,18 +2,20 @@
 import { field, fill, h } from "../ui/dom.mjs";
 
 const TITLES = { person: "Room of the person", robot: "Room of the robot" };
+const titleOf = (name) => TITLES[name] ?? `Room of ${name.replace(/^person /, "")}`;
 const number = (value, digits = 3) => (value === null || value === undefined ? "–" : value.toFixed(digits));
 
 /** Makes the panel; returns {element, take(room, participants)}. */
 export function roomPanel(name, tab) {
   const call = (command, args = {}) => tab._call(command, { room: name, ...args });
-  const input = (label) => h("input", { type: "number", step: "any", value: 0, "aria-label": `${TITLES[name]}: ${label}` });
+  const input = (label) => h("input", { type: "number", step: "any", value: 0, "aria-label": `${titleOf(name)}: ${label}` });
   const place = { x: input("x [m]"), y: input("y [m]"), heading: input("heading [deg]") };
   const source = ["x", "y", "z"].map((axis) => input(`${axis} in the room [m]`));
   const target = ["x", "y", "z"].map((axis) => input(`${axis} in the virtual room [m]`));
   const corners = h("input", { type: "text", placeholder: "0,0 4,0 4,3 0,3" });
   const values = (inputs) => inputs.map((one) => Number(one.value));
   const result = h("p", { role: "status" });
+  const near = h("p", {});
   const points = h("tbody");
   let avatar = null;
 
@@ -35,8 +37,8 @@ export function roomPanel(name, tab) {
 
   const element = h(
     "section",
-    { "aria-label": TITLES[name] },
-    h("h2", {}, TITLES[name]),
+    { "aria-label": titleOf(name) },
+    h("h2", {}, titleOf(name)),
     line("Origin x, y [m] and heading [deg]", Object.values(place)),
     button("Set place", setPlace),
     h("h3", {}, "Calibration"),
@@ -48,16 +50,18 @@ export function roomPanel(name, tab) {
     h("h3", {}, "Limits"),
     field("Corners of the free floor x,y [m]", corners),
     button("Set limits", setLimits),
+    near,
   );
 
-  const take = (room, participants) => {
-    avatar = participants[0]?.avatar ?? null;
+  const take = (room, participants, margin) => {
+    avatar = participants.find((one) => one.room === name)?.avatar ?? null;
     if (!element.contains(document.activeElement)) {
       place.x.value = number(room.x);
       place.y.value = number(room.y);
       place.heading.value = number((room.heading * 180) / Math.PI, 1);
       corners.value = room.limits.map((one) => one.join(",")).join(" ");
     }
+    near.textContent = margin === null || margin === undefined ? "" : `A robot is ${number(margin, 2)} m from the limits.`;
     const words = (row) => row.map((one) => number(one)).join(", ");
     fill(points, room.source.map((row, k) => h("tr", {}, [words(row), words(room.target[k]), number(room.residual[k])].map((one) => h("td", {}, one)))));
     result.textContent = room.rms === null ? "Not calibrated." : `Residual ${number(room.rms)} m (root mean square), noise of a point ${number(room.noise)} m.`;

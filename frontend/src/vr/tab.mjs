@@ -2,6 +2,7 @@
 import { attempt, say } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
+import { capturesPanel } from "./captures_panel.mjs";
 import { roomPanel } from "./room_panel.mjs";
 
 const SETTINGS = [
@@ -62,6 +63,8 @@ class VrTab {
     this.picture = h("img", { alt: "QR code of the address for the headset", width: 180, height: 180 });
     this.settings = h("div");
     this.rooms = { person: roomPanel("person", this), robot: roomPanel("robot", this) };
+    this.captures = capturesPanel(this);
+    this.others = h("div", { class: "vr-others" });
     this.file = h("input", { type: "text", value: "rooms", "aria-label": "Name of the file of rooms" });
     const file = (text, command, told) => h("button", { type: "button", onclick: () => this._call(command, { name: this.file.value }).then((done) => done !== undefined && say(told)) }, text);
     this.files = h("section", { "aria-label": "File of the rooms" }, h("h2", {}, "File of the rooms"), h("p", {}, "Places, calibration points and limits of both rooms."), h("div", { class: "vr-buttons" }, this.file, file("Save rooms", "save_rooms", "The rooms are saved."), file("Load rooms", "load_rooms", "The rooms are loaded.")));
@@ -71,7 +74,7 @@ class VrTab {
       { class: "vr-columns" },
       h(
         "section",
-        { "aria-label": "Participants", class: "vr-wide" },
+        { "aria-label": "Participants", class: "vr-wide vr-top" },
         h("h2", {}, "Participants"),
         this.warnings,
         h("div", { class: "vr-buttons" }, button("Pause for everybody", "pause"), button("Continue", "resume"), button("Stop robots", "stop_robots", "vr-stop"), button("Release robots", "release_robots"), h("button", { type: "button", onclick: () => this._save() }, "Save recording")),
@@ -82,7 +85,9 @@ class VrTab {
       h("section", { "aria-label": "Delay and noise" }, h("h2", {}, "Delay and noise"), this.settings),
       this.rooms.person.element,
       this.rooms.robot.element,
+      this.others,
       this.files,
+      this.captures.element,
     );
     fill(this.root, this.none, this.main);
   }
@@ -100,7 +105,13 @@ class VrTab {
     for (const [name, , input] of this.switches) input.checked = state[name];
     fill(this.rows, state.participants.length ? state.participants.map((one) => this._row(one)) : h("tr", {}, h("td", { colspan: COLUMNS.length }, "Nobody is in virtual reality.")));
     if (JSON.stringify(before?.settings) !== JSON.stringify(state.settings)) this._showSettings(state.settings);
-    for (const [name, panel] of Object.entries(this.rooms)) panel.take(state.rooms[name], state.participants);
+    this.captures.take(state.captures);
+    for (const name of Object.keys(state.rooms)) {
+      if (this.rooms[name]) continue;
+      this.rooms[name] = roomPanel(name, this);
+      this.others.append(this.rooms[name].element);
+    }
+    for (const [name, panel] of Object.entries(this.rooms)) panel.take(state.rooms[name], state.participants, name === "robot" ? state.robot_margin : null);
   }
 
   _row(one) {
@@ -108,7 +119,7 @@ class VrTab {
       one.avatar, milliseconds(one.motion_median, one.motion_p95), milliseconds(one.picture_median, one.picture_p95),
       one.round_trip === null ? "–" : `${one.round_trip.toFixed(1)} ms`, one.offset === null ? "–" : `${one.offset.toFixed(4)} s`,
       one.lost, one.dropped, one.margin === null || one.margin === undefined ? "–" : `${one.margin.toFixed(2)} m`,
-      one.lost_tracking ? "lost" : ["head", ...one.hands].join(", "),
+      one.lost_tracking ? "lost" : ["head", ...one.hands, ...(one.suit ? ["suit"] : [])].join(", "),
     ];
     const measure = h("button", { type: "button", "aria-label": `Measure body of ${one.avatar}`, onclick: () => this._measure(one.avatar) }, "Measure body");
     const pose = h("button", { type: "button", "aria-label": `Calibration pose of ${one.avatar}`, onclick: () => this._call("calibrate_pose", { avatar: one.avatar }) }, "Calibration pose");

@@ -22,6 +22,7 @@ KINDS = {
     "predictors": ("prediction", "Predictor"),
     "detectors": ("perception", "Detector"),
     "trackers": ("perception", "Tracker"),
+    "scan-predictors": ("perception", "ScanPredictor"),
     "degradations": ("data.degrade", "Degradation"),
 }
 """Kinds of plug-ins with their room and contract."""

@@ -30,15 +30,22 @@ from .inbox import Inbox, ServiceCall
 from .interface import InputTopic, OutputTopic, RobotInterface, Service
 from .join.command_guard import CommandGuard, DrivingArea, GuardLimits
 from .join.join_run import JoinRun, joined_trial
+from .join.real_robot_link import RealRobotLink, open_real_robot
+from .join.simulated_robot import SimulatedRobot
 from .latency import CommandLatency, LatencySummary
 from .load.bridge_load import LOADED_BRIDGES, BridgeLoad, bridge_load
 from .motion_capture import (
+    CaptureSet,
+    FootLock,
     MotionBinding,
     MotionCapture,
     MotionSample,
     PoseStream,
+    Retargeting,
+    SourceSkeleton,
     StreamStatistics,
     open_stream,
+    parse_binding,
     parse_captures,
 )
 from .plain_services import PLAIN_SERVICES, PlainService
@@ -61,9 +68,11 @@ __all__ = [
     "BridgeLoad",
     "BridgePort",
     "BridgeRun",
+    "CaptureSet",
     "CommandGuard",
     "CommandLatency",
     "DrivingArea",
+    "FootLock",
     "GuardLimits",
     "Inbox",
     "InputTopic",
@@ -77,10 +86,14 @@ __all__ = [
     "PlainService",
     "PoseStream",
     "QualityOfService",
+    "RealRobotLink",
+    "Retargeting",
     "RobotInterface",
     "RunControl",
     "Service",
     "ServiceCall",
+    "SimulatedRobot",
+    "SourceSkeleton",
     "StreamStatistics",
     "Transport",
     "bridge_load",
@@ -88,9 +101,11 @@ __all__ = [
     "interface_store",
     "joined_trial",
     "message_of",
+    "open_real_robot",
     "open_stack",
     "open_stream",
     "open_transport",
+    "parse_binding",
     "parse_captures",
     "plain_fields",
     "request_kind",

@@ -99,6 +99,7 @@ class BridgeRun:
         self.pace = Pace(trial.step, clock.rate)
         self.port.inbox.asked_pace.rate = clock.rate if clock.mode == "paced" and not sources else None
         self.repeat = InstantRepeat()
+        self._robots: set[str] = set()
         self._back = -1
 
     def run(self) -> RunSummary:
@@ -160,8 +161,8 @@ class BridgeRun:
         """Run to the end and return the outcome."""
         port, control = self.port, self.control
         self.pace.restart()
+        self._note_instant(running.simulation, unasked=True)
         port.begin(running.simulation)
-        self.repeat.begin()
         control.finish_restart()
         while running.outcome is None:
             port.serve(running.simulation)
@@ -173,8 +174,8 @@ class BridgeRun:
             for order, reason in running.refusals:
                 port.report("error", f"{type(order).__name__}: {reason}")
             running.refusals.clear()
+            self._note_instant(running.simulation)
             port.publish(running.simulation)
-            self.repeat.begin()
             control.note_step()
             if self.clock.mode == "paced" and (remark := self.pace.note_step()):
                 port.report("warning", remark)
@@ -204,12 +205,18 @@ class BridgeRun:
             return self._wait_for_pace(simulation)
         if mode == "follow":
             return self._wait_for_time(simulation)
-        wanted = {one.robot.name for one in simulation.robots if one.robot.pose is None}
-        if wanted - inbox.commanded:
-            if self.repeat.must_send():
+        if self._robots - inbox.commanded:
+            if self.repeat.must_send(self.port.is_heard):
                 self.port.publish(simulation)
             return IDLE
-        return 0.0 if self.repeat.is_settled(inbox.count.received) else IDLE
+        return 0.0 if self.repeat.is_settled(inbox.count.velocities) else IDLE
+
+    def _note_instant(self, simulation: Simulation, unasked: bool = False) -> None:
+        """Note that the messages of an instant are sent now, for the mode ``commands``."""
+        if self.clock.mode == "commands":
+            self._robots = {one.robot.name for one in simulation.robots if one.robot.mirror is None}
+            count = self.port.inbox.count.velocities
+            self.repeat.begin(self.port.is_heard, count, len(self._robots), unasked)
 
     def _wait_for_pace(self, simulation: Simulation) -> float:
         asked = self.port.inbox.asked_pace

@@ -47,6 +47,7 @@ class _Count:
 
     received: int = 0
     refused: int = 0
+    velocities: int = 0
 
 
 class Inbox:
@@ -183,6 +184,7 @@ class Inbox:
     def _add(self, order: Order) -> None:
         if isinstance(order, VelocityOrder):
             self._velocity[order.robot] = order
+            self.count.velocities += 1
             self.latency.note_command(order.robot)
             self.commanded.add(order.robot)
             return

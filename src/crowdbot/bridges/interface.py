@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.messages import COLLISIONS, FORCES, MAP, MARKERS, reading_topics
+from crowdbot.messages import COLLISIONS, FALL_POSES, FALLS, FORCES, MAP, MARKERS, reading_topics
 from crowdbot.recording import LinkFrames
 from crowdbot.simulation import Order
 from crowdbot.trials import RobotSpec, Trial
@@ -155,6 +155,8 @@ def _scene_outputs(trial: Trial, follows_clock: bool) -> list[OutputTopic]:
         OutputTopic("/crowd/markers", MARKERS, MAP, 1.0 / trial.recording.markers, STATE, about="shapes for viewers"),
         OutputTopic("/crowdbot/contacts", "crowdbot_msgs/msg/Contacts", MAP, 0.0, STATE, about="contacts of robots"),
         OutputTopic(FORCES, "crowdbot_msgs/msg/Forces", MAP, 0.0, STATE, about="contact forces (physics world)"),
+        OutputTopic(FALLS, "crowdbot_msgs/msg/Falls", MAP, 0.0, STATE, about="falls of people that are over"),
+        OutputTopic(FALL_POSES, "crowdbot_msgs/msg/FallPoses", MAP, 0.0, STATE, about="poses of people out of balance"),
         OutputTopic(COLLISIONS, "crowdbot_msgs/msg/Collisions", MAP, 0.0, STATE, about="contacts that have ended"),
         OutputTopic("/crowdbot/orders", "std_msgs/msg/String", "", 0.0, STATE, about="orders that were applied"),
         OutputTopic("/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots"),

@@ -161,6 +161,11 @@ class BridgePort:
         for one in self.transports:
             one.report(level, text)
 
+    @property
+    def is_heard(self) -> bool:
+        """Whether any program has subscribed a topic."""
+        return self._is_wanted("/")
+
     def _announce(self, trial: Trial) -> None:
         self.interface = self.inbox.interface = self.describe(trial)
         self._skipped = {one.name for one in self.interface.inputs}

@@ -20,6 +20,7 @@ TRANSPORTS: dict[str, tuple[str, str]] = {
     "ros2": ("ros2.node:Ros2Node.of", "ros2[:DOMAIN], a ROS 2 node (rclpy)"),
     "rosless": ("rosless.node:RoslessNode.of", "rosless[:DOMAIN], topics of ROS 2 without ROS, experimental"),
     "naoqi": ("naoqi.bridge:NaoqiBridge.of", "naoqi:HOST[:PORT], virtual sensors in the memory of a Pepper (qi)"),
+    "simulated": ("join.simulated_robot:SimulatedRobot.of", "simulated, a base in place of a real robot (join)"),
     "foxglove": ("foxglove.server:FoxgloveServer.of", "foxglove[:PORT], a live server for the Foxglove app"),
     "tcp": ("tcp.challenge_server:ChallengeServer.of", "tcp[:PORT], the server of the challenge of ICRA 2021"),
 }

@@ -271,8 +271,9 @@ class _Task:
         everyone = np.broadcast_to(values, (len(values), len(which), A, D))
 
         def candidate(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
-            each = np.repeat(everyone, copies, axis=1).reshape(len(values) * len(which) * copies, A, D)
-            return self.space.apply_to_scene(rollout, scene, each)
+            # each parameter is contiguous: the models need it so
+            each = np.repeat(np.moveaxis(everyone, -1, 0), copies, axis=2).reshape(D, len(scene.position), A)
+            return self.space.apply_to_scene(rollout, scene, np.moveaxis(each, 0, -1))
 
         return cast(Cost, self.calibrator.cost).measure(self.resimulation.resimulate(candidate, len(values), which))
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from crowdbot.core import InputError, Paper
 
+from .breeding import breed, keep_fittest
 from .search import Search
 from .search_state import Floats, SearchState
 
@@ -79,15 +80,12 @@ class Genetic(Search):
         first = self._first(state, population)
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
-        population, cost, age = self._fittest(population, cost, np.zeros_like(cost))
+        population, cost, age = self._fittest(population, cost, *(part[:0] for part in (population, cost, cost)))
         population, cost, age = state.prune(population, cost, age)
         while state.remaining:
             children = self._children(state, population)
             children[0] = population[0]
-            measured = state.evaluate(children)
-            population, cost = np.concatenate([children, population]), np.concatenate([measured, cost])
-            age = np.concatenate([np.zeros_like(measured), age + 1.0])
-            population, cost, age = self._fittest(population, cost, age)
+            population, cost, age = self._fittest(children, state.evaluate(children), population, cost, age)
             population, cost, age = state.prune(population, cost, age)
 
     def _first(self, state: SearchState, start: Floats) -> Floats:
@@ -99,12 +97,17 @@ class Genetic(Search):
         first[:near] = state.fold(start[np.arange(near) % len(start)] + NEAR * state.span * away)
         return first
 
-    def _fittest(self, population: Floats, cost: Floats, age: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the best parameters of each person, best first, without those with expired costs."""
-        cost = np.where(age < self.memory, cost, np.inf)
-        row = np.argsort(cost, axis=0, kind="stable")[: self.population]
-        genes = np.take_along_axis(population, row[..., None], axis=0)
-        return genes, np.take_along_axis(cost, row, axis=0), np.take_along_axis(age, row, axis=0)
+    def _fittest(
+        self, children: Floats, measured: Floats, population: Floats, cost: Floats, age: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return the best parameters of each person, best first, their costs and ages, without expired costs."""
+        count = min(self.population, len(children) + len(population))
+        shape = (count, *cost.shape[1:])
+        found = np.empty((*shape, population.shape[-1])), np.empty(shape), np.empty(shape)
+        values: list[Any] = [np.ascontiguousarray(part) for part in (children, population, measured, cost, age)]
+        values += [float(self.memory), *found]
+        keep_fittest(*values)
+        return found
 
     def _children(self, state: SearchState, population: Floats) -> Floats:
         # Leaves one evaluation for the last child, the crowd of the best parameters of all people.
@@ -112,15 +115,14 @@ class Genetic(Search):
         M, _, N, D = population.shape
         chance = state.draw(lambda rng: rng.random((count, N, 4)))
         rank = (M * chance[..., 0:2] ** PRESSURE).astype(np.int64)
-        mother = np.take_along_axis(population, rank[..., 0, None], axis=0)
-        father = np.take_along_axis(population, rank[..., 1, None], axis=0)
         place = state.draw(lambda rng: rng.random((count, N, D)))
-        blend = (1.0 + 2.0 * OVERSHOOT) * place - OVERSHOOT
-        share = np.where(chance[..., 2, None] < 0.5, blend, np.rint(place))
-        children = mother + share * (father - mother)
-        mutated = state.draw(lambda rng: rng.random((count, N, D))) * D < 1.0
+        mutation = state.draw(lambda rng: rng.random((count, N, D)))
         width = MUTATION * (1.0 - state.progress) ** 2 + FINEST
         change = state.draw(lambda rng: rng.standard_normal((count, N, D)))
-        children = state.fold(children + np.where(mutated, width * state.span * change, 0.0))
-        bred = chance[..., 3] < 1.0 + (self.bred - 1.0) * state.progress
-        return np.where(bred[..., None], children, state.incumbent())
+        bred = 1.0 + (self.bred - 1.0) * state.progress
+        children = np.empty_like(place)
+        breed(
+            np.ascontiguousarray(population), rank, chance, place, mutation, change, state.incumbent(), state.low,
+            state.high, OVERSHOOT, width, bred, children,
+        )  # fmt: skip
+        return children

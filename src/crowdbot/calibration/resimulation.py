@@ -56,6 +56,7 @@ class Resimulation:
         self.rollout = rollout
         self.past = past
         self.whole = fill_gaps(past)
+        self._repeated: tuple[object, Scene] | None = None
 
     def resimulate(self, candidate: Candidate, copies: int, which: Integers) -> ResimulatedTracks:
         """Return the tracks of ``copies`` candidates in the windows ``which``."""
@@ -97,10 +98,18 @@ class Resimulation:
         T, A = self.past.position.shape[1:3]
         if T < 3:
             return np.zeros((copies, len(which), 0, A, 2))
-        index = np.tile((which[:, None] * (T - 2) + np.arange(T - 2)).ravel(), copies)
-        rollout, scene = candidate(self.rollout, self._each.environments(index), T - 2)
-        place = rollout.advance(scene, self.past.dt).position
+        rollout, scene = candidate(self.rollout, self._copies(copies, which), T - 2)
+        place = rollout.next_positions(scene, self.past.dt)
         return place.reshape(copies, len(which), T - 2, A, 2)
+
+    def _copies(self, copies: int, which: Integers) -> Scene:
+        """Return the scenes of all rows of some windows, repeated; they are kept, because most calls use them again."""
+        key = copies, which.tobytes()
+        if self._repeated is None or self._repeated[0] != key:
+            rows = self.past.position.shape[1] - 2
+            index = np.tile((which[:, None] * rows + np.arange(rows)).ravel(), copies)
+            self._repeated = key, self._each.environments(index)
+        return self._repeated[1]
 
 
 @dataclass(frozen=True)

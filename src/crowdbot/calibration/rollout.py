@@ -104,10 +104,22 @@ class Rollout:
 
     def advance(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene one row later, in equal steps of at most ``substep``."""
-        count = max(1, math.ceil(dt / self.substep - 1e-9))
+        count = self._substeps(dt)
         for _ in range(count):
             scene = self.model.step(scene, dt / count, rng)
         return scene
+
+    def next_positions(self, scene: Scene, dt: float) -> Floats:
+        """Return the positions of :meth:`advance`, ``[E, A, 2]`` [m], without the rest of the scene."""
+        count = self._substeps(dt)
+        for _ in range(count - 1):
+            scene = self.model.step(scene, dt / count)
+        if type(self.model).step is not CrowdModel.step:
+            return self.model.step(scene, dt / count).position
+        return scene.next_positions(self.model.velocity(scene, dt / count), dt / count)
+
+    def _substeps(self, dt: float) -> int:
+        return max(1, math.ceil(dt / self.substep - 1e-9))
 
 
 def set_preferred_speed(scene: Scene, speed: Floats) -> Scene:

@@ -117,6 +117,8 @@ class SearchState:
 
     def draw(self, how: Callable[[np.random.Generator], NDArray[Any]]) -> NDArray[Any]:
         """Return the draws ``[P, ...]`` of ``how`` for every unfinished problem, stacked along axis 1."""
+        if len(self.live) == 1:
+            return how(self.rngs[self.live[0]])[:, None]
         return np.stack([how(self.rngs[number]) for number in self.live], axis=1)
 
     @property

@@ -109,6 +109,8 @@ def _code_notices() -> Iterator[None]:
     level = logger.level
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)
+    for name in [name for name in logging.root.manager.loggerDict if name.startswith("crowdbot")]:
+        logging.getLogger(name).disabled = False  # logging.config.dictConfig of other packages disables all loggers
     try:
         yield
     finally:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 import asyncio
 import dataclasses
+import os
 import ssl
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.core import InputError
+from crowdbot.core import PROGRAMS, InputError
 
 if TYPE_CHECKING:
     from crowdbot.vr import VrServer
@@ -48,8 +50,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--open",
-        metavar="TRIAL|EPISODE",
-        help="trial file, built-in name, or episode that is shown first (default: a robot among walking people)",
+        metavar="FILE|TRIAL",
+        help="what is shown first: a trial (file or built-in name), an episode, a recording of people, or the result of"
+        " an evaluation (result.json or its folder); default: a robot among walking people",
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser window")
     parser.add_argument(
@@ -57,8 +60,34 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="let headsets of the local network in: HTTPS with an own certificate, on all addresses of this machine",
     )
+    _server_arguments(parser)
+    _stream_arguments(parser)
+
+
+def _server_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--certificate", type=Path, metavar="FILE", help="certificate for HTTPS, PEM")
     parser.add_argument("--key", type=Path, metavar="FILE", help="private key of the certificate, PEM")
+    parser.add_argument(
+        "--programs",
+        action="store_true",
+        help="let trials start programs (process navigators, robot software) on a server for other machines (--host)",
+    )
+    parser.add_argument("--sessions", type=int, default=40, metavar="N", help="sessions at the same time (default: 40)")
+    parser.add_argument(
+        "--students",
+        type=lambda text: text.split(","),
+        default=[],
+        metavar="NAME,...",
+        help="print an address for each of these sessions, which opens no other session",
+    )
+    group = parser.add_argument_group(
+        "limits of each session", "the second default is that of a server for other machines (--host)"
+    )
+    for name, (kind, _, word, text) in LIMITS.items():
+        group.add_argument(f"--{name}", type=kind, metavar=word, help=text)
+
+
+def _stream_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--lsl",
         action="store_true",
@@ -72,27 +101,34 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="sessions of experiments record streams of the Lab Streaming Layer: a name, or PROPERTY=VALUE such as"
         " type=EEG (repeatable)",
     )
-    parser.add_argument("--sessions", type=int, default=40, metavar="N", help="sessions at the same time (default: 40)")
-    group = parser.add_argument_group(
-        "limits of each session", "the second default is that of a server for other machines (--host)"
+    parser.add_argument(
+        "--mocap",
+        action="append",
+        default=[],
+        metavar="SOURCE=NAME",
+        help="motion capture that moves an avatar or robot, and the suit of a participant in a headset:"
+        " xsens:9763=participant or natnet:HOST#Cart=robot; repeatable",
     )
-    for name, (kind, _, word, text) in LIMITS.items():
-        group.add_argument(f"--{name}", type=kind, metavar=word, help=text)
 
 
 def main(options: argparse.Namespace) -> int:
     """Serve until Ctrl-C."""
-    from crowdbot.vr import VR_DESKS, VrServer
-    from crowdbot.web import opened_first, with_streams
+    from crowdbot.vr import VR_DESKS, VrServer, with_captures
+    from crowdbot.web import is_loopback, opened_first, with_streams
 
     if not 0 <= options.port <= 65535:
         raise InputError(f"--port = {options.port}: expected 0 to 65535")
-    desks, readable = VR_DESKS, tuple[Path, ...]()
+    desks, readable, tab = VR_DESKS, tuple[Path, ...](), ""
     if options.open is not None:
-        desks, readable = opened_first(VR_DESKS, options.open)
+        desks, readable, tab = opened_first(VR_DESKS, options.open)
     if options.lsl or options.lsl_record:
         desks = with_streams(desks, options.lsl, options.lsl_record)
+    if options.mocap:
+        desks = with_captures(desks, options.mocap)
     host = options.host or (EVERYWHERE if options.vr else "127.0.0.1")
+    # with --vr alone, other machines are headsets, whose token opens no trial
+    if options.host is not None and not is_loopback(host) and not options.programs:
+        os.environ[PROGRAMS] = "refuse"  # jobs inherit it
     server = VrServer(
         desks,
         options.folder,
@@ -104,7 +140,8 @@ def main(options: argparse.Namespace) -> int:
         most_sessions=options.sessions,
     )
     try:
-        asyncio.run(_serve(server, not options.no_browser, options.vr))
+        place = f"#tab={tab}" if tab else ""
+        asyncio.run(_serve(server, not options.no_browser, options.vr, place, options.students))
     except KeyboardInterrupt:
         print("crowdbot: the app has stopped")
     return 0
@@ -143,7 +180,7 @@ def _tls(options: argparse.Namespace) -> ssl.SSLContext | None:
     return context
 
 
-async def _serve(server: VrServer, browser: bool, vr: bool) -> None:
+async def _serve(server: VrServer, browser: bool, vr: bool, place: str, students: Sequence[str]) -> None:
     import webbrowser
 
     from crowdbot.vr import link_text, local_addresses
@@ -151,12 +188,14 @@ async def _serve(server: VrServer, browser: bool, vr: bool) -> None:
     if server.host == EVERYWHERE:
         server.reached_at = next(iter(local_addresses()), "127.0.0.1")
     async with server.running():
-        print(f"crowdbot app: {server.url.replace(EVERYWHERE, '127.0.0.1', 1)}  (Ctrl-C stops it)", flush=True)
+        page = server.url.replace(EVERYWHERE, "127.0.0.1", 1) + place
+        print(f"crowdbot app: {page}  (Ctrl-C stops it)", flush=True)
+        for name in students:
+            print(f"{name}: {server.session_address(name).replace(EVERYWHERE, server.reached_at, 1)}", flush=True)
         if vr:
             print(f"headset: {server.vr_url}")
             print("The certificate is made by this machine: accept the warning of the headset once.")
             print(link_text(server.vr_url), flush=True)
         if browser:
-            page = server.url.replace(EVERYWHERE, "127.0.0.1", 1)
             await asyncio.get_running_loop().run_in_executor(None, webbrowser.open, page)
         await asyncio.Event().wait()

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from .output import add_json, json_text, note, number, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import DriveReport, EnvironmentReport
+    from crowdbot.benchmark import DriveReport, EngineReport, EnvironmentReport
     from crowdbot.benchmark.environments.work_rate import WorkRate
 
 ENVIRONMENTS = "environments"
 """Name of the benchmark of environments, which has tables of its own."""
+ENGINES = "engines"
+"""Name of the benchmark of crowd models beside other engines."""
 DRIVES = "drives"
 """Name of the drive laboratory, which measures motion and not speed of computing."""
 
@@ -25,7 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         nargs="*",
         help=f"measurements (default: all), or {ENVIRONMENTS}: simulations of many environments, compared with"
-        f" navground and ir-sim, or {DRIVES}: how robots follow velocity commands in the physics world",
+        f" navground and ir-sim, {ENGINES}: crowd models beside RVO2, JuPedSim, navground and PySocialForce, or"
+        f" {DRIVES}: how robots follow velocity commands in the physics world",
     )
     parser.add_argument("--repeats", type=int, default=7, help="timed repetitions after a warm-up (default: 7)")
     parser.add_argument(
@@ -37,7 +40,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help=f"tiny counts for {ENVIRONMENTS}, or few manoeuvres for {DRIVES}: a test of the command",
+        help=f"tiny counts for {ENVIRONMENTS} and {ENGINES}, or few manoeuvres for {DRIVES}: a test of the command",
+    )
+    parser.add_argument(
+        "--rvo2",
+        type=Path,
+        metavar="FOLDER",
+        help=f"source of RVO2 for {ENGINES}, compiled with optimisation (default: the package pyrvo)",
     )
     parser.add_argument(
         "--robot",
@@ -55,7 +64,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help=f"URDF, xacro or SDF files for {DRIVES}, imported as by crowdbot new robot FILE --yes (default: none)",
     )
     parser.add_argument(
-        "--page", type=Path, metavar="FILE.md", help=f"page for {DRIVES}, with its plots in a folder of the same name"
+        "--page",
+        type=Path,
+        metavar="FILE.md",
+        help=f"page for {ENGINES}, or for {DRIVES} with its plots in a folder of the same name",
     )
     parser.add_argument(
         "--keep",
@@ -72,6 +84,12 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
     from crowdbot.web import app_measurements
 
+    if options.rvo2 is not None and options.names != [ENGINES]:
+        raise InputError(f"--rvo2 belongs to crowdbot bench {ENGINES}")
+    if ENGINES in options.names:
+        if len(options.names) > 1 or options.data is not None or options.robot or options.makers:
+            raise InputError(f"{ENGINES} is measured alone, without other measurements and without --data")
+        return _measure_engines(options)
     if ENVIRONMENTS in options.names:
         if len(options.names) > 1 or options.data is not None or options.robot or options.makers or options.page:
             raise InputError(f"{ENVIRONMENTS} is measured alone, without other measurements and without --data")
@@ -83,7 +101,7 @@ def main(options: argparse.Namespace) -> int:
     if options.robot or options.makers or options.page is not None or options.keep is not None:
         raise InputError(f"--robot, --makers, --page and --keep belong to crowdbot bench {DRIVES}")
     if options.quick:
-        raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS} or {DRIVES}; use --repeats 1")
+        raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS}, {ENGINES} or {DRIVES}; use --repeats 1")
     with progress(options.json) as report:
         rows = measure(options.names, options.repeats, report, options.data, app_measurements())
     table = [row.as_dict() for row in rows]
@@ -118,6 +136,41 @@ def _measure_environments(options: argparse.Namespace) -> int:
     else:
         _print_environments(found)
     return 0
+
+
+def _measure_engines(options: argparse.Namespace) -> int:
+    from crowdbot.benchmark import EngineSizes, measure_engines, write_engines_page
+
+    sizes = EngineSizes.quick(options.repeats) if options.quick else EngineSizes(options.repeats)
+    with progress(options.json) as report:
+        found = measure_engines(sizes, options.rvo2, report)
+    _write(options.out, found.as_dict())
+    if options.page is not None:
+        words = [f"--repeats {options.repeats}", *(["--quick"] if options.quick else [])]
+        words += ["--rvo2 RVO2"] if options.rvo2 is not None else []
+        write_engines_page(found, options.page, " ".join(["crowdbot bench", ENGINES, *words, "--page", "engines.md"]))
+    for sentence in found.missing.values():
+        note(f"crowdbot: {sentence}")
+    if options.json:
+        print_json(found.as_dict())
+    else:
+        _print_engines(found)
+    return 0
+
+
+def _print_engines(found: EngineReport) -> None:
+    cells = [
+        (row.model, row.engine, str(row.people), row.order, str(row.threads), number(row.ours, 3),
+         number(row.theirs, 3), number(row.ratio, 2), f"{number(row.low, 2)} to {number(row.high, 2)}")
+        for row in found.rows
+    ]  # fmt: skip
+    head = ("model", "engine", "people", "order", "threads", "ms", "engine ms", "ratio", "10 to 90 %")
+    print_table("engines: time of a step", head, cells, caption=found.machine, words=2)
+    for engine, protocol in found.protocols.items():
+        print(f"{engine}: {protocol}")
+    if found.million is not None:
+        one = found.million
+        print(f"{one.people} people, {one.model}: {one.seconds:.2f} s a step, {one.megabytes:.0f} MB")
 
 
 def _measure_drives(options: argparse.Namespace) -> int:

@@ -20,11 +20,12 @@ from .templates import (
     trial_test,
 )
 from .templates.maker_file import add_robot_options, convert_robot, is_robot_file
+from .templates.people_files import add_body_options, write_body_file, write_clip_file
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "schema")
+KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "clip", "body", "schema")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,8 +35,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "file",
         metavar="FILE",
         type=Path,
-        help="file to write: .py, .geojson (stage), .xml (trial), .toml (challenge) or folder (robot, submission);"
-        " or a robot file to convert",
+        help="file to write: .py, .geojson (stage), .xml (trial), .toml (challenge) or folder (robot, submission),"
+        " or a .bvh file that becomes a clip, or a .glb or .gltf file that becomes a body; or a robot file to convert",
     )
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of the trial")
@@ -49,7 +50,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim, HuNavSim or the CrowdBot simulator (2021), or a drawing (DXF)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim or the CrowdBot simulator (2021), a drawing (DXF), or a building"
+        " (.glb)",
     )
     begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
     group.add_argument(
@@ -68,6 +70,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
     group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
     add_robot_options(parser)
+    add_body_options(parser)
     group = parser.add_argument_group("trial from a recording")
     group.add_argument("--fps", type=float, help="frame rate of the recording in Hz (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
@@ -81,6 +84,10 @@ def main(options: argparse.Namespace) -> int:
 
     if options.kind == "robot" and is_robot_file(options.file):
         return convert_robot(options)
+    if options.kind == "clip":
+        return write_clip_file(options)
+    if options.kind == "body":
+        return write_body_file(options)
     if options.json:
         raise InputError("--json is for a robot from a file")
     files = _files(options)
@@ -181,11 +188,15 @@ def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
     from crowdbot.trials import check_trial, import_trial, trial_xml
 
+    from .templates.people_files import copy_beside
+
     done = import_trial(options.original, options.root, options.layer, options.unit or "")
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1
         file = options.file if single else options.file.with_stem(f"{options.file.stem}-{k + 1:02d}-{Path(name).stem}")
+        if trial.stage.building:
+            copy_beside(options.original, file)
         _write(file, trial_xml(trial))
         try:
             check_trial(trial)

@@ -1,24 +1,29 @@
-"""``crowdbot predict``: score predictors on recordings of people."""
+"""``crowdbot predict``: score predictors on recordings of people, or predictors of scans on readings."""
 
 from __future__ import annotations
 
 import argparse
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
 from .recordings import add_recordings, horizon, print_notes, recordings
 from .schemes import add_scheme, frame_line, predictor_specs
+from .track import add_perception, predict_perception
 
 if TYPE_CHECKING:
     from crowdbot.benchmark import Evaluation, EvaluationJob, JobResult, PredictorResult
+    from crowdbot.data import Recording
     from crowdbot.metrics import Score
+    from crowdbot.prediction import PredictorSpec
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    add_recordings(parser)
+    add_recordings(parser, required=False)
+    add_perception(parser)
     add = parser.add_argument
     add(
         "--predictor", nargs="+", default=["constant-velocity"], metavar="NAME",
@@ -31,6 +36,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=VALUE",
         help="parameters of the predictor or its crowd model (default: none)",
+    )
+    add(
+        "--forecasts", nargs="+", default=[], type=Path, metavar="FILE",
+        help="forecasts made elsewhere, scored beside the predictors: TrajNet++ .ndjson, .npz or .parquet",
+    )  # fmt: skip
+    add(
+        "--write-forecasts",
+        type=Path,
+        metavar="FILE",
+        help="file for the forecasts of one predictor: .ndjson, .npz or .parquet",
     )
     add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
     add(
@@ -54,23 +69,34 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         choices=("gif", "mp4", "webp"),
         help="format of the animation: gif, mp4 (requires PyAV) or webp (default: gif)",
     )
-    add("--seed", type=int, default=0, help="random seed (default: 0)")
+    add("--seed", type=int, metavar="N", help="random seed (default: 0; with --perception: first seed of the trial)")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Evaluate every predictor on every recording."""
+    """Evaluate every predictor on every recording, or every predictor of scans."""
     from crowdbot.benchmark import Evaluation
     from crowdbot.core import InputError, explain_write_errors
 
+    if (options.data is None) == (options.perception is None):
+        raise InputError("predict: give either --data PATH or --perception SOURCE")
+    if options.perception is not None:
+        return predict_perception(options)
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
     found = recordings(options)
     evaluation = Evaluation(
-        found, predictor_specs(options), options.samples, options.best_of, options.seed, options.live
+        found,
+        (*predictor_specs(options), *_stored(options, found)),
+        options.samples,
+        options.best_of,
+        options.seed or 0,
+        options.live,
     )
     if options.animate is not None:
         evaluation.window_at(options.animate)  # fails before the evaluation starts
+    if options.write_forecasts is not None:
+        _check_writing(evaluation, options.write_forecasts)
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".* is used instead$")  # reported once as a note
@@ -80,6 +106,9 @@ def main(options: argparse.Namespace) -> int:
             note(_resume_hint(evaluation, keep))
             raise
     results = evaluation.results(done)
+    if options.write_forecasts is not None:
+        with explain_write_errors(options.write_forecasts):
+            _write_forecasts(evaluation, options.write_forecasts)
     if options.out is not None:
         with explain_write_errors(options.out):
             _write_results(options, evaluation, results)
@@ -91,6 +120,45 @@ def main(options: argparse.Namespace) -> int:
         note(sentence)
     _tables(options, evaluation, results)
     return 0
+
+
+def _stored(options: argparse.Namespace, found: Sequence[Recording]) -> list[PredictorSpec]:
+    """Return the forecasts of files as predictors."""
+    from crowdbot.core import InputError
+    from crowdbot.prediction import PredictorSpec, forecasts_of
+
+    if options.forecasts and len(found) != 1:
+        raise InputError(f"--forecasts requires one recording, whose frames and ids they have, not {len(found)}")
+    return [PredictorSpec(forecasts_of(path)) for path in options.forecasts]
+
+
+def _check_writing(evaluation: Evaluation, file: Path) -> None:
+    """Raise :class:`InputError` unless there is one recording and one predictor, and the suffix is known."""
+    from crowdbot.core import InputError
+    from crowdbot.data import check_forecast_suffix
+
+    check_forecast_suffix(file)
+    if len(evaluation.recordings) != 1 or len(evaluation.specs) != 1:
+        raise InputError(
+            f"--write-forecasts requires one recording and one predictor, not {len(evaluation.recordings)} and"
+            f" {len(evaluation.specs)}"
+        )
+
+
+def _write_forecasts(evaluation: Evaluation, file: Path) -> None:
+    """Predict the windows again and write the forecasts."""
+    from crowdbot.benchmark import predict_windows
+    from crowdbot.data import Forecast, write_forecasts
+
+    recording, how = evaluation.recordings[0], evaluation
+    past, future = recording.windows
+    size = 1 if how.live else len(past)
+    predictor = how.specs[0].build(recording)
+    parts = [one.forecast for one in predict_windows(
+        predictor, past, future, how.samples, how.best_of, how.seed, how.live, size
+    )]  # fmt: skip
+    write_forecasts(file, past, future, Forecast.concatenate(parts))
+    note(f"wrote the forecasts of {how.specs[0].name} to {file}")
 
 
 def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
@@ -110,22 +178,22 @@ def _notes(results: list[PredictorResult]) -> list[str]:
 def _run_jobs(
     evaluation: Evaluation, options: argparse.Namespace, keep: Path | None, report: Progress
 ) -> list[tuple[EvaluationJob, JobResult]]:
-    """Run the evaluation; print one line per frame of a calibrated crowd."""
+    """Run the evaluation; print one line per frame of a calibrated crowd, below the name of its scheme."""
     jobs = evaluation.jobs()
     whole: dict[tuple[str, str], int] = {}
     for job in jobs:
         whole[job.label] = whole.get(job.label, 0) + job.last - job.first
     done: list[tuple[EvaluationJob, JobResult]] = []
     share: dict[tuple[str, str], int] = {}
-    has_header = False
+    headed = ""
     for job, part in evaluation.run(options.workers, options.cluster, keep):
         done.append((job, part))
         share[job.label] = share.get(job.label, 0) + job.last - job.first
         report(" ".join(job.label), share[job.label] / whole[job.label])
         if not options.json and part.frames.calibrated:
-            if not has_header:
-                note(frame_line())
-                has_header = True
+            if headed != " on ".join(reversed(job.label)):
+                headed = " on ".join(reversed(job.label))
+                note(f"{headed}\n{frame_line()}")
             _frame_lines(part)
     return done
 

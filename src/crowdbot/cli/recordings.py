@@ -59,7 +59,8 @@ def _add_stage(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stage",
         metavar="FILE",
-        help="walls and exits of the place: a trial, a ROS map (.yaml), or an area (.wkt, .geojson), in metres",
+        help="walls and exits of the place in metres: a trial, a stage of an experiment such as hermes-corridor-180, a"
+        " ROS map (.yaml), or an area (.wkt, .geojson)",
     )
 
 

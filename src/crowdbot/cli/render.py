@@ -74,6 +74,7 @@ def _render_episode(options: argparse.Namespace) -> int:
 
 def _render(options: argparse.Namespace, trial: Trial, seed: int, **steering: Any) -> int:
     from crowdbot.rendering import ImageWriter, camera_names, render_images
+    from crowdbot.trials import camera_remarks
 
     if options.list:
         return _list_cameras(trial, options.json)
@@ -103,12 +104,15 @@ def _render(options: argparse.Namespace, trial: Trial, seed: int, **steering: An
         "images": count,
         "rate": album.rate if video else None,
     }
+    remarks = camera_remarks(trial, camera)
     if options.json:
-        print_json({**summary, "files": [str(path) for path in files]})
+        print_json({**summary, "files": [str(path) for path in files], "remarks": remarks})
         return 0
     shown = [str(path) for path in files] if len(files) <= 3 else [f"{len(files)} files in {files[0].parent}"]
     rows = [(key, number(value)) for key, value in summary.items()] + [("file", name) for name in shown]
     print_table(f"{trial.name}, seen by {camera}", ("", ""), rows)
+    for remark in remarks:
+        print(f"note: {remark}")
     return 0
 
 

@@ -15,8 +15,7 @@ from .output import add_json, note, number, print_json, print_metrics, print_tab
 from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
-    from crowdbot.bridges import MotionCapture
-    from crowdbot.simulation import RunSummary
+    from crowdbot.simulation import OrderSchedule, OrderSource, RunSummary
     from crowdbot.trials import Trial
 
 
@@ -31,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_world(parser)
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
+    parser.add_argument("--orders", type=Path, metavar="FILE", help="file of orders with times, one JSON object a line")
     add_bridge(parser)
     add_mocap(parser)
     add_json(parser)
@@ -47,15 +47,30 @@ def main(options: argparse.Namespace) -> int:
     with contextlib.ExitStack() as stack:
         captures = open_captures(trial, options, stack)
         if options.bridge:
+            if options.orders is not None:
+                raise InputError("--orders cannot be combined with --bridge; send the orders over the bridge")
             done, wall = run_with_bridge(trial, options, captures)
         else:
             check_bridge_options(options)
-            done, wall = _run(trial, options, captures)
+            done, wall = _run(trial, options, [*captures, *_schedule(trial, options.orders)])
     print_captures(captures)
     return print_run(done, options, wall)
 
 
-def _run(trial: Trial, options: argparse.Namespace, captures: Sequence[MotionCapture]) -> tuple[RunSummary, float]:
+def _schedule(trial: Trial, file: Path | None) -> list[OrderSchedule]:
+    """Return the orders of a file."""
+    from crowdbot.core import InputError
+    from crowdbot.simulation import OrderSchedule
+
+    if file is None:
+        return []
+    for robot in trial.robots:
+        if getattr(robot.navigator, "source", ""):
+            raise InputError(f"--orders cannot be used with robot {robot.name!r}, whose navigator is another program")
+    return [OrderSchedule.read(file)]
+
+
+def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSource]) -> tuple[RunSummary, float]:
     """Run the trial and return its summary and the real time [s]."""
     from crowdbot.core import PacedClock
     from crowdbot.recording import record
@@ -71,7 +86,7 @@ def _run(trial: Trial, options: argparse.Namespace, captures: Sequence[MotionCap
             progress=lambda share: report(f"run {trial.name}", share),
             clock=clock,
             force=options.force,
-            sources=captures,
+            sources=sources,
         )
     return done, time.perf_counter() - begin
 

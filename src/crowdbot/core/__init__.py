@@ -39,6 +39,7 @@ from .plugins.plugin import (
 )
 from .plugins.plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
+from .programs import PROGRAMS, check_programs
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
 from .system_errors import explain_write_errors
@@ -50,6 +51,8 @@ if TYPE_CHECKING:
     from .compiling import notify_compiling
     from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .kernels import cache_folder, cache_root, is_cold, kernel, prange
+    from .markup.gltf import GltfFile, read_gltf
+    from .markup.gltf_table import MOST_PARTS, MOST_TRIANGLES, check_gltf_table, glb_table, table_rows
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .markup.yaml import parse_yaml
     from .neighbors import CHUNK, SMALL, Neighbors
@@ -65,6 +68,8 @@ __getattr__, __dir__ = lazy_exports(
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
         "random_streams": ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"],
         "workers": ["each", "run_saved_jobs"],
+        "markup.gltf": ["GltfFile", "read_gltf"],
+        "markup.gltf_table": ["MOST_PARTS", "MOST_TRIANGLES", "check_gltf_table", "glb_table", "table_rows"],
         "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
         "markup.yaml": ["parse_yaml"],
     },
@@ -73,9 +78,12 @@ __getattr__, __dir__ = lazy_exports(
 __all__ = [
     "CHUNK",
     "HASH_BLOCK",
+    "MOST_PARTS",
+    "MOST_TRIANGLES",
     "MOUNT_HEIGHT",
     "PERSON_COLOR",
     "PERSON_HEIGHT",
+    "PROGRAMS",
     "ROBOT_COLOR",
     "SMALL",
     "STAGE",
@@ -90,6 +98,7 @@ __all__ = [
     "EpisodeError",
     "ExternalClock",
     "FreeClock",
+    "GltfFile",
     "InputError",
     "MissingExtra",
     "Neighbors",
@@ -116,8 +125,10 @@ __all__ = [
     "builtin_name",
     "cache_folder",
     "cache_root",
+    "check_gltf_table",
     "check_number",
     "check_parameters",
+    "check_programs",
     "dense",
     "did_you_mean",
     "draw_svg",
@@ -127,6 +138,7 @@ __all__ = [
     "find_class",
     "format_xml",
     "from_attributes",
+    "glb_table",
     "hash_blocks",
     "hash_start",
     "import_optional",
@@ -148,6 +160,7 @@ __all__ = [
     "prange",
     "product",
     "read_bytes",
+    "read_gltf",
     "reads_only",
     "reject_entities",
     "relative_name",
@@ -158,6 +171,7 @@ __all__ = [
     "sources_of",
     "stream",
     "stream_states",
+    "table_rows",
     "unread_fields",
     "whole_ticks",
     "without_running_code",

@@ -44,7 +44,9 @@ class Bounds:
             numbers = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError):
             return False
-        return bool(np.all(self._contains(numbers)))
+        if self.whole or not numbers.size:
+            return bool(np.all(self._contains(numbers)))
+        return bool(self._contains(numbers.min()) and self._contains(numbers.max()))  # both are NaN if one number is
 
     def describe(self, high_first: bool = False) -> str:
         """Return the text after ``must be`` in a message, with the upper end first if ``high_first``."""

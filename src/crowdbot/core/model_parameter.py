@@ -7,6 +7,7 @@ that broadcasts to ``[E, A]``.
 from __future__ import annotations
 
 import dataclasses
+import functools
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,9 +80,14 @@ def parameter(
 
 def parameters(model: Any) -> tuple[Parameter, ...]:
     """Return the parameter table of a model or model class, in the order of its fields."""
+    return _table(model if isinstance(model, type) else type(model))
+
+
+@functools.lru_cache(maxsize=256)
+def _table(kind: Any) -> tuple[Parameter, ...]:
     return tuple(
         dataclasses.replace(field.metadata["parameter"], name=field.name)
-        for field in dataclasses.fields(model)
+        for field in dataclasses.fields(kind)
         if "parameter" in field.metadata
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -27,6 +28,20 @@ PERSON_HEIGHT = 1.7
 WALL_HEIGHT = 3.0
 """Default height [m] of walls."""
 INTEGER = np.dtype(np.int64)
+PAIRS = ("position", "velocity", "goal", "preferred_velocity")
+NUMBERS = ("heading", "radius", "preferred_speed", "max_speed")
+MASKS = ("active", "visible", "external")
+IS_DENSE = "_is_dense"
+"""Entry of a scene whose arrays kernels accept as they are."""
+CHECKED_NAMES = ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed")
+CHECKED = operator.itemgetter(*CHECKED_NAMES, "active")
+ADVANCED = operator.itemgetter("position", "velocity", "heading", "active", "external")
+STEP, STEP_TO_GOAL = (
+    operator.itemgetter(
+        "position", "velocity", "radius", "max_speed", aim, "preferred_speed", "active", "visible", "external"
+    )
+    for aim in ("preferred_velocity", "goal")
+)
 TURNING_SPEED = 0.05
 """Speed [m/s] below which an agent keeps its heading."""
 
@@ -146,18 +161,7 @@ class Scene:
 
     def check(self) -> None:
         """Raise :class:`InputError` if a value of an active agent is not finite or has the wrong sign."""
-        shape = self.shape
-        pairs = (*shape, 2)
-        if not _is_valid(
-            dense(self.position, pairs, FLOAT),
-            dense(self.velocity, pairs, FLOAT),
-            dense(self.heading, shape, FLOAT),
-            dense(self.radius, shape, FLOAT),
-            dense(self.goal, pairs, FLOAT),
-            dense(self.preferred_speed, shape, FLOAT),
-            dense(self.max_speed, shape, FLOAT),
-            dense(self.active, shape, BOOL),
-        ):
+        if not _is_valid(*CHECKED(self._dense_arrays())):
             self._raise_first_error()
         if self.height is not None and not np.all(self.height[self.active] > 0.0):
             raise InputError(f"scene: height {self.height[self.active].min()} m is not above 0")
@@ -168,7 +172,7 @@ class Scene:
 
     def _raise_first_error(self) -> None:
         """Raise :class:`InputError` for the first field with a value that is not allowed."""
-        for name in ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed"):
+        for name in CHECKED_NAMES:
             value = getattr(self, name)[self.active]
             if not np.all(np.isfinite(value)):
                 raise InputError(f"scene: {name} of an active agent is not finite; mark absent agents active=False")
@@ -196,29 +200,24 @@ class Scene:
         External and absent agents ignore the new velocity; external agents keep their own. Bodies of agents are
         removed (limbs must be posed again), bodies of the stage are kept.
         """
-        shape = self.shape
-        pairs = (*shape, 2)
+        pairs = (*self.shape, 2)
         chosen = dense(velocity, pairs, FLOAT)
+        place, moved = np.empty(pairs), np.empty(pairs)
         # the arctan2 of numpy: that of the compiler differs in the last bit on some processors
         turned = np.arctan2(chosen[..., 1], chosen[..., 0])
-        place, moved = np.empty(pairs), np.empty(pairs)
-        _advance(
-            dense(self.position, pairs, FLOAT),
-            dense(self.velocity, pairs, FLOAT),
-            chosen,
-            dense(self.heading, shape, FLOAT),
-            dense(self.active, shape, BOOL),
-            dense(self.external, shape, BOOL),
-            float(dt),
-            place,
-            moved,
-            turned,
-        )
+        _advance(chosen, float(dt), place, moved, turned, *ADVANCED(self._dense_arrays()))
         later = self._copy()
         later.__dict__.update(position=place, velocity=moved, heading=turned, time=self.time + dt)
         if self.bodies is not None:
             later.__dict__["bodies"] = self.bodies.stage_bodies()
         return later
+
+    def next_positions(self, velocity: Floats, dt: float) -> Floats:
+        """Return the positions ``[E, A, 2]`` [m] of :meth:`advance`."""
+        place, chosen = np.empty((*self.shape, 2)), dense(velocity, (*self.shape, 2), FLOAT)
+        spare = np.empty(place.shape), np.empty(self.shape)
+        _advance(chosen, float(dt), place, *spare, *ADVANCED(self._dense_arrays()))
+        return place
 
     def replace(self, **changes: Any) -> Scene:
         """Return a copy with some fields changed.
@@ -227,11 +226,35 @@ class Scene:
             TypeError: a field is unknown.
         """
         later = self._copy()
-        later.__dict__.update(changes)
-        if len(later.__dict__) != len(self.__dict__):
+        fields = later.__dict__
+        fields.pop(IS_DENSE, None)
+        count = len(fields)
+        fields.update(changes)
+        if len(fields) != count:
             unknown = sorted(changes.keys() - self.__dict__.keys())
             raise TypeError(f"Scene has no field {unknown[0]!r}")
         return later
+
+    def step_arrays(self) -> tuple[NDArray[Any], ...]:
+        """Return what models read in a step, as arrays that kernels accept.
+
+        These are: position, velocity, radius, maximum speed, preferred velocity or (without it) goal, preferred speed,
+        active, visible, external.
+        """
+        return tuple((STEP_TO_GOAL if self.preferred_velocity is None else STEP)(self._dense_arrays()))
+
+    def _dense_arrays(self) -> Mapping[str, Any]:
+        """Return arrays that kernels accept, by field; those of a scene that was advanced need no check."""
+        fields = self.__dict__
+        if IS_DENSE in fields:
+            return fields
+        shape = self.shape
+        made = {name: dense(fields[name], (*shape, 2), FLOAT) for name in PAIRS if fields[name] is not None}
+        made |= {name: dense(fields[name], shape, FLOAT) for name in NUMBERS}
+        made |= {name: dense(fields[name], shape, BOOL) for name in MASKS}
+        if all(value is fields[name] for name, value in made.items()):
+            fields[IS_DENSE] = True
+        return made
 
     def without(self, agent: int) -> Scene:
         """Return the scene without ``agent``, as its own sensors see it."""
@@ -248,6 +271,7 @@ class Scene:
         """
         index = np.asarray(chosen, dtype=np.int64)
         part = self._copy()
+        part.__dict__.pop(IS_DENSE, None)
         for name, value in self.__dict__.items():
             if isinstance(value, np.ndarray):
                 part.__dict__[name] = value[index]
@@ -263,6 +287,7 @@ class Scene:
         (1, 3)
         """
         rows, part = slice(number, number + 1), self._copy()
+        part.__dict__.pop(IS_DENSE, None)
         for name, value in self.__dict__.items():
             if isinstance(value, np.ndarray):
                 part.__dict__[name] = value[rows]
@@ -346,25 +371,20 @@ def _is_valid(
     for e in range(active.shape[0]):
         for a in range(active.shape[1]):
             if active[e, a] and not (
-                math.isfinite(position[e, a, 0])
-                and math.isfinite(position[e, a, 1])
-                and math.isfinite(velocity[e, a, 0])
-                and math.isfinite(velocity[e, a, 1])
-                and math.isfinite(heading[e, a])
-                and math.isfinite(goal[e, a, 0])
-                and math.isfinite(goal[e, a, 1])
+                math.isfinite(position[e, a, 0]) and math.isfinite(position[e, a, 1])
+                and math.isfinite(velocity[e, a, 0]) and math.isfinite(velocity[e, a, 1])
+                and math.isfinite(goal[e, a, 0]) and math.isfinite(goal[e, a, 1]) and math.isfinite(heading[e, a])
                 and 0.0 < radius[e, a] < math.inf
-                and 0.0 <= preferred_speed[e, a] < math.inf
-                and 0.0 <= max_speed[e, a] < math.inf
-            ):
+                and 0.0 <= preferred_speed[e, a] < math.inf and 0.0 <= max_speed[e, a] < math.inf
+            ):  # fmt: skip
                 return False
     return True
 
 
 @kernel
 def _advance(
-    position: Floats, velocity: Floats, chosen: Floats, heading: Floats, active: Bools, external: Bools, dt: float,
-    place: Floats, moved: Floats, turned: Floats,
+    chosen: Floats, dt: float, place: Floats, moved: Floats, turned: Floats, position: Floats, velocity: Floats,
+    heading: Floats, active: Bools, external: Bools,
 ) -> None:  # fmt: skip
     """Write the next positions, velocities and headings; ``turned`` contains the directions of ``chosen``."""
     for e in range(active.shape[0]):

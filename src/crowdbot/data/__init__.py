@@ -14,16 +14,19 @@ if TYPE_CHECKING:
     from .example import example_windows
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .forecast import Forecast
+    from .forecast_files import check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS
+    from .readers.hdf5_arrays import read_hdf5_arrays
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
     from .recording import Recording
     from .track_writers import save
     from .trajectories import PrimaryScene, Trajectories
+    from .trajnet_scenes import TRAJNET_CATEGORIES, primary_windows, scenes_of_category
     from .walkable import walkable_rings
     from .windows import Windows
 
@@ -34,11 +37,14 @@ __getattr__, __dir__ = lazy_exports(
         "example": ["example_windows"],
         "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
         "forecast": ["Forecast"],
+        "forecast_files": ["check_forecast_suffix", "read_forecasts", "write_forecasts"],
         "homography": ["read_homography"],
         "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
         "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
         "place_layout": ["PlaceLayout"],
+        "trajnet_scenes": ["TRAJNET_CATEGORIES", "primary_windows", "scenes_of_category"],
         "protocols": ["PROTOCOLS"],
+        "readers.hdf5_arrays": ["read_hdf5_arrays"],
         "readers.time_base": ["RowRateError"],
         "readers.ucy": ["UCY_TO_METRES"],
         "recording": ["Recording"],
@@ -54,6 +60,7 @@ __all__ = [
     "MCAP_MAGIC",
     "PROTOCOLS",
     "TIME_BASES",
+    "TRAJNET_CATEGORIES",
     "UCY_TO_METRES",
     "Degradation",
     "DegradedTracks",
@@ -67,16 +74,22 @@ __all__ = [
     "RowRateError",
     "Trajectories",
     "Windows",
+    "check_forecast_suffix",
     "detect_format",
     "example_windows",
     "fill_gaps",
     "has_summary",
     "load",
     "observed_velocity",
+    "primary_windows",
     "read_attachment",
+    "read_forecasts",
+    "read_hdf5_arrays",
     "read_homography",
     "save",
+    "scenes_of_category",
     "slice_rows",
     "steady_velocity",
     "walkable_rings",
+    "write_forecasts",
 ]

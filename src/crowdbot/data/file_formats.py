@@ -10,7 +10,23 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
-from .readers import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
+from .readers import (
+    episode,
+    eth,
+    ind,
+    jrdb,
+    juelich,
+    lcas,
+    petrack,
+    sdd,
+    sgan,
+    socialways,
+    tables,
+    thor_magni,
+    trajnetpp,
+    ucy,
+    wildtrack,
+)
 from .readers.assemble import check_units
 from .readers.columns import check_quantities
 from .readers.reader import Reader, ReadOptions
@@ -26,12 +42,17 @@ _READERS: tuple[Reader, ...] = (
     juelich.HDF5,
     juelich.SQLITE,
     socialways.READER,
+    jrdb.READER,
+    wildtrack.READER,
+    thor_magni.READER,
     trajnetpp.READER,
     ucy.READER,
+    lcas.READER,
     sdd.READER,
     petrack.READER,
     eth.READER,
     sgan.READER,
+    ind.READER,
     tables.CSV,
 )
 

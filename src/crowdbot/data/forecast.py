@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +13,9 @@ from numpy.typing import NDArray
 from crowdbot.core import Disc, InputError, Path2D, draw_svg
 
 __all__ = ["Forecast"]
+
+ARRAYS = ("position", "weight", "valid", "covariance", "existence", "out_of_distribution", "person_weight")
+"""Fields with one entry per window."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,8 @@ class Forecast:
         existence: ``[W, A]`` probability that a person is still there, for people hidden at the last row; None means 1.
         out_of_distribution: ``[W, A]`` between 0 and 1: how unlike the training data a person is. A learned predictor
             gives this share of its answer to a baseline.
+        person_weight: ``[W, K, A]`` probability of a person's own future in each joint future, if the predictor has it;
+            sums to 1 over K for predicted people. ``weight`` is that of the joint future.
 
     Raises:
         InputError: the shapes do not fit, or a position of a predicted person is not finite.
@@ -47,6 +54,7 @@ class Forecast:
     covariance: NDArray[np.float64] | None = None
     existence: NDArray[np.float64] | None = None
     out_of_distribution: NDArray[np.float64] | None = None
+    person_weight: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         if self.position.ndim != 5 or self.position.shape[4] != 2:
@@ -55,7 +63,7 @@ class Forecast:
             )
         W, K, T, A, _ = self.position.shape
         shapes = {"weight": (W, K), "valid": (W, A), "covariance": (W, T, A, 2, 2), "existence": (W, A)}
-        for name, fits in (shapes | {"out_of_distribution": (W, A)}).items():
+        for name, fits in (shapes | {"out_of_distribution": (W, A), "person_weight": (W, K, A)}).items():
             value = getattr(self, name)
             if value is not None and value.shape != fits:
                 shape = list(getattr(self, name).shape)
@@ -73,6 +81,13 @@ class Forecast:
         W, K = position.shape[:2]
         kept = np.where(valid[:, None, None, :, None], position, 0.0)
         return cls(kept, np.full((W, K), 1.0 / K), valid, dt, predictor)
+
+    @classmethod
+    def concatenate(cls, parts: Sequence[Forecast]) -> Forecast:
+        """Return the windows of several forecasts of one predictor, in order."""
+        known = [name for name in ARRAYS if getattr(parts[0], name) is not None]
+        joined: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in known}
+        return dataclasses.replace(parts[0], **joined)
 
     @property
     def samples(self) -> int:
@@ -105,6 +120,5 @@ class Forecast:
 
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Forecast:
         """Return the forecast of some of the windows."""
-        names = ("position", "weight", "valid", "covariance", "existence", "out_of_distribution")
-        arrays = {name: getattr(self, name)[chosen] for name in names if getattr(self, name) is not None}
+        arrays = {name: getattr(self, name)[chosen] for name in ARRAYS if getattr(self, name) is not None}
         return dataclasses.replace(self, **arrays)

@@ -31,6 +31,7 @@ class Windows:
         walls: rings ``[N, 2]`` [m] around areas that are not walkable; empty if unknown.
         units: ``m``, or ``px`` for recordings in pixels: then every [m] above is pixels.
         plan: ``[W, S, A, 2]`` [m], planned positions of robots at the next S rows, NaN for everyone else; or None.
+        radius: ``[W, A]`` [m] radii of people and robots, NaN where unknown; or None. Joint futures keep apart by them.
     """
 
     position: NDArray[np.float64]
@@ -45,6 +46,7 @@ class Windows:
     walls: tuple[NDArray[np.float64], ...] = ()
     units: str = "m"
     plan: NDArray[np.float64] | None = None
+    radius: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of windows."""
@@ -53,7 +55,8 @@ class Windows:
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Windows:
         """Return some of the windows."""
         arrays = {n: getattr(self, n)[chosen] for n in ("position", "present", "scored", "robot", "id", "frame")}
-        return dataclasses.replace(self, **arrays, plan=None if self.plan is None else self.plan[chosen])
+        more = {name: getattr(self, name)[chosen] for name in ("plan", "radius") if getattr(self, name) is not None}
+        return dataclasses.replace(self, **arrays, **more)
 
     def with_plans(self, plans: Mapping[int, ArrayLike]) -> Windows:
         """Return the windows with plans of robots: ``plans`` maps an id to its next positions ``[S, 2]`` [m].

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from crowdbot.core import stream
 
@@ -65,6 +64,8 @@ def paired_comparison(first: Floats, second: Floats, seed: int = 0) -> tuple[Est
     if not len(gap):
         return estimate, math.nan
     if np.isin(np.concatenate([first[both], second[both]]), (0.0, 1.0)).all():
+        from scipy import stats  # takes longer to import than the app to start
+
         more, less = int(np.sum(gap > 0)), int(np.sum(gap < 0))
         return estimate, 1.0 if more + less == 0 else float(stats.binomtest(more, more + less).pvalue)
     return estimate, _sign_flips(gap, seed)

@@ -17,6 +17,7 @@ from crowdbot.metrics import (
     RobotLog,
     crowd_effect,
     empty_scene_ratios,
+    fall_metrics,
     gate_metrics,
     impact_region_metrics,
     log_metrics,
@@ -117,6 +118,9 @@ def episode_metrics(
             if tuple(one.first) == ("robot", episode.robots[0]) and one.second.kind == "person"
         ]
         found |= impact_region_metrics(own, REGIONS, float(episode.trial.robots[0].mass))
+        if episode.trial.balance:
+            caused = [one for one in episode.falls if (one.cause, one.causer) == ("robot", episode.robots[0])]
+            found |= fall_metrics(episode.falls, caused)
     others = paired or {}
     for address in filter(is_own_metric, names):
         found[metric_name(address)] = load_metric(address).value(log)

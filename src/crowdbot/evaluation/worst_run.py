@@ -20,7 +20,7 @@ __all__ = ["WorstRun", "worst_runs"]
 
 RATE = 10.0
 """Largest number of pictures a second in the report."""
-ORDER = ("collision", "error", "timeout", "finished", "success")
+ORDER = ("collision", "fall", "error", "timeout", "finished", "success")
 """Outcomes from the worst to the best."""
 
 
@@ -43,8 +43,8 @@ class WorstRun(NamedTuple):
 def worst_runs(plan: EvaluationPlan, result: EvaluationResult, count: int = 1) -> list[WorstRun]:
     """Return the worst runs of each cell, simulated again.
 
-    Collisions come first, the fastest impact first of all; then failures of the navigator, then timeouts, then runs
-    with the smallest clearance.
+    Collisions come first, the fastest impact first of all; then falls of people, failures of the navigator, timeouts,
+    and runs with the smallest clearance.
 
     Args:
         plan, result: of the same evaluation.

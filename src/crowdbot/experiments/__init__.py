@@ -2,6 +2,7 @@
 
 from .background_run import Aborted, BackgroundRun
 from .comparison import (
+    LATENCY_FILE,
     LOOKING,
     SETTLING,
     EmulatedPerson,
@@ -10,13 +11,16 @@ from .comparison import (
     RecordedTrial,
     Study,
     StudyAnalysis,
+    TrialLatency,
     TrialMeasures,
     ViewTrack,
     measures_figure,
     paired_test,
     rating_measures,
+    read_trial_latency,
     view_track,
     write_study_report,
+    write_trial_latency,
 )
 from .console import Console, ConsoleClosed
 from .emulation import EmulatedPedestrian
@@ -51,6 +55,7 @@ from .withdrawal import withdraw
 
 __all__ = [
     "FILE",
+    "LATENCY_FILE",
     "LOOKING",
     "QUESTIONNAIRES",
     "SETTLING",
@@ -100,6 +105,7 @@ __all__ = [
     "TrialClock",
     "TrialClockLog",
     "TrialEntry",
+    "TrialLatency",
     "TrialMeasures",
     "ViewTrack",
     "analyse_sessions",
@@ -123,6 +129,7 @@ __all__ = [
     "read_log",
     "read_streams",
     "read_trial_clock",
+    "read_trial_latency",
     "record_of",
     "roles_of",
     "rows_of",
@@ -136,4 +143,5 @@ __all__ = [
     "williams",
     "withdraw",
     "write_study_report",
+    "write_trial_latency",
 ]

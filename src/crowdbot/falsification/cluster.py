@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.cluster import hierarchy
 
 from .sample import Sample
 
@@ -85,6 +84,8 @@ def _labels(points: Floats) -> NDArray[np.int64]:
     if count < 2 or not dimensions:
         return np.zeros(count, dtype=np.int64)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).astype(np.int64))
+    from scipy.cluster import hierarchy  # takes longer to import than the rest
+
     tree = hierarchy.linkage(points[chosen], "average")
     own = hierarchy.fcluster(tree, CUT * math.sqrt(2.0 * dimensions), "distance")
     if len(chosen) == count:

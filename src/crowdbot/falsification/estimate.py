@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special, stats
+from scipy import special
 
 from crowdbot.core import stream
 from crowdbot.evaluation import Estimate
@@ -107,6 +107,8 @@ def replicate_estimate(values: Floats, runs: int, confidence: float = 0.95) -> E
     >>> print(replicate_estimate(np.array([0.01, 0.012, 0.011]), 3000))
     0.011 [0.00852, 0.0135]
     """
+    from scipy import stats  # takes longer to import than the rest
+
     mean = float(values.mean())
     half = float(stats.t.ppf(0.5 + confidence / 2.0, len(values) - 1) * stats.sem(values))
     return Estimate(mean, max(0.0, mean - half), min(1.0, mean + half), runs)

@@ -66,7 +66,7 @@ class FailureCriterion:
         Raises:
             InputError: the runs do not have the metric.
         """
-        if outcome == "error":
+        if outcome == "error" or (outcome == "fall" and self.kind == "any"):
             return -1.0
         if self.requirement is not None:
             return self._margin(self.requirement, metrics)

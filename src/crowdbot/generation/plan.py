@@ -36,6 +36,7 @@ class ShardJob:
         images: whether colour images with boxes and masks are written as well, for COCO.
         out: folder of the shard.
         trust: whether code from outside the folder of the trial may be loaded.
+        kitti: whether images, boxes and point clouds are written in the folders of KITTI.
     """
 
     name: str
@@ -48,6 +49,7 @@ class ShardJob:
     images: bool
     out: Path
     trust: bool
+    kitti: bool = False
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ class GenerationPlan:
             rate that is not given is at most one reading in each step.
         kind: format, one of :data:`FORMATS`.
         coco: whether colour images are written as PNG with annotations in the format of COCO.
+        kitti: whether images, boxes and point clouds are written in the folders of KITTI.
         compressed: whether files are compressed; arrays of scans shrink to about a third at a tenth of the speed.
         shard_bytes: approximate size of a shard [bytes].
         noisy: whether presets have their noise.
@@ -85,6 +88,7 @@ class GenerationPlan:
     shard_bytes: int = 400_000_000
     noisy: bool = False
     trust: bool = True
+    kitti: bool = False
     variants: tuple[Trial, ...] = dataclasses.field(init=False)
 
     def __post_init__(self) -> None:
@@ -101,7 +105,7 @@ class GenerationPlan:
             raise InputError(f"shard_bytes = {self.shard_bytes} must be at least 1000000")
         mounts = [_mount(text, self.noisy) for text in self.sensors]
         variants = [
-            _with_sensors(variant, mounts, self.coco)
+            _with_sensors(variant, mounts, self.coco, self.kitti)
             for trial in self.trials
             for variant in expand_sweeps(trial, trust=self.trust)
         ]
@@ -126,7 +130,7 @@ class GenerationPlan:
                 found.append(
                     ShardJob(
                         f"{_file_name(name)}-{number:06d}", name, trial_xml(variant), variant.folder, seeds, self.kind,
-                        self.compressed, self.coco, out, self.trust,
+                        self.compressed, self.coco, out, self.trust, self.kitti,
                     )
                 )  # fmt: skip
         if len(found) > MOST_SHARDS:
@@ -183,7 +187,7 @@ def _in_steps(mount: Mount, exact: bool, step: float) -> Mount:
     return dataclasses.replace(mount, sensor=dataclasses.replace(mount.sensor, rate=1.0 / step))
 
 
-def _with_sensors(trial: Trial, sensors: Sequence[tuple[Mount, bool]], coco: bool) -> Trial:
+def _with_sensors(trial: Trial, sensors: Sequence[tuple[Mount, bool]], coco: bool, kitti: bool) -> Trial:
     if not trial.robots:
         raise InputError(f"trial {trial.name!r} has no robot that could carry a sensor")
     first = trial.robots[0]
@@ -192,7 +196,7 @@ def _with_sensors(trial: Trial, sensors: Sequence[tuple[Mount, bool]], coco: boo
     kept = tuple(mount for mount in first.sensors if mount.name not in names)
     try:
         robots = (dataclasses.replace(first, sensors=(*kept, *mounts)), *trial.robots[1:])
-        robots = tuple(_with_masks(robot) for robot in robots)
+        robots = tuple(with_masks(robot) for robot in robots)
         made = dataclasses.replace(trial, robots=robots)
     except CrowdbotError as error:
         raise InputError(f"trial {trial.name!r} with sensors {', '.join(sorted(names))}: {error}") from None
@@ -201,13 +205,17 @@ def _with_sensors(trial: Trial, sensors: Sequence[tuple[Mount, bool]], coco: boo
         raise InputError(f"trial {trial.name!r}: its robot has no sensor; add one with --sensors, such as sick-tim571")
     if coco and not any(isinstance(sensor, RGBCamera) for sensor in found):
         raise InputError(f"trial {trial.name!r}: images for COCO need a colour camera, and its robot has none")
+    if kitti and not any(isinstance(sensor, RGBCamera | Lidar3D) for sensor in found):
+        raise InputError(
+            f"trial {trial.name!r}: KITTI needs a colour camera or a 3-D scanner, and its robot has neither"
+        )
     return made
 
 
-def _with_masks(robot: Any) -> Any:
-    """Return the robot with the segmentation of its colour cameras, which boxes and masks are made from."""
+def with_masks(robot: Any) -> Any:
+    """Return the robot whose colour cameras have labels: masks, boxes and keypoints."""
     sensors = tuple(
-        dataclasses.replace(mount, sensor=dataclasses.replace(mount.sensor, segmentation=True))
+        dataclasses.replace(mount, sensor=dataclasses.replace(mount.sensor, segmentation=True, labels=True))
         if isinstance(mount.sensor, RGBCamera)
         else mount
         for mount in robot.sensors

@@ -15,6 +15,7 @@ from crowdbot.simulation import Simulation, SimulationRun, catch_interrupt
 from crowdbot.trials import Trial, parse_trial
 
 from .formats.coco import write_images
+from .formats.kitti import write_kitti
 from .formats.npz import write_npz
 from .formats.parquet import write_parquet
 from .formats.webdataset import write_webdataset
@@ -71,6 +72,8 @@ def make_shard(job: ShardJob) -> Shard:
         files = WRITERS[job.kind](tables, job.out / job.name, job.compressed, seeds)
         if job.images:
             files += write_images(tables, job.out / "images" / job.name)
+        if job.kitti:
+            files += write_kitti(tables, job.out / "kitti" / job.name)
     rows = {name: len(table["episode"]) for name, table in tables.items()}
     return Shard(job.name, job.trial, job.seeds, ends, seconds, rows, _hashes(files, job.out), _arrays(tables))
 

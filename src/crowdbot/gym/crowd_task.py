@@ -177,5 +177,5 @@ class CrowdTask:
         rewards[self.ended] = 0.0
         self._distance = distance
         self.ended |= over
-        terminated = success | collision
+        terminated = success | collision | np.array([one == "fall" for one in outcomes])
         return TaskStep(self.port.observe(), rewards, terminated, over & ~terminated, tuple(outcomes))

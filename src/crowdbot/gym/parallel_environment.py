@@ -151,7 +151,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
     def _judge(self, touching: set[int]) -> tuple[dict[str, Any], ...]:
         """Return the results of a step and remove the agents that have ended."""
         running, acting = self._running, list(self.agents)
-        over = running.outcome() is not None
+        over, fall = running.outcome() is not None, running.outcome() == "fall"
         rewards: dict[str, float] = {}
         ended: dict[str, bool] = {}
         cut: dict[str, bool] = {}
@@ -164,11 +164,12 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
             flags = (np.array([success]), np.array([collision]), np.array([self._distance[name] - distance]))
             rewards[name] = float(self.reward.values(port.clearance(), *flags, port.dt)[0])
             self._distance[name] = distance
-            ended[name] = success or collision
+            ended[name] = success or collision or fall
             cut[name] = over and not ended[name]
             info: dict[str, Any] = {"seed": running.seeds[0]}
             if ended[name] or cut[name]:
-                outcome = "success" if success else "collision" if collision else "timeout"
+                other = "fall" if fall else "timeout"
+                outcome = "success" if success else "collision" if collision else other
                 info |= {"outcome": outcome, "is_success": success}
             infos[name] = info
         self.agents = [name for name in acting if not (ended[name] or cut[name])]

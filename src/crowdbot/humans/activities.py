@@ -9,15 +9,23 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, UnknownName
 
-__all__ = ["ACTIVITIES", "activity_index"]
+__all__ = ["ACTIVITIES", "FIRST_POSE", "activity_index"]
 
-ACTIVITIES = ("walk", "talk", "phone", "bottle", "text", "sit")
-"""``walk`` includes standing and turning. All activities except ``sit`` combine with walking."""
+ACTIVITIES = (
+    "walk", "talk", "phone", "bottle", "text", "sit", "wave", "carry", "read", "stick", "pram", "wheelchair", "run",
+    "look",
+)  # fmt: skip
+"""``walk`` includes standing and turning. All activities except ``sit`` combine with walking. ``pram`` and
+``wheelchair`` push one, ``look`` turns the head to the nearest robot."""
+FIRST_POSE = 6
+"""Index of the first activity whose pose is put over that of the gait."""
 TALK, PHONE, BOTTLE, TEXT, SIT = 1, 2, 3, 4, 5
 
 
-def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return indices ``[N]`` into :data:`ACTIVITIES`, from one name for all people or a name (or index) for each.
+def activity_index(
+    activity: str | Sequence[str] | NDArray[np.int64], count: int, known: Sequence[str] = ACTIVITIES
+) -> NDArray[np.int64]:
+    """Return indices ``[N]`` into the ``known`` activities, from one name for all people or a name (or index) for each.
 
     Raises:
         UnknownName: there is no such activity.
@@ -31,14 +39,13 @@ def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int
     else:
         words = [activity] * count if isinstance(activity, str) else list(activity)
         for word in words:
-            if word not in ACTIVITIES:
-                raise UnknownName("activity", str(word), ACTIVITIES)
-        found = np.array([ACTIVITIES.index(word) for word in words], dtype=np.int64)
+            if word not in known:
+                raise UnknownName("activity", str(word), known)
+        found = np.array([list(known).index(word) for word in words], dtype=np.int64)
     if found.shape != (count,):
         raise InputError(f"{len(found)} activities are given for {count} people; give one, or one for each")
-    if np.any((found < 0) | (found >= len(ACTIVITIES))):
+    if np.any((found < 0) | (found >= len(known))):
         raise InputError(
-            f"activity index {found[(found < 0) | (found >= len(ACTIVITIES))][0]} must be from 0 to"
-            f" {len(ACTIVITIES) - 1}"
+            f"activity index {found[(found < 0) | (found >= len(known))][0]} must be from 0 to {len(known) - 1}"
         )
     return found

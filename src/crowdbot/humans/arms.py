@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
+from .activities import FIRST_POSE
 from .feet import Gaits
 from .vectors import Vector, cross_product, normalize, rotate, write_frame
 
@@ -36,6 +37,8 @@ def _arm_angles(g: Gaits, i: int, side: int, vigour: float, style: Floats) -> An
     beat = style[6] * g.clock[i] + 6.283 * style[5] + 1.7 * side
     blend = g.blend
     walk = blend[i, 0] + blend[i, 2]
+    for k in range(FIRST_POSE, blend.shape[1]):  # an arm without a task of its pose swings
+        walk += blend[i, k]
     if side == LEFT:
         walk += blend[i, 3]
     talk_elbow = 1.25 + 0.28 * math.sin(1.9 * beat + 1.0)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LEVELS", "Level", "Shapes", "shapes"]
+__all__ = ["LEVELS", "Level", "Shapes", "read_asset", "shapes"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -60,7 +60,7 @@ class Shapes:
 @functools.cache
 def shapes() -> Shapes:
     """Return the bodies of the asset; the last one is the mannequin, which is the mean of the adults."""
-    stored = _read_asset("humans_cc0.npz")
+    stored = read_asset("humans_cc0.npz")
     people = tuple(json.loads(str(stored["people"])))
     adult = np.array([person["years"] >= 18 for person in people])
     return Shapes(
@@ -75,7 +75,8 @@ def shapes() -> Shapes:
     )
 
 
-def _read_asset(name: str) -> dict[str, NDArray[Any]]:
+def read_asset(name: str) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a file of the bodies."""
     place = importlib.resources.files("crowdbot").joinpath("assets", "humans", name)
     with importlib.resources.as_file(place) as path, np.load(path, allow_pickle=False) as file:
         return {key: file[key] for key in file.files}

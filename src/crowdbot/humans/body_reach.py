@@ -7,7 +7,6 @@ for. Without given parts, the posture of the gait stays.
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Mapping
 
@@ -23,7 +22,7 @@ from .posture import Posture, place_chain
 from .quaternions import limit_rotation, multiply, to_matrix, transpose_times, twist_angle
 from .turns import about, align_frame, cross, unit
 
-__all__ = ["eye_offsets", "hand_frames", "reach_poses"]
+__all__ = ["eye_offsets", "reach_poses"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -48,29 +47,13 @@ SHARES = np.array([0.25, 0.55, 0.8, 1.0])
 """Shares of pelvis and spine in the lean of the chest."""
 
 
-@functools.cache
-def eye_offsets() -> Floats:
-    """Return the middle between the eyes relative to the head joint of each body at rest ``[P, 3]`` [m]."""
-    every = shapes()
-    level = every.levels[0]
-    eyes = level.rest[:, level.vertex_region == every.regions.index("eyes")]
-    return np.asarray(0.5 * (eyes.min(axis=1) + eyes.max(axis=1)) - every.head[:, every.bone("head")])
+def eye_offsets(people: People) -> Floats:
+    """Return the middle between the eyes relative to the head joint of each person at rest ``[N, 3]`` [m].
 
-
-@functools.cache
-def hand_frames() -> Floats:
-    """Return the axes of both hands of each body at rest ``[P, 2, 3, 3]``: columns to the fingers, left, up."""
-    every = shapes()
-    found = np.empty((len(every.head), 2, 3, 3))
-    for k, side in enumerate("lr"):
-        wrist = every.head[:, every.bone(f"hand_{side}")]
-        x = every.head[:, every.bone(f"fingers_01_{side}")] - wrist
-        thumb = every.tail[:, every.bone(f"thumb_{side}")] - wrist
-        x = x / np.linalg.norm(x, axis=-1, keepdims=True)
-        y = thumb - x * np.sum(x * thumb, axis=-1, keepdims=True)
-        y = y / np.linalg.norm(y, axis=-1, keepdims=True) * (-1.0 if side == "l" else 1.0)
-        found[:, k] = np.stack([x, y, np.cross(x, y)], axis=-1)
-    return found
+    >>> eye_offsets(People.of(["man-20"])).round(2).tolist()
+    [[0.09, 0.0, 0.04]]
+    """
+    return np.asarray(people.rows.eyes[people.body] * people.scale[:, None])
 
 
 @kernel
@@ -282,14 +265,13 @@ def reach_poses(posture: Posture, people: People, poses: Mapping[int, Floats]) -
     >>> reach_poses(standing, people, {0: pose.row()}).position[0, 16].round(3).tolist()
     [0.35, -0.2, 1.6]
     """
-    body, parents = people.measures, shapes().parents
+    body, parents, eyes = people.measures, shapes().parents, eye_offsets(people)
     found = Posture(posture.rotation.copy(), posture.position.copy())
     for k, row in poses.items():
         if all(np.isnan(row[first]) for first, _ in PARTS.values()):
             continue
         lengths = np.array([body.thigh[k], body.shank[k], body.arm[k, 0], body.arm[k, 1], body.height[k]])
-        own = int(people.body[k])
-        eye, hands = eye_offsets()[own] * people.scale[k], hand_frames()[own]
+        eye, hands = eyes[k], people.rows.hands[people.body[k]]
         _reach(
             row, eye, hands, lengths, body.head[k], body.frame[k], parents, found.rotation[k], found.position[k]
         )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper, stream
 
-from .activities import ACTIVITIES, activity_index
+from .activities import activity_index
+from .clips.activity_poses import pose_activities
 from .feet import Gaits, advance
 from .people import Capsules, People
 from .posture import Posture, posture
@@ -35,9 +36,10 @@ class Gait:
         ids: number of each person ``[N]`` (default: from 0).
         seat: seat of sitting people, one for all or one for each.
 
-    Running is not supported: above about 2 m/s, only the cadence increases. A planted foot keeps its position unless
-    the body leaves its reach (velocity jumps of several m/s) or turns more than 80 degrees relative to it. Sitting
-    people move and turn with the seat, for example on the robot ``wheelchair`` with ``seat=WHEELCHAIR`` and its pose.
+    Above about 2 m/s, only the cadence increases; the activity ``run`` has a phase of flight. A planted foot keeps its
+    position unless the body leaves its reach (velocity jumps of several m/s) or turns more than 80 degrees relative to
+    it. Sitting people move and turn with the seat, for example on the robot ``wheelchair`` with ``seat=WHEELCHAIR`` and
+    its pose.
 
     Source: stride and speed relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
 
@@ -90,7 +92,7 @@ class Gait:
             position: ``[N, 2]`` [m].
             heading: ``[N]`` [rad].
             velocity: ``[N, 2]`` [m/s].
-            activity: one of :data:`ACTIVITIES` for all, or one for each.
+            activity: one of :data:`ACTIVITIES` or a clip of the people for all, or one for each.
 
         Raises:
             InputError: a shape is wrong, a value is not finite or a speed is above 12 m/s.
@@ -100,12 +102,12 @@ class Gait:
         place, speed, ahead = self._check_motion(
             position, np.zeros((count, 2)) if velocity is None else velocity, heading
         )
-        wish = activity_index(activity, count).astype(np.float64)
+        wish = activity_index(activity, count, self.people.activities).astype(np.float64)
         state = Gaits(
             position=place.copy(), yaw=ahead.copy(), turn=np.zeros(count), drift=speed.copy(), phase=np.zeros(count),
             moving=np.zeros(count), foot=np.zeros((count, 2, 3)), planted=np.ones((count, 2)),
             lift=np.zeros((count, 2, 6)), goal=np.zeros((count, 2, 3)), strike=np.zeros((count, 2)),
-            clock=np.zeros(count), blend=np.eye(len(ACTIVITIES))[wish.astype(np.int64)], wish=wish,
+            clock=np.zeros(count), blend=np.eye(len(self.people.activities))[wish.astype(np.int64)], wish=wish,
         )  # fmt: skip
         advance(state, speed, place, ahead, np.ones(count), 0.0, self.style, self.size)
         return state
@@ -139,14 +141,15 @@ class Gait:
             raise InputError(f"Gait: the state has {len(state.yaw)} people, it must have {len(self.people)}")
         after = Gaits(*(part.copy() for part in state))
         if activity is not None:
-            after.wish[:] = activity_index(activity, len(self.people))
+            after.wish[:] = activity_index(activity, len(self.people), self.people.activities)
         fresh = np.full(len(self.people), 1.0 if dt >= 1.0 else 0.0)
         advance(after, speed, place, ahead, fresh, float(dt), self.style, self.size)
         return after
 
-    def posture(self, state: Gaits) -> Posture:
-        """Return the posture of all people."""
-        return posture(state, self.people.measures, self.style, self.size, self.seats)
+    def posture(self, state: Gaits, targets: Mapping[int, Floats] | None = None) -> Posture:
+        """Return the posture of all people; ``targets`` are points ``[3]`` [m] to look at, by row."""
+        walking = posture(state, self.people.measures, self.style, self.size, self.seats)
+        return pose_activities(walking, self.people, state, targets)
 
     def limbs(self, state: Gaits) -> Capsules:
         """Return the capsules of all people in world coordinates, in the order of :data:`LIMBS`."""

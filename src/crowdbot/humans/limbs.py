@@ -13,7 +13,7 @@ from crowdbot.core import Paper
 from .asset import Shapes, shapes
 from .person import persons
 
-__all__ = ["LIMBS", "REGIONS", "Limb", "mass_shares", "rest_capsules"]
+__all__ = ["LIMBS", "REGIONS", "Limb", "fit_capsules", "main_bones", "mass_shares", "rest_capsules"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -112,29 +112,44 @@ def rest_capsules() -> Floats:
     every = shapes()
     out = np.empty((len(persons()), len(LIMBS), 7))
     for k, limb in enumerate(LIMBS):
-        start, end = _ends(every, limb)
-        points = _skin_vertices(every, limb)
-        out[:, k] = _fit(points, start, end)
+        out[:, k] = fit_capsules(limb, every.head, every.tail, _skin_vertices(every, limb))
     return out
 
 
-def _ends(every: Shapes, limb: Limb) -> tuple[Floats, Floats]:
+def fit_capsules(limb: Limb, heads: Floats, tails: Floats, points: Floats) -> Floats:
+    """Return the capsule of a limb of P bodies at rest, ``[P, 7]``: start, end, radius [m].
+
+    Args:
+        limb: the limb.
+        heads, tails: start and end of each bone ``[P, B, 3]`` [m].
+        points: vertices of the skin of the limb ``[P, V, 3]`` [m].
+    """
+    return _fit(points, *_ends(limb, heads, tails, points))
+
+
+def main_bones(bones: Ints, weights: Floats) -> Ints:
+    """Return the bone with the largest weight of each vertex, from ``bones`` and ``weights [V, 4]``."""
+    return np.asarray(bones[np.arange(len(bones)), np.argmax(weights, axis=1)])
+
+
+def _ends(limb: Limb, heads: Floats, tails: Floats, points: Floats) -> tuple[Floats, Floats]:
     """Return the initial guess of both ends, ``[P, 3]``."""
-    head, tail = every.head[:, every.bone(limb.bone)], every.tail[:, every.bone(limb.bone)]
+    every = shapes()
+    head, tail = heads[:, every.bone(limb.bone)], tails[:, every.bone(limb.bone)]
     if limb.along == "across":
-        middle = _skin_vertices(every, limb).mean(axis=1)
+        middle = points.mean(axis=1)
         aside = np.array([0.0, 0.25 * 0.2, 0.0])
         return middle - aside, middle + aside
     if limb.along == "":
         return head + 0.35 * (tail - head), head + 0.55 * (tail - head)
-    goal = every.head[:, every.bone(limb.along)]
+    goal = heads[:, every.bone(limb.along)]
     return head + 0.15 * (goal - head), head + 0.85 * (goal - head)
 
 
 def _skin_vertices(every: Shapes, limb: Limb) -> Floats:
     level = every.levels[0]
     worn = np.isin(level.vertex_part, [every.parts.index(p) for p in ("skin", "top", "legs")])
-    main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]
+    main = main_bones(level.bones, level.weights)
     return level.rest[:, worn & np.isin(main, [every.bone(b) for b in limb.skin])]
 
 

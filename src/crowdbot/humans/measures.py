@@ -40,17 +40,24 @@ class Measures(NamedTuple):
     height: Floats
 
 
-def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
-    """Return the measures of the bodies ``body [N]`` of the asset with ``scale [N]`` and ``height [N]`` [m]."""
+def measures(heads: Floats, sole: Floats, scale: Floats, height: Floats) -> Measures:
+    """Return the measures of N bodies with ``scale [N]`` and ``height [N]`` [m].
+
+    Args:
+        heads: start of each bone at rest ``[N, B, 3]`` [m], before scaling.
+        sole: rear and front end of the sole ``[N, 2]`` [m], before scaling.
+        scale: ratio of stature to that at rest ``[N]``.
+        height: stature ``[N]`` [m].
+    """
     every = shapes()
-    head = every.head[body] * scale[:, None, None]
+    head = heads * scale[:, None, None]
 
     def length(a: str, b: str) -> Floats:
         return np.asarray(np.linalg.norm(head[:, every.bone(b)] - head[:, every.bone(a)], axis=-1))
 
     ankle = head[:, every.bone("foot_l")]
     ball = head[:, every.bone("ball_l")]
-    heel, toe = _sole(body, scale)
+    heel, toe = (sole * scale[:, None]).T
     return Measures(
         leg=head[:, every.bone("thigh_l"), 2].copy(),
         thigh=length("thigh_l", "calf_l"),
@@ -64,18 +71,6 @@ def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
         frame=_frames(head),
         height=np.asarray(height, dtype=np.float64),
     )
-
-
-def _sole(body: Ints, scale: Floats) -> tuple[Floats, Floats]:
-    """Return the rear and front ends ``[N]`` of the sole: the outermost points within 15 mm of the floor."""
-    every = shapes()
-    level = every.levels[0]
-    main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]
-    foot = level.rest[:, np.isin(main, [every.bone("foot_l"), every.bone("ball_l")])]
-    low = foot[..., 2] < 0.015
-    behind = np.where(low, foot[..., 0], np.inf).min(axis=1)
-    front = np.where(low, foot[..., 0], -np.inf).max(axis=1)
-    return behind[body] * scale, front[body] * scale
 
 
 def _frames(head: Floats) -> Floats:

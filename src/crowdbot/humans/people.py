@@ -11,12 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 
+from .activities import ACTIVITIES
 from .asset import LEVELS, shapes
-from .limbs import LIMBS, mass_shares, rest_capsules
+from .clips.clip import Clip
+from .limbs import LIMBS, mass_shares
 from .measures import Measures, measures
-from .person import Person, drawable, person
+from .person import Person, drawable, person, persons
 from .posture import Posture
-from .skin import skin_vertices
+from .rigged.body_rows import BodyRows, body_rows
+from .rigged.group_mesh import GroupMesh, group_mesh
+from .rigged.rigged_body import RiggedBody
+from .skin import SkinnedMesh, skin_vertices
 from .wardrobe import Outfit, outfit, region_colors, worn_parts
 
 __all__ = ["Capsules", "People"]
@@ -40,7 +45,8 @@ class Capsules:
 class People:
     """N persons, each with an outfit number and scaled to a stature.
 
-    Fields: ``persons``, ``variation [N]``, ``height [N]`` [m].
+    Fields: ``persons``, ``variation [N]``, ``height [N]`` [m]; ``clips``: activities beside the built-in ones;
+    ``own``: imported bodies, whose rows follow those of the asset.
 
     >>> people = People.of(["woman-36", "man-20", "mannequin"], variation=[0, 7, 0], height=[1.6, 1.7, 1.8])
     >>> people.mass.round(1).tolist(), people.faces(2).shape
@@ -50,15 +56,24 @@ class People:
     persons: tuple[Person, ...]
     variation: Ints
     height: Floats
+    clips: tuple[Clip, ...] = ()
+    own: tuple[RiggedBody, ...] = ()
 
     @classmethod
-    def of(cls, names: Sequence[str], variation: ArrayLike = 0, height: ArrayLike | None = None) -> People:
+    def of(
+        cls,
+        names: Sequence[str],
+        variation: ArrayLike = 0,
+        height: ArrayLike | None = None,
+        own: Sequence[RiggedBody] = (),
+    ) -> People:
         """Return the persons with these names.
 
         Args:
             names: names as in :func:`crowdbot.humans.names`; they may be repeated.
             variation: number of the outfit, for all or for each; a whole number, at least 0.
             height: stature [m], for all or for each (default: that of the person).
+            own: imported bodies that ``names`` may also contain.
 
         Raises:
             UnknownName: there is no person with this name.
@@ -66,9 +81,11 @@ class People:
         """
         if isinstance(names, str):
             raise InputError(f"People.of takes a list of names, as [{names!r}], not the text {names!r}")
-        found = tuple(person(name) for name in names)
-        own = np.array([p.height for p in found], dtype=np.float64)
-        tall = own if height is None else _per_person("height", height, len(found))
+        first = len(persons())
+        extra = {one.name: Person(one.name, "", 0, one.height, one.mass, first + k) for k, one in enumerate(own)}
+        found = tuple(extra[name] if name in extra else person(name) for name in names)
+        usual = np.array([p.height for p in found], dtype=np.float64)
+        tall = usual if height is None else _per_person("height", height, len(found))
         bad = ~((tall >= SMALLEST) & (tall <= TALLEST))
         if np.any(bad):
             raise InputError(f"height {tall[bad][0]} m of a person must be from {SMALLEST} to {TALLEST} m")
@@ -78,7 +95,7 @@ class People:
                 f"variation {number[~(number >= 0) | (number != np.floor(number))][0]} must be a whole number,"
                 " at least 0"
             )
-        return cls(found, number.astype(np.int64), tall.copy())
+        return cls(found, number.astype(np.int64), tall.copy(), (), tuple(own))
 
     @classmethod
     def sample(cls, count: int, rng: np.random.Generator, kinds: Sequence[str] = ("man", "woman")) -> People:
@@ -105,9 +122,32 @@ class People:
         return len(self.persons)
 
     @functools.cached_property
+    def activities(self) -> tuple[str, ...]:
+        """Names of all activities: the built-in ones and those of the clips."""
+        return (*ACTIVITIES, *(clip.name for clip in self.clips))
+
+    @functools.cached_property
     def body(self) -> Ints:
-        """Row of each person in the asset ``[N]``."""
+        """Row of each person in :attr:`rows` ``[N]``: that in the asset, or after it for imported bodies."""
         return np.array([p.index for p in self.persons], dtype=np.int64)
+
+    @functools.cached_property
+    def rows(self) -> BodyRows:
+        """Bodies at rest: those of the asset, then imported ones."""
+        return body_rows(self.own)
+
+    @functools.cached_property
+    def own_body(self) -> Ints:
+        """Number of the imported body of each person in ``own`` ``[N]``, -1 for included ones."""
+        return np.maximum(self.body - len(persons()), -1)
+
+    @functools.cached_property
+    def asset_rows(self) -> tuple[Ints, Floats]:
+        """Row in the asset ``[N]`` and scale ``[N]`` of each person, of the mannequin instead of imported bodies."""
+        mannequin = persons()[-1]
+        own = self.own_body >= 0
+        scale = np.where(own, self.height / mannequin.height, self.scale)
+        return np.where(own, mannequin.index, self.body), scale
 
     @functools.cached_property
     def scale(self) -> Floats:
@@ -117,7 +157,7 @@ class People:
     @functools.cached_property
     def measures(self) -> Measures:
         """Lengths of the bodies [m]."""
-        return measures(self.body, self.scale, self.height)
+        return measures(self.rows.head[self.body], self.rows.sole[self.body], self.scale, self.height)
 
     @functools.cached_property
     def mass(self) -> Floats:
@@ -138,7 +178,7 @@ class People:
     def limbs(self, posture: Posture) -> Capsules:
         """Return the capsules of all people in world coordinates."""
         bones = [shapes().bone(limb.bone) for limb in LIMBS]
-        rest = rest_capsules()[self.body] * self.scale[:, None, None]
+        rest = self.rows.capsules[self.body] * self.scale[:, None, None]
         turn, place = posture.rotation[:, bones], posture.position[:, bones]
         head = self.measures.head[:, bones]
 
@@ -147,40 +187,73 @@ class People:
 
         return Capsules(transform(rest[..., :3]), transform(rest[..., 3:6]), rest[..., 6].copy())
 
-    def skin(self, posture: Posture, level: int = 2) -> Floats:
+    def skin(self, posture: Posture, level: int = 2, numbers: Ints | None = None) -> Floats:
         """Return the vertices ``[N, V, 3]`` [m] of skin and clothes, including parts that are not worn.
 
         Args:
             posture: posture of these people.
             level: level of detail, from 0 (4198 vertices) to 2 (447 vertices).
+            numbers: only these people (default: all).
         """
+        whole = np.arange(len(self)) if numbers is None else numbers
+        mesh = self.mesh(level)
+        if not self.own:
+            common = mesh.included
+            return self._skin(whole, SkinnedMesh(common.rest, common.bones, common.weights), posture)
+        found = np.zeros((len(whole), mesh.points[-1], 3))
+        for k in range(-1, len(self.own)):
+            rows = np.flatnonzero(self.own_body[whole] == k)
+            own = mesh.included if k < 0 else self.own[k].levels[level]
+            rest = own.rest if k < 0 else own.rest[None]
+            if len(rows):
+                skinned = SkinnedMesh(rest, own.bones, own.weights)
+                found[rows, mesh.vertex_span(k)] = self._skin(whole[rows], skinned, posture)
+        return found
+
+    def _skin(self, rows: Ints, mesh: SkinnedMesh, posture: Posture) -> Floats:
+        body = self.body[rows] if len(mesh.rest) > 1 else np.zeros(len(rows), dtype=np.int64)
         return skin_vertices(
-            shapes().levels[_level(level)],
-            self.body,
-            self.scale,
-            self.measures.head,
-            posture.rotation,
-            posture.position,
+            mesh, body, self.scale[rows], self.measures.head[rows], posture.rotation[rows], posture.position[rows]
         )
+
+    def mesh(self, level: int = 2) -> GroupMesh:
+        """Return the vertices and triangles of all bodies of the group at a level of detail.
+
+        Each person has all of them in :meth:`skin`, and wears those of :meth:`clothing_mask`.
+        """
+        return group_mesh(self.own, _level(level))
 
     def faces(self, level: int = 2) -> Ints:
         """Return the triangles ``[F, 3]`` as indices of vertices, counter-clockwise seen from outside."""
-        return shapes().levels[_level(level)].faces
+        return self.mesh(level).faces
 
     def clothing_mask(self, level: int = 2) -> NDArray[np.bool_]:
         """Return the mask ``[N, F]`` of triangles of the skin and of clothes that the person wears."""
-        part = shapes().levels[_level(level)].face_part
-        return np.array([np.isin(part, worn_parts(o)) for o in self.outfits]).reshape(len(self), len(part))
+        mesh = self.mesh(level)
+        found = np.zeros((len(self), mesh.triangles[-1]), dtype=np.bool_)
+        for k, (worn, own) in enumerate(zip(self.outfits, self.own_body.tolist(), strict=True)):
+            found[k, mesh.face_span(own)] = True if own >= 0 else np.isin(mesh.included.face_part, worn_parts(worn))
+        return found
 
     def face_colors(self, level: int = 2) -> Floats:
         """Return the colour ``[N, F, 3]`` of each triangle: red, green, blue from 0 to 1."""
-        region = shapes().levels[_level(level)].face_region
-        return np.array([region_colors(o)[region] for o in self.outfits]).reshape(len(self), len(region), 3)
+        mesh = self.mesh(level)
+        found = np.zeros((len(self), mesh.triangles[-1], 3))
+        for k, worn in enumerate(self.outfits):
+            found[k, mesh.face_span(-1)] = region_colors(worn)[mesh.included.face_region]
+        for k, body in enumerate(self.own):
+            found[:, mesh.face_span(k)] = body.face_colors(level)
+        return found
 
     def vertex_colors(self, level: int = 2) -> Floats:
         """Return the colour ``[N, V, 3]`` of each vertex; :meth:`face_colors` has sharper edges of clothes."""
-        region = shapes().levels[_level(level)].vertex_region
-        return np.array([region_colors(o)[region] for o in self.outfits]).reshape(len(self), len(region), 3)
+        mesh = self.mesh(level)
+        found = np.zeros((len(self), mesh.points[-1], 3))
+        for k, worn in enumerate(self.outfits):
+            found[k, mesh.vertex_span(-1)] = region_colors(worn)[mesh.included.vertex_region]
+        for k, body in enumerate(self.own):
+            found[:, mesh.vertex_span(k)][:, body.levels[level].faces] = body.face_colors(level)[:, None]
+        return found
 
 
 def _level(level: int) -> int:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .asset import shapes
-from .body_reach import hand_frames
 from .people import People
 
 __all__ = ["RestSkeleton", "rest_skeleton"]
@@ -49,5 +48,5 @@ def rest_skeleton(people: People, number: int = 0) -> RestSkeleton:
     """
     every, body = shapes(), int(people.body[number])
     return RestSkeleton(
-        every.bones, tuple(every.parents.tolist()), people.measures.head[number].copy(), hand_frames()[body].copy()
+        every.bones, tuple(every.parents.tolist()), people.measures.head[number].copy(), people.rows.hands[body].copy()
     )

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-from .asset import Level
-
-__all__ = ["skin_vertices"]
+__all__ = ["SkinnedMesh", "skin_vertices"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class SkinnedMesh(NamedTuple):
+    """Rest shapes ``rest [P, V, 3]`` [m] of one topology, with ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1)."""
+
+    rest: Floats
+    bones: Ints
+    weights: Floats
 
 
 @kernel
@@ -38,17 +46,19 @@ def _skin(
             out[i, v, 0], out[i, v, 1], out[i, v, 2] = sx, sy, sz
 
 
-def skin_vertices(level: Level, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats) -> Floats:
+def skin_vertices(
+    mesh: SkinnedMesh, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats
+) -> Floats:
     """Return the vertices ``[N, V, 3]`` [m] of posed people.
 
     Args:
-        level: level of detail.
+        mesh: rest shapes and weights.
         body: row of the rest shape ``[N]``.
         scale: ratio of stature to that of the rest shape ``[N]``.
         head: scaled start of each bone at rest ``[N, B, 3]`` [m].
         rotation, position: current rotation ``[N, B, 3, 3]`` and position ``[N, B, 3]`` [m] of each bone.
     """
     shift = position - np.einsum("nbij,nbj->nbi", rotation, head)
-    out = np.empty((len(body), len(level.bones), 3))
-    _skin(level.rest, level.bones, level.weights, body, scale, rotation, shift, out)
+    out = np.empty((len(body), len(mesh.bones), 3))
+    _skin(mesh.rest, mesh.bones, mesh.weights, body, scale, rotation, shift, out)
     return out

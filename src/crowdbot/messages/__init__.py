@@ -4,13 +4,17 @@ from .cdr import MAP, Shape, marker_bytes, people_bytes
 from .codec import Codec, MeasuredReading, mount_pose, unpack_arrays
 from .contacts import (
     COLLISIONS,
+    FALLS,
     FORCES,
     ContactEventRecord,
     ContactForceRecord,
+    FallRecord,
     contact_messages,
     read_contact_events,
+    read_falls,
     read_forces,
 )
+from .fall_poses import FALL_POSES, fall_pose_message, read_fall_poses
 from .images import image_in, picture_codec
 from .marker_array import KIND as MARKERS
 from .marker_array import markers
@@ -23,6 +27,8 @@ from .ros1 import Ros1Messages
 __all__ = [
     "CODECS",
     "COLLISIONS",
+    "FALLS",
+    "FALL_POSES",
     "FORCES",
     "KIND",
     "MAP",
@@ -31,6 +37,7 @@ __all__ = [
     "Codec",
     "ContactEventRecord",
     "ContactForceRecord",
+    "FallRecord",
     "MeasuredReading",
     "Messages",
     "Ros1Messages",
@@ -39,6 +46,7 @@ __all__ = [
     "contact_messages",
     "decode_reading",
     "encode_reading",
+    "fall_pose_message",
     "image_in",
     "marker_bytes",
     "markers",
@@ -47,6 +55,8 @@ __all__ = [
     "picture_codec",
     "points_in",
     "read_contact_events",
+    "read_fall_poses",
+    "read_falls",
     "read_forces",
     "reading_topics",
     "unencoded_fields",

@@ -10,11 +10,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COLLISIONS",
+    "FALLS",
     "FORCES",
     "ContactEventRecord",
     "ContactForceRecord",
+    "FallRecord",
     "contact_messages",
     "read_contact_events",
+    "read_falls",
     "read_forces",
 ]
 
@@ -22,6 +25,9 @@ FORCES = "/crowdbot/forces"
 """Topic of the contact forces of each step."""
 COLLISIONS = "/crowdbot/collisions"
 """Topic of finished contact events."""
+
+FALLS = "/crowdbot/falls"
+"""Topic of falls of people that are over."""
 
 
 class ContactForceRecord(NamedTuple):
@@ -69,13 +75,30 @@ class ContactEventRecord(NamedTuple):
     severity: float
 
 
+class FallRecord(NamedTuple):
+    """Fall of a person, see ``crowdbot.world.Fall``; ``cause`` is the body that pushed, as in contact events."""
+
+    person: str
+    begin: float
+    end: float
+    direction: str
+    cause: str
+    steps: float
+    hand: float
+    leg: float
+    pelvis: float
+    chest: float
+    head: float
+    hic15: float
+
+
 def contact_messages(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> Iterator[tuple[str, Any]]:
-    """Yield topic and message of the contact forces and contact events of a step, if any.
+    """Yield topic and message of the contact forces, contact events and falls of a step, if any.
 
     Args:
         make: message factory.
         now: simulated time [ns].
-        frame: step record; ``forces`` and ``collisions`` are empty in the planar world.
+        frame: step record; ``forces``, ``collisions`` and ``falls`` are empty in the planar world.
         names: names of robots by id.
     """
     ids = frame.ids.tolist()
@@ -91,6 +114,9 @@ def contact_messages(make: Messages, now: int, frame: Any, names: Mapping[int, s
     collisions = [_collision(make, one, called) for one in getattr(frame, "collisions", ())]
     if collisions:
         yield COLLISIONS, make.make("crowdbot_msgs/msg/Collisions", header=make.header(now), collisions=collisions)
+    falls = [_fall(make, one, called) for one in getattr(frame, "falls", ())]
+    if falls:
+        yield FALLS, make.make("crowdbot_msgs/msg/Falls", header=make.header(now), falls=falls)
 
 
 def _force(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
@@ -118,6 +144,18 @@ def _collision(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
         **{name: str(getattr(one, name)) for name in words},
         **{name: float(getattr(one, name)) for name in numbers},
     )
+
+
+def _fall(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
+    words = {"person": called(("person", one.person)), "direction": one.direction}
+    words["cause"] = called((one.cause, one.causer)) if one.cause else ""
+    numbers = [name for name in FallRecord._fields if name not in words]
+    return make.make("crowdbot_msgs/msg/Fall", **words, **{name: float(getattr(one, name)) for name in numbers})
+
+
+def read_falls(message: Any) -> list[FallRecord]:
+    """Return the falls of a message."""
+    return [FallRecord(*(getattr(one, name) for name in FallRecord._fields)) for one in message.falls]
 
 
 def read_forces(time: float, message: Any) -> list[ContactForceRecord]:

@@ -63,6 +63,29 @@ float64 simulated_peak
 float64 severity
 """
 COLLISIONS = "std_msgs/Header header\ncrowdbot_msgs/Collision[] collisions\n"
+FALL = """string person
+float64 begin
+float64 end
+string direction
+string cause
+float64 steps
+float64 hand
+float64 leg
+float64 pelvis
+float64 chest
+float64 head
+float64 hic15
+"""
+FALLS = "std_msgs/Header header\ncrowdbot_msgs/Fall[] falls\n"
+FALL_POSE = """uint32 person
+float32 direction
+float32 tilt
+float32 start
+bool struck
+bool down
+bool rising
+"""
+FALL_POSES = "std_msgs/Header header\ncrowdbot_msgs/FallPose[] poses\n"
 OWN = {
     "people_msgs/msg/Person": PERSON,
     "people_msgs/msg/People": PEOPLE,
@@ -74,6 +97,10 @@ OWN = {
     "crowdbot_msgs/msg/Forces": FORCES,
     "crowdbot_msgs/msg/Collision": COLLISION,
     "crowdbot_msgs/msg/Collisions": COLLISIONS,
+    "crowdbot_msgs/msg/Fall": FALL,
+    "crowdbot_msgs/msg/Falls": FALLS,
+    "crowdbot_msgs/msg/FallPose": FALL_POSE,
+    "crowdbot_msgs/msg/FallPoses": FALL_POSES,
 }
 """Type definitions that are not part of ROS 2 Humble; they are stored in the file."""
 

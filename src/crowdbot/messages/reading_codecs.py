@@ -6,6 +6,7 @@ standard type stores in 32 bits have that precision when read back.
 
 =============== =======================================================================================================
 ``Scan``        ``sensor_msgs/LaserScan``; intensities contain the id of the agent hit
+``PulsedScan``  ``sensor_msgs/LaserScan``; intensities contain the received power
 ``Cloud``       ``sensor_msgs/PointCloud2``: x, y, z, intensity (cosine of incidence), range, label (agent hit), ring
 ``Echo``        ``sensor_msgs/Range``
 ``DepthImage``  ``sensor_msgs/Image`` 32FC1 on ``image`` and 32SC1 (agent ids) on ``labels``, ``CameraInfo``
@@ -34,6 +35,7 @@ from crowdbot.sensors import (
     Infrared,
     Odometry,
     PointCloud,
+    PulsedScan,
     RangeReading,
     Reading,
     RgbImage,
@@ -156,6 +158,21 @@ def _read_scan(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, 
     }
 
 
+def _write_pulses(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
+    """Return the scan with the time between beams, and with received powers as intensities."""
+    ((name, scan),) = _write_scan(make, told)
+    times = told.reading.beam_time
+    scan.time_increment = float(times[1] - times[0]) if len(times) > 1 else 0.0
+    scan.intensities = told.reading.intensity[0].astype(np.float32)
+    return [(name, scan)]
+
+
+def _read_pulses(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    found = _read_scan(others, rest)
+    del found["hit"]
+    return found | {"intensity": others[""].intensities.astype(np.float64)[None]}
+
+
 def _write_echo(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     sensor = told.sensor
     infrared = isinstance(sensor, Infrared)
@@ -260,6 +277,7 @@ CODECS: dict[type[Reading], Codec] = {
     Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks")),
     RgbImage: picture_codec,
     BumperReading: touch_codec,
+    PulsedScan: Codec(_write_pulses, _read_pulses, rest=("hit", "cos_incidence", "part", "beam_time", "echoes")),
     TrackedPeople: Codec(_write_tracked, _read_tracked, rest=("present",)),
 }
 """Codecs by class of readings; a subclass uses the codec of its parent."""

@@ -10,6 +10,7 @@ from crowdbot.sensors import (
     ImuReading,
     Odometry,
     PointCloud,
+    PulsedScan,
     RangeReading,
     Reading,
     RgbImage,
@@ -36,6 +37,7 @@ KINDS: dict[type[Reading], dict[str, str]] = {
     Odometry: {"": "nav_msgs/msg/Odometry"},
     RgbImage: IMAGES,
     BumperReading: {"": "sensor_msgs/msg/PointCloud2"},
+    PulsedScan: {"": "sensor_msgs/msg/LaserScan"},
     TrackedPeople: {"": "people_msgs/msg/People"},
 }
 """Message types by suffix of the topic, for each class of readings in the table of codecs."""

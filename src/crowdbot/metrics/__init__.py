@@ -1,9 +1,10 @@
 """Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
 from .agent_states import AgentLog, AgentStates
-from .collisions import collision_mask, collision_share, neighbor_mask
+from .collisions import collision_mask, collision_share, neighbor_mask, swept_collision_shares
 from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
+from .coverage import ellipse_coverage
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
@@ -55,26 +56,38 @@ from .social import (
     metric_page,
     metric_table,
 )
+from .social.falls import FALL_METRICS, HIC15_LIMIT, FallOutcome, fall_hic15, fall_metrics
 from .step_clearance import step_clearance, step_wall_clearance
 from .tracking import (
     TRACKING_SCORES,
     ClearMot,
     Hota,
+    OcclusionCount,
+    OccupancyGrid,
     TrackComparison,
     clear_mot,
+    count_occlusions,
     gospa,
     hota,
     identity_f1,
+    match_nearest,
+    occupancy_iou,
     ospa,
+    range_error,
+    scan_time_to_collision,
+    structural_similarity,
     track_latency,
     tracking_scores,
+    weighted_squared_error,
 )
 
 __all__ = [
     "CONTACT_METRICS",
+    "FALL_METRICS",
     "FOOTPRINT_METRICS",
     "GAZE_HALF_ANGLE",
     "HEAD_HALF_ANGLE",
+    "HIC15_LIMIT",
     "HOLD",
     "IMPACT_METRICS",
     "LOG_FAMILIES",
@@ -88,6 +101,7 @@ __all__ = [
     "ContactEvent",
     "ContactTracker",
     "Coordination",
+    "FallOutcome",
     "GazeDwell",
     "Hota",
     "Impact",
@@ -96,6 +110,8 @@ __all__ = [
     "Metric",
     "NavigationMetrics",
     "NavigationOutcome",
+    "OcclusionCount",
+    "OccupancyGrid",
     "PersonErrors",
     "PersonImpact",
     "RobotLog",
@@ -114,13 +130,17 @@ __all__ = [
     "contact_events",
     "coordination",
     "correct_p_values",
+    "count_occlusions",
     "crowd_effect",
     "detect_groups",
     "distances",
     "earth_mover_distance",
+    "ellipse_coverage",
     "empty_scene_ratios",
     "energy_score",
     "error_over_horizon",
+    "fall_hic15",
+    "fall_metrics",
     "fde",
     "footprint_clearance",
     "gate_metrics",
@@ -138,6 +158,7 @@ __all__ = [
     "log_metrics",
     "longest_stall",
     "mahalanobis",
+    "match_nearest",
     "metric_families",
     "metric_page",
     "metric_table",
@@ -148,6 +169,7 @@ __all__ = [
     "navigation_metrics",
     "nearest_neighbor_accuracy",
     "neighbor_mask",
+    "occupancy_iou",
     "ospa",
     "outcome",
     "path_efficiency",
@@ -156,14 +178,19 @@ __all__ = [
     "person_errors",
     "personal_space_compliance",
     "proxemic_shares",
+    "range_error",
+    "scan_time_to_collision",
     "score",
     "stalled_time",
     "step_clearance",
     "step_wall_clearance",
+    "structural_similarity",
     "swept_clearance",
+    "swept_collision_shares",
     "swept_distance",
     "time_to_collision",
     "track_latency",
     "tracking_scores",
     "wall_clearance",
+    "weighted_squared_error",
 ]

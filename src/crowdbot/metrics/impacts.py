@@ -13,7 +13,11 @@ IMPACT_METRICS: dict[str, tuple[str, str]] = {
     "robot_caused_impacts": ("1", "impacts in which the robot closed the distance"),
     "person_caused_impacts": ("1", "impacts in which the person closed the distance"),
     "severe_impacts": ("1", "impacts with a severity above 1"),
-    "max_severity": ("1", "maximum ratio of force to limit of the body region (ISO/TS 15066), 0 without impact"),
+    "max_severity": (
+        "1",
+        "maximum ratio of force to limit of the body region (ISO/TS 15066), or fall_severity if larger; 0 without"
+        " impact",
+    ),
     "peak_force": ("N", "maximum force of an impact by the two-body model, 0 without impact"),
     "steady_force": ("N", "maximum clamping force, 0 without clamping"),
     "total_impulse": ("N s", "sum of the impulses on people"),

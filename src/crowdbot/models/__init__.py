@@ -5,6 +5,7 @@ from .contract import check_goal, check_model
 from .costs.cost_model import CostModel
 from .forces.boids import Boids
 from .forces.escape_panic import EscapePanic
+from .forces.generalized_centrifugal_force import GeneralizedCentrifugalForce
 from .forces.group_force import GroupForce
 from .forces.power_law import PowerLaw
 from .forces.social_force import SocialForce
@@ -15,12 +16,14 @@ from .model import CrowdModel
 from .presets import CrowdPreset, People, crowd_presets
 from .speed_models.anticipation_velocity import AnticipationVelocity
 from .speed_models.collision_free_speed import CollisionFreeSpeed
+from .speed_models.collision_free_speed_v3 import CollisionFreeSpeedV3
 from .velocity_obstacles.orca import ORCA
 from .velocity_obstacles.pledestrians import PLEdestrians
 from .velocity_obstacles.vog import VOG
 from .vision.heuristics import Heuristics
 from .vision.tangent import Tangent
 from .vision.vbm import VBM
+from .vision.warp_driver import WarpDriver
 
 __all__ = [
     "ORCA",
@@ -29,11 +32,13 @@ __all__ = [
     "AnticipationVelocity",
     "Boids",
     "CollisionFreeSpeed",
+    "CollisionFreeSpeedV3",
     "CostModel",
     "CrowdModel",
     "CrowdPreset",
     "CurrentDirection",
     "EscapePanic",
+    "GeneralizedCentrifugalForce",
     "Goal",
     "GroundTruth",
     "GroupForce",
@@ -45,6 +50,7 @@ __all__ = [
     "PowerLaw",
     "SocialForce",
     "Tangent",
+    "WarpDriver",
     "check_goal",
     "check_model",
     "costs",

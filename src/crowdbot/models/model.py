@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import abc
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,16 +19,19 @@ from crowdbot.core import (
     PerAgent,
     Scene,
     check_parameters,
-    kernel,
+    did_you_mean,
     per_agent,
 )
-from crowdbot.core.neighbors import BOOL, FLOAT, dense, nearest
+from crowdbot.core.neighbors import nearest
+
+from .agent_rows import LARGEST, StepStart, begin_step, speed_limit
 
 __all__ = [
     "CrowdModel",
     "StepStart",
     "begin_step",
     "check_limit",
+    "check_variant",
     "desired_velocity",
     "launch",
     "movable",
@@ -38,27 +40,8 @@ __all__ = [
     "speed_limit",
 ]
 
-LARGEST = 1e9
-"""Upper limit of positions [m], speeds [m/s] and parameters, against overflow."""
-
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-
-
-class StepStart(NamedTuple):
-    """Checked values with which most models begin a step.
-
-    Fields:
-        desired: ``[E, A, 2]`` desired velocity [m/s], 0 for absent agents.
-        walking: ``[E, A]`` bool, whether the model moves the agent: active and not external.
-        seen: ``[E, A]`` bool, whether others react to the agent: active and visible.
-        velocity: ``[E, A, 2]`` [m/s], output array of the model: the velocity of external agents, 0 for all others.
-    """
-
-    desired: Floats
-    walking: Bools
-    seen: Bools
-    velocity: Floats
 
 
 @dataclass(frozen=True)
@@ -86,6 +69,7 @@ class CrowdModel(abc.ABC):
 
     def __post_init__(self) -> None:
         check_parameters(self, LARGEST)
+        check_limit(self, getattr(self, "max_speed", None))
 
     @abc.abstractmethod
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
@@ -105,40 +89,6 @@ class CrowdModel(abc.ABC):
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later."""
         return scene.advance(self.velocity(scene, dt, rng), dt)
-
-
-def begin_step(scene: Scene, dt: float) -> StepStart:
-    """Check the values that models read; return them together with the desired velocities.
-
-    Raises:
-        InputError: ``dt`` is not positive, or a value of an active agent is not finite or larger than 1e9.
-    """
-    if not (math.isfinite(dt) and dt > 0.0):
-        raise InputError(f"time step {dt} s is not allowed, it must be above 0 and finite")
-    shape = scene.shape
-    pairs = (*shape, 2)
-    given = scene.preferred_velocity is not None
-    start = StepStart(np.empty(pairs), np.empty(shape, BOOL), np.empty(shape, BOOL), np.empty(pairs))
-    fits = _begin(
-        dense(scene.position, pairs, FLOAT),
-        dense(scene.velocity, pairs, FLOAT),
-        dense(scene.radius, shape, FLOAT),
-        dense(scene.max_speed, shape, FLOAT),
-        dense(scene.preferred_velocity if given else scene.goal, pairs, FLOAT),
-        dense(scene.preferred_speed, shape, FLOAT),
-        dense(scene.active, shape, BOOL),
-        dense(scene.visible, shape, BOOL),
-        dense(scene.external, shape, BOOL),
-        given,
-        float(dt),
-        *start,
-    )
-    if not fits:
-        aim = () if given else ("goal", "preferred_speed")
-        for name in ("position", "velocity", "radius", "max_speed", *aim):
-            _check(name, getattr(scene, name), scene.active)
-        _check("preferred velocity", start.desired, scene.active)
-    return start
 
 
 def desired_velocity(scene: Scene, dt: float) -> Floats:
@@ -167,9 +117,11 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
         )
 
 
-def speed_limit(max_speed: PerAgent | None, scene: Scene) -> Floats:
-    """Return the maximum speeds ``[E, A]`` [m/s] of the model, or of the scene if the model has none."""
-    return scene.max_speed if max_speed is None else per_agent(max_speed, scene.shape, "max_speed")
+def check_variant(model: CrowdModel, variant: str, known: Sequence[str]) -> None:
+    """Raise :class:`InputError` unless the variant of a model is among the ``known`` ones."""
+    if variant not in known:
+        near = did_you_mean(variant, known)
+        raise InputError(f"{type(model).__name__}: variant {variant!r} is unknown{near}; choose {' or '.join(known)}")
 
 
 def neighbors_of(model: Any, scene: Scene, seen: Bools, walking: Bools) -> Neighbors:
@@ -207,53 +159,3 @@ def launch(whole: Callable[..., None], part: Callable[..., None], out: Floats, *
         part(0, len(out), *plain, out)
     else:
         whole(*plain, out)
-
-
-def _check(name: str, value: Floats, active: NDArray[np.bool_]) -> None:
-    fits = np.abs(value) <= LARGEST  # False for NaN too
-    if value.ndim == 3:
-        fits = fits[..., 0] & fits[..., 1]
-    wrong = active & ~fits
-    if np.any(wrong):
-        e, a = np.argwhere(wrong)[0]
-        raise InputError(
-            f"scene: {name} {value[e, a]} of agent {a} in environment {e} is not finite or larger than {LARGEST:g};"
-            " mark absent agents active=False"
-        )
-
-
-@kernel
-def _begin(
-    position: Floats, velocity: Floats, radius: Floats, max_speed: Floats, aim: Floats, preferred_speed: Floats,
-    active: Bools, visible: Bools, external: Bools, given: bool, dt: float, desired: Floats, walking: Bools,
-    seen: Bools, chosen: Floats,
-) -> bool:  # fmt: skip
-    """Fill the arrays of a :class:`StepStart`; return whether all values of active agents are allowed.
-
-    Args:
-        aim: desired velocities if they are ``given``, otherwise goals.
-    """
-    fits = True
-    for e in range(active.shape[0]):
-        for a in range(active.shape[1]):
-            here = active[e, a]
-            walking[e, a], seen[e, a] = here and not external[e, a], here and visible[e, a]
-            desired[e, a, 0] = desired[e, a, 1] = chosen[e, a, 0] = chosen[e, a, 1] = 0.0
-            if not here:
-                continue
-            x, y = aim[e, a, 0], aim[e, a, 1]
-            if not given:
-                fits &= abs(x) <= LARGEST and abs(y) <= LARGEST and abs(preferred_speed[e, a]) <= LARGEST
-                x, y = x - position[e, a, 0], y - position[e, a, 1]
-                distance = math.sqrt(x * x + y * y)
-                share = min(preferred_speed[e, a], distance / dt) / max(distance, 1e-12)
-                x, y = x * share, y * share
-            desired[e, a, 0], desired[e, a, 1] = x, y
-            if external[e, a]:
-                chosen[e, a, 0], chosen[e, a, 1] = velocity[e, a, 0], velocity[e, a, 1]
-            # False for NaN, too
-            fits &= abs(position[e, a, 0]) <= LARGEST and abs(position[e, a, 1]) <= LARGEST
-            fits &= abs(velocity[e, a, 0]) <= LARGEST and abs(velocity[e, a, 1]) <= LARGEST
-            fits &= abs(radius[e, a]) <= LARGEST and abs(max_speed[e, a]) <= LARGEST
-            fits &= abs(x) <= LARGEST and abs(y) <= LARGEST
-    return fits

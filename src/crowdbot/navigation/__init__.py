@@ -6,8 +6,9 @@ from .decision_thread import HungNavigatorError, call_within
 from .decisions import Decisions
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .external import ExternalNavigator
-from .external_stack import Ros2Navigator, RosbridgeNavigator
 from .follower import FollowerNavigator
+from .links.external_stack import Ros2Navigator, RosbridgeNavigator
+from .links.real_robot import RealRobotNavigator
 from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -21,6 +22,7 @@ from .planners.model_predictive import MPCNavigator
 from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
 from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
+from .planners.predicted_occupancy import PredictedOccupancyNavigator
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
 from .process.process_navigator import ProcessNavigator
@@ -53,8 +55,10 @@ __all__ = [
     "PolicyNavigator",
     "PolicyWeights",
     "PotentialFieldNavigator",
+    "PredictedOccupancyNavigator",
     "ProcessNavigator",
     "RDSNavigator",
+    "RealRobotNavigator",
     "Ros2Navigator",
     "RosbridgeNavigator",
     "SafetyLayer",

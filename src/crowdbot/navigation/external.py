@@ -42,6 +42,11 @@ class ExternalNavigator(Navigator):
     def __post_init__(self) -> None:
         check_number("ExternalNavigator", "timeout", self.timeout, "s", exclusive_min=0.0)
 
+    @property
+    def mirrors(self) -> bool:
+        """Whether poses from outside move the robot, instead of velocities."""
+        return False
+
     def act(self, observation: Observation) -> Twist:
         """Return the twist of a robot without orders: it stands."""
         return Twist()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, check_number
 
 from .detections import Detections
-from .motion_filter import FilterState, correct, innovation, mix, predict, start
+from .motion_filter import FilterState, Innovation, correct, innovation, mix, predict, start
+from .predictor_motion import PredictorMotion
 from .tracker import Tracker
+from .tracker_state import TrackerState
 from .tracks import Tracks
 
-__all__ = ["GlobalNearestNeighbor", "InteractingMultipleModel", "TrackerState"]
+__all__ = ["Association", "GlobalNearestNeighbor", "InteractingMultipleModel"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,35 +28,16 @@ FORBIDDEN = 1e6
 """Cost of a pair outside the gate."""
 
 
-@dataclass(frozen=True)
-class TrackerState:
-    """State of a :class:`GlobalNearestNeighbor` with N tracks and M motion models.
+class Association(NamedTuple):
+    """N filters after D detections."""
 
-    Fields:
-        time: time of the last update [s]; NaN before the first.
-        next_id: identity of the next track.
-        ids: ``[N]`` identities.
-        mean, covariance: ``[N, M, 4]``, ``[N, M, 4, 4]`` of x, y, vx, vy by each motion model.
-        weight: ``[N, M]`` probability of each motion model.
-        existence: ``[N]`` probability that there is a person.
-        confirmed: ``[N]`` whether the track is reported.
-        last: ``[N]`` time of the last detection [s].
-    """
-
-    time: float
-    next_id: int
-    ids: Ints
-    mean: Floats
-    covariance: Floats
-    weight: Floats
+    filters: FilterState
     existence: Floats
-    confirmed: Bools
-    last: Floats
-
-    @property
-    def filters(self) -> FilterState:
-        """Means, covariances and weights of the motion models."""
-        return FilterState(self.mean, self.covariance, self.weight)
+    """``[N]`` probability that there is a person."""
+    detected: Bools
+    """``[N]`` whether the person was detected."""
+    used: Bools
+    """``[D]`` whether the detection belongs to a track."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +61,7 @@ class GlobalNearestNeighbor(Tracker):
         coast: time without detection after which a track ends [s].
         apart: distance from a track within which no new track begins [m].
         speed: standard deviation of the speed of a new track, in each direction [m/s].
+        motion: predictor whose forecast moves people between detections; default: constant velocity.
 
     Raises:
         InputError: a value is not allowed.
@@ -99,6 +84,7 @@ class GlobalNearestNeighbor(Tracker):
     coast: float = 2.0
     apart: float = 0.35
     speed: float = 1.0
+    motion: PredictorMotion | None = None
 
     def __post_init__(self) -> None:
         name = type(self).__name__
@@ -127,37 +113,74 @@ class GlobalNearestNeighbor(Tracker):
         none = np.zeros(0)
         return TrackerState(
             math.nan, 0, np.zeros(0, dtype=np.int64), np.zeros((0, M, 4)), np.zeros((0, M, 4, 4)), np.zeros((0, M)),
-            none, np.zeros(0, dtype=np.bool_), none,
+            none, np.zeros(0, dtype=np.bool_), none, none, np.zeros((0, 0, 2)),
         )  # fmt: skip
 
     def update(self, detections: Detections, time: float, state: TrackerState) -> tuple[Tracks, TrackerState]:
         """Return the tracks and the next state."""
         self.check_time(time, state.time)
         dt = 0.0 if math.isnan(state.time) else time - state.time
-        filters = predict(mix(state.filters, dt, self.dwell), dt, self.densities)
+        filters = predict(mix(self._accelerate(state, dt), dt, self.dwell), dt, self.densities)
         found = innovation(filters, detections.position, detections.covariance)
-        tracks, targets = self._assign(found.distance, found.likelihood, state.existence)
-        filters = correct(filters, found, tracks, targets)
-        existence = self._existence(state, filters, found.likelihood, tracks, targets, detections)
-        last = state.last.copy()
-        last[tracks] = time
-        confirmed = state.confirmed | (existence >= self.confirm)
-        alive = (existence >= self.drop) & (time - last <= self.coast)
-        free = np.setdiff1d(np.arange(len(detections)), targets)
-        free = free[self._is_new(detections.position[free], filters.moments()[0][alive])]
+        seen = np.full(len(state.ids), self.detection)
+        if detections.coverage is not None:
+            seen = self.detection * np.minimum(1.0, 1.5 * detections.coverage.visible(filters.moments()[0][:, :2]))
+        joined = self.associate(filters, found, state.existence, seen)
+        last = np.where(joined.detected, float(time), state.last)
+        confirmed = state.confirmed | (joined.existence >= self.confirm)
+        alive = (joined.existence >= self.drop) & (time - last <= self.coast)
+        free = np.flatnonzero(~joined.used)
+        free = free[self._is_new(detections.position[free], joined.filters.moments()[0][alive])]
         new = start(detections.position[free], detections.covariance[free], self.speed, len(self.densities))
+        place = np.concatenate([joined.filters.moments()[0][alive, :2], detections.position[free]])
+        times, places = self._remember(state, float(time), alive, place)
         after = TrackerState(
             float(time),
             state.next_id + len(free),
             np.concatenate([state.ids[alive], state.next_id + np.arange(len(free))]),
-            np.concatenate([filters.mean[alive], new.mean]),
-            np.concatenate([filters.covariance[alive], new.covariance]),
-            np.concatenate([filters.weight[alive], new.weight]),
-            np.concatenate([existence[alive], np.full(len(free), self.birth)]),
+            np.concatenate([joined.filters.mean[alive], new.mean]),
+            np.concatenate([joined.filters.covariance[alive], new.covariance]),
+            np.concatenate([joined.filters.weight[alive], new.weight]),
+            np.concatenate([joined.existence[alive], np.full(len(free), self.birth)]),
             np.concatenate([confirmed[alive], np.zeros(len(free), dtype=np.bool_)]),
             np.concatenate([last[alive], np.full(len(free), float(time))]),
+            times,
+            places,
         )
-        return _reported(after), after
+        return after.confirmed_tracks(), after
+
+    def associate(self, filters: FilterState, found: Innovation, existence: Floats, seen: Floats) -> Association:
+        """Return the filters after the detections that belong to them.
+
+        Args:
+            filters: predicted filters of N people.
+            found: differences between D detections and the filters.
+            existence: ``[N]`` probability that there is a person.
+            seen: ``[N]`` probability that a person there is detected.
+        """
+        tracks, targets = self._assign(found.distance, found.likelihood, existence)
+        after = existence * (1.0 - seen) / (1.0 - existence * seen)
+        ratio = self.detection * np.exp(np.minimum(found.likelihood[tracks, targets], 50.0)) / self.clutter
+        odds = existence[tracks] / (1.0 - existence[tracks]) * ratio
+        after[tracks] = odds / (1.0 + odds)
+        detected, used = np.zeros(found.distance.shape[0], np.bool_), np.zeros(found.distance.shape[1], np.bool_)
+        detected[tracks], used[targets] = True, True
+        return Association(correct(filters, found, tracks, targets), np.clip(after, 1e-9, 1.0 - 1e-3), detected, used)
+
+    def _accelerate(self, state: TrackerState, dt: float) -> FilterState:
+        """Return the filters with the change of velocity that the predictor expects in ``dt`` [s]."""
+        if self.motion is None or dt == 0.0 or not state.confirmed.any():
+            return state.filters
+        return self.motion.apply(state, dt)
+
+    def _remember(self, state: TrackerState, time: float, alive: Bools, place: Floats) -> tuple[Floats, Floats]:
+        """Return the times and the positions of the last updates, if a predictor reads them."""
+        if self.motion is None:
+            return state.times, np.zeros((len(place), 0, 2))
+        kept = state.times >= time - self.motion.span
+        before = np.full((len(place), int(kept.sum()), 2), np.nan)
+        before[: int(alive.sum())] = state.places[alive][:, kept]
+        return np.append(state.times[kept], time), np.concatenate([before, place[:, None]], axis=1)
 
     def _assign(self, distance: Floats, likelihood: Floats, existence: Floats) -> tuple[Ints, Ints]:
         """Return the indices of tracks and detections that belong together."""
@@ -170,21 +193,6 @@ class GlobalNearestNeighbor(Tracker):
         tracks, targets = linear_sum_assignment(cost)
         kept = inside[tracks, targets]
         return tracks[kept], targets[kept]
-
-    def _existence(
-        self, state: TrackerState, filters: FilterState, likelihood: Floats, tracks: Ints, targets: Ints,
-        detections: Detections,
-    ) -> Floats:  # fmt: skip
-        """Return the probability of existence of each track after the detections, at most 1 - 1e-6."""
-        seen = np.full(len(state.ids), self.detection)
-        if detections.coverage is not None:
-            seen = self.detection * np.minimum(1.0, 1.5 * detections.coverage.visible(filters.moments()[0][:, :2]))
-        before = state.existence
-        after = before * (1.0 - seen) / (1.0 - before * seen)
-        ratio = self.detection * np.exp(np.minimum(likelihood[tracks, targets], 50.0)) / self.clutter
-        odds = before[tracks] / (1.0 - before[tracks]) * ratio
-        after[tracks] = odds / (1.0 + odds)
-        return np.asarray(np.clip(after, 1e-9, 1.0 - 1e-3))
 
     def _is_new(self, position: Floats, known: Floats) -> Bools:
         """Return which detections are far enough from all tracks."""
@@ -228,14 +236,3 @@ class InteractingMultipleModel(GlobalNearestNeighbor):
     def dwell(self) -> float:
         """Mean time until a person changes to another motion model [s]."""
         return self.stay
-
-
-def _reported(state: TrackerState) -> Tracks:
-    """Return the confirmed tracks."""
-    kept = state.confirmed
-    mean, covariance = state.filters.moments()
-    mean, covariance = mean[kept], covariance[kept]
-    return Tracks(
-        state.time, state.ids[kept], mean[:, :2].copy(), mean[:, 2:].copy(), covariance, state.existence[kept],
-        state.last[kept] == state.time,
-    )  # fmt: skip

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .simulated import Simulated
     from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
+    from .stored_forecasts import forecasts_of
     from .training import (
         BEST,
         LAST,
@@ -60,6 +61,7 @@ __getattr__, __dir__ = lazy_exports(
         "predictor_spec": ["PredictorSpec"],
         "simulated": ["Simulated"],
         "social_ways": ["PRESETS", "STEADY", "SocialWays", "SocialWaysConfig"],
+        "stored_forecasts": ["forecasts_of"],
         "training": [
             "BEST",
             "LAST",
@@ -114,6 +116,7 @@ __all__ = [
     "TrainingSchedule",
     "check_predictor",
     "degraded_windows",
+    "forecasts_of",
     "leave_out",
     "load_checkpoint",
     "make_learner",

@@ -21,8 +21,8 @@ ROUNDS = 12
 """Maximum number of separation rounds."""
 
 
-def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats]:
-    """Return joint futures ``[W, K, T, A, 2]`` [m] and their weights ``[W, K]``.
+def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats, Floats]:
+    """Return joint futures ``[W, K, T, A, 2]`` [m], their weights ``[W, K]``, and those of each person ``[W, K, A]``.
 
     Args:
         past: windows.
@@ -30,20 +30,27 @@ def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float
         share: ``[W, A, K]`` their probabilities.
         contact: minimum distance between people [m].
 
-    Each person uses each individual future once. The weight of a joint future is the mean probability of its individual
-    futures.
+    Joint futures are sorted by decreasing weight, the mean probability of their individual futures. Each person uses
+    each individual future once.
     """
     W, K = place.shape[:2]
-    found, weight = place.copy(), np.full((W, K), 1.0 / K)
+    found, weight, single = place.copy(), np.full((W, K), 1.0 / K), np.zeros((W, K, place.shape[3]))
     for window, who in _members(past):
         choice = _choice(past, place, window, who, contact, ORDER)
         found[window][:, :, who] = _reorder(place[window][:, :, who], choice)
+        own = np.take_along_axis(share[window, who], choice, axis=1)
+        single[window][:, who] = own.T
         people = [a for a, person in enumerate(who) if not past.robot[window, person]]
         if people:
-            own = np.take_along_axis(share[window, who], choice, axis=1)[people]
-            total = np.cumsum(own, axis=0)[-1]
+            total = np.cumsum(own[people], axis=0)[-1]
             weight[window] = total / np.cumsum(total)[-1]
-    return found, weight
+        first = np.argsort(-weight[window], kind="stable")
+        found[window], weight[window], single[window] = (
+            found[window][first],
+            weight[window][first],
+            single[window][first],
+        )
+    return found, weight, single
 
 
 def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -> Floats:
@@ -58,8 +65,9 @@ def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -
 
 
 def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
-    """Return joint futures ``[W, K, T, A, 2]`` [m] with people separated to at least ``contact`` [m].
+    """Return joint futures ``[W, K, T, A, 2]`` [m] with people at least ``contact`` [m] apart, also between rows.
 
+    Where the windows have radii, people are apart by the sum of radii; half of ``contact`` is the radius of the others.
     Paths that would cross a wall after the separation are not changed.
     """
     if contact <= 0.0:
@@ -68,10 +76,10 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
     for window, who in _members(past):
         if len(who) < 2:
             continue
-        fixed = past.robot[window, who]
+        fixed, room = past.robot[window, who], _rooms(past, window, who, contact)
         for k in range(place.shape[1]):
             path = _with_plans(past, np.ascontiguousarray(np.moveaxis(place[window, k][:, who], 1, 0)), window, who)
-            moved = separate_paths(path, fixed, contact, ROUNDS)
+            moved = separate_paths(path, fixed, room, ROUNDS)
             found[window, k][:, who] = np.moveaxis(moved, 0, 1)
     windows, slots = np.nonzero(past.present[:, -1])
     if past.walls and len(windows):
@@ -99,6 +107,14 @@ def stop_at_walls(
     return np.where((np.arange(T) < free[..., None])[..., None], path, last), free < T
 
 
+def _rooms(past: Windows, window: int, who: NDArray[np.int64], contact: float) -> Floats:
+    """Return the radii ``[A]`` [m] of agents of a window; half of ``contact`` where they are unknown."""
+    if past.radius is None:
+        return np.full(len(who), 0.5 * contact)
+    known = past.radius[window, who]
+    return np.where(np.isnan(known), 0.5 * contact, known)
+
+
 def _members(past: Windows) -> list[tuple[int, NDArray[np.int64]]]:
     """Return the slots of the agents in each window, sorted by id: results do not depend on the order of slots."""
     found = []
@@ -116,7 +132,7 @@ def _choice(
         return np.tile(np.arange(K), (len(who), 1))
     path = np.ascontiguousarray(place[window][:, :, who].transpose(2, 0, 1, 3))
     path = np.stack([_with_plans(past, np.ascontiguousarray(path[:, k]), window, who) for k in range(K)], axis=1)
-    return np.asarray(assign_futures(path, contact, order, SWEEPS))
+    return np.asarray(assign_futures(path, _rooms(past, window, who, contact), order, SWEEPS))
 
 
 def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]) -> Floats:

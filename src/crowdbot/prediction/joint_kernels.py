@@ -22,8 +22,8 @@ FLAT = 1e-9
 
 
 @kernel
-def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
-    """Return bounding boxes ``[A, K + 1, 4]`` [m] of all paths, expanded by ``room``; the last one contains all K."""
+def _boxes(path: Floats, room: Floats) -> Floats:  # pragma: no cover - compiled
+    """Return bounding boxes ``[A, K + 1, 4]`` [m] of all paths, expanded by ``room [A]``; the last contains all K."""
     A, K, T, _ = path.shape
     box = np.empty((A, K + 1, 4))
     for a in range(A):
@@ -33,8 +33,8 @@ def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
                 low, high = math.inf, -math.inf
                 for t in range(T):
                     low, high = min(low, path[a, k, t, c]), max(high, path[a, k, t, c])
-                box[a, k, c], box[a, k, 2 + c] = low - room, high + room
-                box[a, K, c], box[a, K, 2 + c] = min(box[a, K, c], low - room), max(box[a, K, 2 + c], high + room)
+                box[a, k, c], box[a, k, 2 + c] = low - room[a], high + room[a]
+                box[a, K, c], box[a, K, 2 + c] = min(box[a, K, c], low - room[a]), max(box[a, K, 2 + c], high + room[a])
     return box
 
 
@@ -65,15 +65,15 @@ def _find_collisions(
 
 
 @kernel
-def assign_futures(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
+def assign_futures(path: Floats, room: Floats, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
     """Return ``[A, K]``: the future of each person in each of K joint futures; each future is used exactly once.
 
     The futures ``[A, K, T, 2]`` [m] are sorted by decreasing probability. One person after the other, two futures are
-    exchanged between two joint futures while this reduces the number of collisions, that is, distances below ``limit``
-    [m]. A permuted future costs ``order * (displacement / K)**2``.
+    exchanged between two joint futures while this reduces the number of collisions, that is, distances below the sum of
+    ``room [A]`` [m] of both. A permuted future costs ``order * (displacement / K)**2``.
     """
     A, K = path.shape[0], path.shape[1]
-    box = _boxes(path, 0.5 * limit)
+    box = _boxes(path, room)
     choice = np.empty((A, K), dtype=np.int64)
     for a in range(A):
         for k in range(K):
@@ -88,6 +88,7 @@ def assign_futures(path: Floats, limit: float, order: float, sweeps: int) -> Int
     hit = np.zeros((count, K, K), dtype=np.bool_)
     meet = np.zeros(count, dtype=np.bool_)
     for p in range(count):
+        limit = room[one[p]] + room[other[p]]
         meet[p] = _find_collisions(path, one[p], other[p], box, limit, hit[p])
     cost = np.empty((K, K))
     for _ in range(sweeps):
@@ -135,12 +136,37 @@ def _exchange(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - com
 
 
 @kernel
-def separate_paths(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
+def _closest(one: Floats, other: Floats, limit: float) -> tuple[float, float, float, float]:  # pragma: no cover
+    """Return where two paths ``[T, 2]``, straight between steps, are closest below ``limit``; -1: nowhere.
+
+    Returns the step, with its fraction since the step before, the squared distance, and the difference of positions.
+    """
+    when, least, dx, dy = -1.0, limit * limit, 0.0, 0.0
+    u, v = one[0, 0] - other[0, 0], one[0, 1] - other[0, 1]
+    for t in range(len(one)):
+        x, y = one[t, 0] - other[t, 0], one[t, 1] - other[t, 1]
+        wx, wy = x - u, y - v
+        length = wx * wx + wy * wy
+        share = 1.0
+        if length > 0.0:
+            share = min(1.0, max(0.0, -(u * wx + v * wy) / length))
+        near_x, near_y = u + share * wx, v + share * wy
+        squared = near_x * near_x + near_y * near_y
+        if squared < least:
+            when, least, dx, dy = max(0.0, t - 1.0 + share), squared, near_x, near_y
+        u, v = x, y
+    return when, least, dx, dy
+
+
+@kernel
+def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Floats:  # pragma: no cover - compiled
     """Return the paths ``[A, T, 2]`` [m] of one joint future with a minimum distance between people.
 
-    Two people closer than ``limit`` [m] are moved in opposite directions at their closest step, by half of the missing
-    distance each. The offset grows linearly up to that step and stays constant afterwards. Agents in ``fixed`` are not
-    moved. All pairs move simultaneously in each round; the result does not depend on the order of people.
+    Two people closer than the sum of ``room [A]`` [m] of both, at a step or between two, are moved in opposite
+    directions where they are closest, by half of the missing distance each. The offset grows linearly up to there and
+    stays constant afterwards.
+    Agents in ``fixed`` are not moved. All pairs move simultaneously in each round; the result does not depend on the
+    order of people.
     """
     A, T, _ = path.shape
     out = path.copy()
@@ -151,15 +177,11 @@ def separate_paths(path: Floats, fixed: Bools, limit: float, rounds: int) -> Flo
             for b in range(a + 1, A):
                 if fixed[a] and fixed[b]:
                     continue
-                when, least = -1, limit * limit
-                for t in range(T):
-                    dx, dy = out[a, t, 0] - out[b, t, 0], out[a, t, 1] - out[b, t, 1]
-                    if dx * dx + dy * dy < least:
-                        when, least = t, dx * dx + dy * dy
-                if when < 0:
+                limit = room[a] + room[b]
+                when, least, dx, dy = _closest(out[a], out[b], limit)
+                if when < 0.0:
                     continue
                 found = True
-                dx, dy = out[a, when, 0] - out[b, when, 0], out[a, when, 1] - out[b, when, 1]
                 away = math.sqrt(least)
                 if away < FLAT:  # same position: move across the direction of motion
                     dy, dx = out[a, T - 1, 0] - out[a, 0, 0], out[a, 0, 1] - out[a, T - 1, 1]

@@ -16,7 +16,7 @@ from crowdbot.core import InputError
 from crowdbot.data import Windows, fill_gaps
 
 from .predictor import Predictor
-from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, incompatibility, pretrained_file
+from .pretrained_weights import AUTO, FOLDS, OPEN, STEP, fold_of, incompatibility, pretrained_file
 
 __all__ = ["LearnedPredictor", "complete_tracks"]
 
@@ -81,14 +81,14 @@ class LearnedPredictor(Predictor):
         if not self.is_pretrained:
             return Path(self.checkpoint)
         fold = fold_of(source) if self.checkpoint == AUTO else self.checkpoint
-        return pretrained_file(self.kind, ELSEWHERE if fold == ALL else fold)
+        return pretrained_file(self.kind, ELSEWHERE if fold == OPEN else fold)
 
     def note(self, past: Windows) -> str:
         """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = self.incompatibility(past)
         if why:
             return f"{self.kind}: {why}; a baseline is used instead"
-        if self.checkpoint == AUTO and fold_of(past.source) == ALL:
+        if self.checkpoint == AUTO and fold_of(past.source) == OPEN:
             return (
                 f"{self.kind}: {past.source} is not named after a training place; using the weights trained without"
                 f" {ELSEWHERE}"

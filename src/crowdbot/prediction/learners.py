@@ -24,8 +24,9 @@ def make_learner(
     watched: Samples,
     seed: int = 0,
     device: str = "cpu",
+    start: str = "",
 ) -> Trainable:
-    """Return a network with random weights, ready for :func:`~crowdbot.prediction.train`.
+    """Return a network with random weights, or those of another training, ready for :func:`~crowdbot.prediction.train`.
 
     Args:
         name: ``anchor-net`` or ``social-ways``.
@@ -35,6 +36,7 @@ def make_learner(
         watched: validation data.
         seed: seed of the weights and of all random draws.
         device: ``cpu``, ``cuda`` or ``cuda:N``.
+        start: weights from which the training starts: a file, or shipped ones: ``open`` (anchor-net) or a place.
 
     Raises:
         UnknownName: the name is unknown.
@@ -46,7 +48,7 @@ def make_learner(
     if name == "anchor-net":
         from .anchor_net import training as anchor_net
 
-        return anchor_net.learner(settings, values, samples, watched, seed, device)
+        return anchor_net.learner(settings, values, samples, watched, seed, device, start)
     from .social_ways import training as social_ways
 
-    return social_ways.learner(settings, values, samples, watched, seed, device)
+    return social_ways.learner(settings, values, samples, watched, seed, device, start)

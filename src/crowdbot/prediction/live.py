@@ -12,16 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.calibration import Fit
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 
 from .predictor import Predictor
-from .tracker_history import TrackerHistory
+from .tracker_history import TrackedRows, TrackerHistory
 
 __all__ = ["Live"]
 
 ROWS = 8
 """Default number of rows of predictors without a history in seconds."""
+FIRST_BUDGET = 20
+"""Evaluations in the first frame with a deadline."""
+SAFETY = 0.8
+"""Share of the deadline that is planned."""
 
 
 class Live:
@@ -40,10 +45,13 @@ class Live:
         seed: random seed.
         coast: how long a hidden person is predicted, at constant velocity [s]. The existence probability in the
             forecast halves every ``coast / 2``; 0: people who are not in the last row are not predicted.
+        deadline: time for a prediction [s]; None: no limit. A calibrated crowd evaluates as many candidates as fit, by
+            the speed of earlier frames (20 in the first one); :attr:`left_out` tells what did not fit.
+            Forecasts then depend on the speed of the computer.
 
     Raises:
-        InputError: ``dt`` is not above 0, ``observe`` is below 1, ``coast`` is negative, or the predictor requires the
-            future.
+        InputError: ``dt`` or ``deadline`` is not above 0, ``observe`` is below 1, ``coast`` is negative, or the
+            predictor requires the future.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> live = Live(ConstantVelocity(), dt=0.4)
@@ -63,7 +71,7 @@ class Live:
 
     def __init__(
         self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
-        seed: int = 0, coast: float = 1.0,
+        seed: int = 0, coast: float = 1.0, deadline: float | None = None,
     ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
@@ -71,6 +79,8 @@ class Live:
             raise InputError(f"live: observe = {observe} rows must be at least 1")
         if not 0.0 <= coast < np.inf:
             raise InputError(f"live: coast = {coast} s must be finite and at least 0")
+        if deadline is not None and not deadline > 0.0:
+            raise InputError(f"live: deadline = {deadline} s must be above 0")
         if not isinstance(predictor, Predictor):
             raise InputError(f"live: {predictor!r} is not a predictor; pass an instance, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
@@ -86,6 +96,12 @@ class Live:
         self.coast = coast
         self.latency = math.nan
         """Duration of the last call of :meth:`predict` [s]; NaN before the first."""
+        self.deadline = deadline
+        self.evaluations = 0
+        """Candidate crowds that the last call of :meth:`predict` evaluated; 0 without calibration."""
+        self.left_out = ""
+        """What did not fit into the deadline of the last prediction, in a sentence; empty if everything did."""
+        self._rate = math.nan  # evaluations per second
         self._seed = seed
         self._history = TrackerHistory(dt, self.observe, coast)
         self._memory: Any = None
@@ -103,8 +119,9 @@ class Live:
         return found
 
     def update(
-        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None
-    ) -> None:
+        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None,
+        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
+    ) -> None:  # fmt: skip
         """Add a row: identities ``[N]`` of any hashable type, and positions ``[N, 2]`` [m].
 
         Args:
@@ -113,13 +130,17 @@ class Live:
             robots: identities of robots.
             time: time stamp [s], later than the one before; None: ``dt`` after it. The observed rows are interpolated
                 to steps of ``dt`` before the last time stamp.
+            covariances: ``[N, 2, 2]`` [m^2] of the positions. The last one of a person is added to the covariances of
+                the forecast, if the predictor has them; predictors do not read it.
+            radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of a learned
+                predictor keep apart by the sum of radii.
 
         Raises:
-            InputError: shapes do not match, a position is not finite, an identity is duplicate, or the time stamp is
-                not later than the one before.
+            InputError: shapes do not match, a position is not finite, an identity is duplicate, the time stamp is not
+                later than the one before, a covariance is not positive semidefinite, or a radius is not above 0.
         """
         with self._reading:
-            self._history.add(ids, position, robots, time)
+            self._history.add(ids, position, robots, time, covariances, radii)
 
     def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
         """Return the stored rows as one window of all predicted agents."""
@@ -139,18 +160,44 @@ class Live:
         """
         with self._predicting:
             begin = clock.perf_counter()
-            past, existence, count = self._past(plans, required=True)
+            past, rows, count = self._past(plans, required=True)
             rng = stream(self._seed, "live", count)
-            forecast, memory = self.predictor.follow(past, steps, samples, rng, self._memory)
+            forecast, memory = self._predictor_in_time().follow(past, steps, samples, rng, self._memory)
             if not plans:
                 self._memory = memory
             self.latency = clock.perf_counter() - begin
-        return dataclasses.replace(forecast, existence=existence)
+            self._remark(memory)
+        covariance = forecast.covariance
+        if covariance is not None:
+            moving = np.any(covariance, axis=(3, 4))[..., None, None]  # robots with a plan are where the plan says
+            covariance = np.where(moving, covariance + rows.covariance[None, None], 0.0)
+        return dataclasses.replace(forecast, existence=rows.existence[None], covariance=covariance)
 
-    def _past(
-        self, plans: Mapping[Any, ArrayLike] | None, required: bool = False
-    ) -> tuple[Windows, NDArray[np.float64], int]:
-        """Return the window, existence probabilities ``[1, A]`` and the number of rows so far."""
+    def _predictor_in_time(self) -> Predictor:
+        """Return the predictor, with a budget of evaluations that fits into the deadline."""
+        budget = getattr(self.predictor, "budget", None)
+        if self.deadline is None or budget is None or getattr(self.predictor, "calibrator", None) is None:
+            return self.predictor
+        fits = FIRST_BUDGET if math.isnan(self._rate) else int(SAFETY * self._rate * self.deadline)
+        return dataclasses.replace(self.predictor, budget=max(1, min(budget, fits)))  # type: ignore[call-arg]
+
+    def _remark(self, memory: Any) -> None:
+        """Set what the last prediction evaluated, and what it left out."""
+        self.evaluations, self.left_out = 0, ""
+        if isinstance(memory, Fit):
+            self.evaluations = int(memory.evaluations.sum())
+            new = self.evaluations / max(self.latency, 1e-9)
+            self._rate = new if math.isnan(self._rate) else 0.5 * (self._rate + new)
+        if self.deadline is None:
+            return
+        late = f"the prediction took {self.latency:.3g} s, more than {self.deadline:g} s"
+        budget = getattr(self.predictor, "budget", 0)
+        few = f"{self.evaluations} of {budget} evaluations fitted into {self.deadline:g} s"
+        parts = [late] * (self.latency > self.deadline) + [few] * (0 < self.evaluations < budget)
+        self.left_out = "; ".join(parts)
+
+    def _past(self, plans: Mapping[Any, ArrayLike] | None, required: bool = False) -> tuple[Windows, TrackedRows, int]:
+        """Return the window, its rows and the number of rows so far."""
         with self._reading:
             if required and not self._history.count:
                 raise InputError("live: no row yet; call update first")
@@ -161,6 +208,6 @@ class Live:
         frame = count - len(rows.position) + np.arange(len(rows.position))
         past = Windows(
             rows.position[None], rows.present[None], nobody, rows.robot[None], rows.id[None], frame[None], self.dt,
-            "live", "live stream", self.walls,
+            "live", "live stream", self.walls, radius=None if rows.radius is None else rows.radius[None],
         )  # fmt: skip
-        return (past.with_plans(known) if known else past), rows.existence[None], count
+        return (past.with_plans(known) if known else past), rows, count

@@ -21,6 +21,7 @@ __all__ = [
     "AUTO",
     "FOLDS",
     "LONGEST_STEP",
+    "OPEN",
     "STEP",
     "Numbers",
     "check_fold",
@@ -39,6 +40,9 @@ STEP = 0.4
 LONGEST_STEP = 0.7
 """Largest time step [s] at which tracks can be interpolated to 0.4 s."""
 ALL = "all"
+"""Fold of the weights that learned from all ETH/UCY recordings."""
+OPEN = "open"
+"""Fold of the default weights: only recordings whose terms allow it (UCY), and simulated crowds."""
 AUTO = "auto"
 FOLDS = {
     "eth": ("biwi_eth", "seq_eth"),
@@ -51,25 +55,25 @@ FOLDS = {
 
 
 def check_fold(fold: str) -> None:
-    """Raise :class:`InputError` unless ``fold`` is a place, ``all`` or ``auto``."""
-    known = (AUTO, ALL, *FOLDS)
+    """Raise :class:`InputError` unless ``fold`` is a place, ``open``, ``all`` or ``auto``."""
+    known = (AUTO, OPEN, ALL, *FOLDS)
     if fold not in known:
         raise InputError(f"fold {fold!r}{did_you_mean(fold, known)}; it is one of {', '.join(known)}")
 
 
 def fold_of(source: str) -> str:
-    """Return the place of a recording by its name; ``all`` if it is none of the five places.
+    """Return the place of a recording by its name; ``open`` if it is none of the five places.
 
     >>> fold_of("biwi_hotel.txt"), fold_of("crowds_zara03.txt")
-    ('hotel', 'all')
+    ('hotel', 'open')
     """
     name = Path(source).name
-    return next((fold for fold, begins in FOLDS.items() if name.startswith(begins)), ALL)
+    return next((fold for fold, begins in FOLDS.items() if name.startswith(begins)), OPEN)
 
 
 def is_held_out(fold: str, name: str) -> bool:
     """Return whether a recording of this name is excluded from the training of a fold."""
-    return fold != ALL and Path(name).name.startswith(FOLDS[fold])
+    return fold in FOLDS and Path(name).name.startswith(FOLDS[fold])
 
 
 @functools.cache

@@ -32,6 +32,7 @@ class _Row(NamedTuple):
     who: Integers
     place: Floats
     robots: frozenset[int]
+    covariance: Floats | None
 
 
 class TrackedRows(NamedTuple):
@@ -43,6 +44,8 @@ class TrackedRows(NamedTuple):
         robot: ``[A]``.
         id: ``[A]``, sorted.
         existence: ``[A]`` probability that an agent is still there: 1 if it is in the last row.
+        covariance: ``[A, 2, 2]`` [m^2] of the last observed position of each agent; 0 where the tracker gave none.
+        radius: ``[A]`` [m] last known radius of each agent, NaN where unknown; None if all are.
     """
 
     position: Floats
@@ -50,6 +53,8 @@ class TrackedRows(NamedTuple):
     robot: Bools
     id: Integers
     existence: Floats
+    covariance: Floats
+    radius: Floats | None
 
 
 class TrackerHistory:
@@ -69,8 +74,12 @@ class TrackerHistory:
         self._labels: dict[int, Hashable] = {}
         self._numbers: dict[Hashable, int] = {}
         self._next = FIRST_NUMBER
+        self._radii: dict[int, float] = {}
 
-    def add(self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable], time: float | None) -> None:
+    def add(
+        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable], time: float | None,
+        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
+    ) -> None:  # fmt: skip
         """Add a row, see :meth:`Live.update`."""
         labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
         place = np.asarray(position, dtype=float).reshape(-1, 2)
@@ -81,11 +90,13 @@ class TrackerHistory:
                              " finite")  # fmt: skip
         if len(set(labels)) != len(labels):
             raise InputError(f"live: identities {labels} must be distinct")
+        spread, bodies = _checked_covariances(covariances, len(labels)), _checked_radii(radii, len(labels))
         stamp = self._stamp(time)
         who = np.array([self._number(label) for label in labels], dtype=np.int64)
+        self._radii |= {int(number): size for number, size in zip(who, bodies, strict=True) if not np.isnan(size)}
         order = np.argsort(who)
         machines = frozenset(self._number(label) for label in robots)
-        self._rows.append(_Row(stamp, who[order], place[order], machines))
+        self._rows.append(_Row(stamp, who[order], place[order], machines, None if spread is None else spread[order]))
         self._stamped = self._stamped or time is not None
         self.count += 1
         self._forget()
@@ -121,7 +132,7 @@ class TrackerHistory:
     def rows(self) -> TrackedRows:
         """Return the last rows; those with time stamps are interpolated at steps of ``dt`` before the last one."""
         id = self.numbers()
-        track = {int(number): self._track(int(number)) for number in id}
+        track = self._tracks(id)
         times = self._times()
         position, present = np.zeros((len(times), len(id), 2)), np.zeros((len(times), len(id)), dtype=np.bool_)
         existence = np.ones(len(id))
@@ -133,7 +144,23 @@ class TrackerHistory:
                 position[-1, slot], present[-1, slot] = _coast(seen, place, hidden), True
                 existence[slot] = 0.5 ** (2.0 * hidden / self.coast)
         robots: frozenset[int] = frozenset().union(*(row.robots for row in self._rows))
-        return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence)
+        return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence, self._last_covariances(id),
+                           self._last_radii(id))  # fmt: skip
+
+    def _last_covariances(self, id: Integers) -> Floats:
+        """Return covariances ``[A, 2, 2]`` of the last observed positions."""
+        found = np.zeros((len(id), 2, 2))
+        if all(row.covariance is None for row in self._rows):
+            return found
+        for row in self._rows:  # later rows overwrite earlier ones
+            slot = np.flatnonzero(np.isin(id, row.who))
+            found[slot] = 0.0 if row.covariance is None else row.covariance[np.searchsorted(row.who, id[slot])]
+        return found
+
+    def _last_radii(self, id: Integers) -> Floats | None:
+        """Return radii ``[A]`` [m], or None if none is known."""
+        found = np.array([self._radii.get(int(number), np.nan) for number in id])
+        return None if np.isnan(found).all() else found
 
     def _stamp(self, time: float | None) -> float:
         last = self._rows[-1].time if self._rows else None
@@ -163,6 +190,7 @@ class TrackerHistory:
             alive = {int(n) for row in self._rows for n in (*row.who, *row.robots)}
             self._labels = {number: label for number, label in self._labels.items() if number in alive}
             self._numbers = {label: number for number, label in self._labels.items()}
+            self._radii = {number: size for number, size in self._radii.items() if number in alive}
 
     def _times(self) -> Floats:
         """Return the times of the rows: multiples of ``dt`` before now that are not before the first stored row."""
@@ -174,12 +202,16 @@ class TrackerHistory:
         count = min(self.observe, max(count, min(2, len(self._rows))))
         return now - self.dt * np.arange(count - 1, -1, -1.0)
 
-    def _track(self, number: int) -> tuple[Floats, Floats]:
-        """Return times ``[N]`` and positions ``[N, 2]`` of an agent."""
-        found = [(row.time, row.place[at]) for row in self._rows
-                 for at in (int(np.searchsorted(row.who, number)),)
-                 if at < len(row.who) and row.who[at] == number]  # fmt: skip
-        return np.array([time for time, _ in found]), np.array([place for _, place in found])
+    def _tracks(self, id: Integers) -> dict[int, tuple[Floats, Floats]]:
+        """Return times ``[N]`` and positions ``[N, 2]`` of agents by number."""
+        if not len(id):
+            return {}
+        who = np.concatenate([row.who for row in self._rows])
+        order = np.argsort(who, kind="stable")
+        time = np.repeat([row.time for row in self._rows], [len(row.who) for row in self._rows])[order]
+        place = np.concatenate([row.place for row in self._rows])[order]
+        first, last = (np.searchsorted(who[order], id, side=side) for side in ("left", "right"))
+        return {int(n): (time[a:b], place[a:b]) for n, a, b in zip(id, first, last, strict=True)}
 
     def _at(self, times: Floats, seen: Floats, place: Floats) -> tuple[Floats, Bools]:
         """Return positions ``[T, 2]`` at times ``[T]``, and whether they are known."""
@@ -196,6 +228,52 @@ class TrackerHistory:
             found[-2] = found[-1] - self.dt * _velocity(seen, place)
             known[-2] = bool(exact[-1])
         return np.where(known[:, None], found, 0.0), known
+
+
+def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | None:
+    """Return covariances ``[N, 2, 2]`` [m^2], or None.
+
+    Raises:
+        InputError: the shape is wrong, or a matrix is not finite, symmetric and positive semidefinite.
+    """
+    if covariances is None:
+        return None
+    try:
+        spread = np.asarray(covariances, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("live: covariances must be numbers [N, 2, 2]") from None
+    if count == 0 and spread.size == 0:
+        return np.zeros((0, 2, 2))
+    if spread.shape != (count, 2, 2):
+        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2]")
+    size = np.abs(spread).max(axis=(1, 2))
+    wrong = ~np.isfinite(size) | (np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size)
+    smallest = np.linalg.eigvalsh(np.where(wrong[:, None, None], 0.0, spread))[:, 0]
+    wrong |= smallest < -1e-6 * np.where(np.isfinite(size), size, 0.0)
+    if wrong.any():
+        bad = spread[int(np.argmax(wrong))].tolist()
+        raise InputError(f"live: covariance {bad} is not finite, symmetric and positive semidefinite")
+    return spread
+
+
+def _checked_radii(radii: ArrayLike | None, count: int) -> list[float]:
+    """Return radii ``[N]`` [m], NaN where unknown.
+
+    Raises:
+        InputError: the shape is wrong, or a radius is not above 0 and finite.
+    """
+    if radii is None:
+        return [np.nan] * count
+    try:
+        found = np.asarray(radii, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("live: radii must be numbers [N]") from None
+    if found.shape != (count,):
+        raise InputError(f"live: radii have shape {list(found.shape)}, they must be [{count}]")
+    bad = found[~np.isnan(found) & ~((found > 0.0) & (found < np.inf))]
+    if len(bad):
+        raise InputError(f"live: radius {bad[0]} m must be above 0 and finite, or NaN if it is unknown")
+    return [float(radius) for radius in found]
 
 
 def _velocity(seen: Floats, place: Floats) -> Floats:

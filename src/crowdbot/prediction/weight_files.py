@@ -1,8 +1,8 @@
 """Files of pretrained weights.
 
-The weights for new places are part of the package. The leave-one-out weights, each trained without one of the five
-ETH/UCY places, are part of the source distribution and of the archive ``crowdbot-weights`` of a release, but not of the
-wheel. ``assets/predictors/SHA256SUMS`` lists the SHA-256 of every file; files from outside the package must match it.
+The default weights are part of the package. Other weights, trained with or without one of the five ETH/UCY places, are
+part of the source distribution and of the archive ``crowdbot-weights`` of a release, but not of the wheel.
+``assets/predictors/SHA256SUMS`` lists the SHA-256 of every file; files from outside the package must match it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def weights_folder() -> Path:
 def weight_hashes() -> dict[str, str]:
     """Return the SHA-256 of every file of pretrained weights by name.
 
-    >>> len(weight_hashes()["anchor-net-all.npz"])
+    >>> len(weight_hashes()["anchor-net-open.npz"])
     64
     """
     lines = (_package_folder() / "SHA256SUMS").read_text(encoding="utf-8").splitlines()
@@ -51,13 +51,13 @@ def find_weights(kind: str, fold: str) -> Path:
 
     Args:
         kind: name of the predictor.
-        fold: name of the place, or ``all``.
+        fold: name of the place, ``open`` or ``all``.
 
     Raises:
         DataError: the file is not installed, or is not the one of this version.
 
-    >>> find_weights("anchor-net", "all").name
-    'anchor-net-all.npz'
+    >>> find_weights("anchor-net", "open").name
+    'anchor-net-open.npz'
     """
     name = f"{kind}-{fold}.npz"
     shipped, extra = _package_folder() / name, weights_folder() / name
@@ -65,7 +65,7 @@ def find_weights(kind: str, fold: str) -> Path:
         return shipped
     if not extra.is_file():
         raise DataError(
-            f"{name} is not installed, since the wheel has no leave-one-out weights: unpack crowdbot-weights.zip of the"
+            f"{name} is not installed, since the wheel has the default weights only: unpack crowdbot-weights.zip of the"
             f" release into {extra.parent}, or set {VARIABLE} to a folder that has it"
         )
     _check_hash(extra)

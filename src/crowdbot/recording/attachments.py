@@ -30,6 +30,8 @@ from crowdbot.trials import (
     map_files,
     outline,
     resolve_file,
+    trial_bodies,
+    trial_clips,
 )
 
 __all__ = [
@@ -109,8 +111,11 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
     """
     found: dict[str, tuple[str, Path]] = {}
     stage = trial.stage
+    found |= {name: (DATA, path) for name, path in {**trial_clips(trial), **trial_bodies(trial)}.items()}
     if stage.area and is_area_file(stage.area):
         found[stage.area] = DATA, resolve_file(stage.area, stage.folder, stage.trust)
+    if stage.building:
+        found[stage.building] = DATA, resolve_file(stage.building, stage.folder, stage.trust)
     if stage.map:
         for name, path in map_files(stage.map, stage.folder, stage.trust).items():
             found[name] = DATA, path

@@ -10,7 +10,8 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, did_you_mean, lock_output
-from crowdbot.messages import ContactEventRecord, ContactForceRecord
+from crowdbot.humans import FallPose
+from crowdbot.messages import ContactEventRecord, ContactForceRecord, FallRecord
 
 from .episode_reader import iterate_steps, read_episode, read_metadata
 from .image_export import ImageExport
@@ -43,6 +44,7 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     * ``transforms``: transform of ``/tf`` and ``/tf_static``: parent, child, x, y, z [m], qw, qx, qy, qz;
     * ``contacts``: contact: robot, other, clearance [m];
     * ``forces`` and ``collisions``, of the physics world: the two bodies, the body part, force [N], ...;
+    * ``falls``: fall of a person: direction, cause, speeds at which the body hits the floor [m/s], HIC15;
     * readings of other sensors, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
       clouds (end of each beam in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
       ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each tracked person);
@@ -259,6 +261,20 @@ def _collisions(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> C
     return times | _named(ContactEventRecord, moment.collisions)
 
 
+def _falls(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
+    return {"time": np.full(len(moment.falls), moment.time)} | _named(FallRecord, moment.falls)
+
+
+def _fall_poses(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
+    rows = moment.fall_poses
+    times: Columns = {"time": np.full(len(rows), moment.time), "person": np.array([*rows], dtype=np.int64)}
+    kinds = dict.fromkeys(("struck", "down", "rising"), np.bool_)
+    return times | {
+        name: np.array([getattr(pose, name) for pose in rows.values()], dtype=kinds.get(name, np.float64))
+        for name in FallPose._fields
+    }
+
+
 TABLES: dict[str, Callable[[RecordedStep, dict[str, tuple[int, float]]], Columns]] = {
     "people": _people,
     "robots": _robots,
@@ -268,5 +284,7 @@ TABLES: dict[str, Callable[[RecordedStep, dict[str, tuple[int, float]]], Columns
     "contacts": _contacts,
     "forces": _forces,
     "collisions": _collisions,
+    "falls": _falls,
+    "fall-poses": _fall_poses,
     **READING_TABLES,
 }

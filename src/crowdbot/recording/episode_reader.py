@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError, InputError, TickSchedule
 from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
-from crowdbot.messages import ContactEventRecord, ContactForceRecord
+from crowdbot.humans import FallPose
+from crowdbot.messages import ContactEventRecord, ContactForceRecord, FallRecord
 from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
 from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
 from crowdbot.trials import floor_plan_of_xml
-from crowdbot.world import REACTIONS
 
 from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, KEYS, METADATA, from_json
+from .recorded_arrays import joint_positions, reaction_arrays, robot_tilts
 from .step_records import RecordedContact, RecordedStep, read_steps
 
 __all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
@@ -54,11 +55,13 @@ class RecordedEpisode:
         walls: rings ``[N, 2]`` [m].
         metrics: metrics by name.
         contacts: contacts of robots in all time steps.
-        forces, collisions: contact forces and contact events of the physics world.
+        forces, collisions, falls: contact forces, contact events and falls of people of the physics world.
         orders: time [s] and content of the orders from outside.
         reactions: ``[T, A]`` codes of reactions to robots, see :class:`Episode`; None if nobody can react.
         digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
         joints: positions ``[T]`` [rad] or [m] of the joints by robot and name, NaN while the robot is absent.
+        fall_poses: poses of people out of balance by id, one mapping for each of the T times.
+        tilts: ``[T, R, 3]`` height [m], roll and pitch [rad] of the root links, NaN while the robot is absent.
     """
 
     path: Path
@@ -81,9 +84,12 @@ class RecordedEpisode:
     readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
     forces: tuple[ContactForceRecord, ...] = ()
     collisions: tuple[ContactEventRecord, ...] = ()
+    falls: tuple[FallRecord, ...] = ()
     orders: tuple[tuple[float, Order], ...] = ()
     reactions: NDArray[np.int8] | None = None
     joints: Mapping[str, Mapping[str, Floats]] = field(default_factory=dict)
+    fall_poses: tuple[Mapping[int, FallPose], ...] = ()
+    tilts: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))
 
     @property
     def xml(self) -> str:
@@ -332,32 +338,13 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         {topic: tuple(rows) for topic, rows in readings.items()},
         tuple(force for moment in found for force in moment.forces),
         tuple(collision for moment in found for collision in moment.collisions),
+        tuple(fall for moment in found for fall in moment.falls),
         tuple((moment.time, read_order(text)) for moment in found for text in moment.orders),
-        _reactions([moment for moment, _ in due], count),
-        _joints([moment for moment, _ in due]),
+        reaction_arrays([moment for moment, _ in due], count),
+        joint_positions([moment for moment, _ in due]),
+        tuple(moment.fall_poses for moment, _ in due),
+        robot_tilts([moment for moment, _ in due], [robot["name"] for robot in robots]),
     )
-
-
-def _joints(found: Sequence[RecordedStep]) -> dict[str, dict[str, Floats]]:
-    """Return the positions of the joints by robot and name."""
-    rows: dict[str, dict[str, Floats]] = {}
-    for k, moment in enumerate(found):
-        for robot, joints in moment.joints.items():
-            columns = rows.setdefault(robot, {})
-            for name, (position, _) in joints.items():
-                columns.setdefault(name, np.full(len(found), np.nan))[k] = position
-    return rows
-
-
-def _reactions(found: Sequence[RecordedStep], count: int) -> NDArray[np.int8] | None:
-    """Return the codes of the reactions to robots ``[T, A]``; None if nobody can react."""
-    if not found or any(moment.reactions is None for moment in found):
-        return None
-    codes = np.zeros((len(found), count), dtype=np.int8)
-    for k, moment in enumerate(found):
-        for kind, people in (moment.reactions or {}).items():
-            codes[k, people] = REACTIONS.index(kind)
-    return codes
 
 
 @dataclass

@@ -10,8 +10,8 @@ import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
 from crowdbot.data import MCAP_MAGIC, McapReader, has_summary
-from crowdbot.messages import ContactEventRecord
-from crowdbot.metrics import NavigationMetrics, impact_metrics
+from crowdbot.messages import ContactEventRecord, FallRecord
+from crowdbot.metrics import NavigationMetrics, fall_metrics, impact_metrics
 from crowdbot.simulation import robot_metrics
 
 from .mcap_writer import finish
@@ -35,6 +35,8 @@ class EpisodeEnd:
         walls = Walls.of(rings).segments()
         ghosts = [int(one["id"]) for one in self.robots if one.get("ghost")]
         self.impacts: list[ContactEventRecord] = []
+        self.falls: list[FallRecord] = []
+        self.balanced = known.get("balance") == "true"
         self.travels = [
             NavigationMetrics(
                 int(one["id"]),
@@ -58,6 +60,7 @@ class EpisodeEnd:
         self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
+        self.falls += moment.falls
         self.impacts += [one for one in moment.collisions if one.first in self.bodies and one.region]
         if moment.people is not None:
             self.last = moment
@@ -76,6 +79,9 @@ class EpisodeEnd:
         metrics = robot_metrics(self.travels, names, "interrupted")
         for k, name in enumerate(names if self.known.get("world") == "physics" else ()):
             values = impact_metrics(one for one in self.impacts if one.first == name)
+            if self.balanced:
+                values |= fall_metrics(self.falls, [one for one in self.falls if one.cause == name])
+                values["max_severity"] = max(values["max_severity"], values["fall_severity"])
             metrics |= {(key if k == 0 else f"{name}.{key}"): value for key, value in values.items()}
         return {
             "digest": self.last.digest,

@@ -13,8 +13,10 @@ from types import TracebackType
 from typing import Any
 
 from crowdbot.core import EpisodeError, FreeClock, InputError, lock_output
+from crowdbot.sensors import RGBCamera
 from crowdbot.simulation import EpisodeStatistics, RunFailure, Simulation, StepRecord
 from crowdbot.trials import RobotSpec, Trial, trial_xml
+from crowdbot.world import graphics_library
 
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
@@ -170,6 +172,8 @@ class Recorder:
             ending |= {"error": failure.message, "error_place": failure.place, "error_time": repr(failure.time)}
         if self.keyframes.reason:
             ending["no_keyframes"] = self.keyframes.reason
+        if drawn := self._drawn_by():
+            ending["drawn_by"] = drawn
         self.tape.metadata(ENDING, ending)
         self._flush()
         try:
@@ -177,6 +181,13 @@ class Recorder:
         except OSError as error:
             raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
         self.tape = None
+
+    def _drawn_by(self) -> str:
+        """Return what drew the images of colour cameras: ``software``, a graphics library, or both."""
+        sensors = [mount.sensor for robot in self.trial.robots for mount in robot.sensors]
+        used = {sensor.renderer for sensor in sensors if isinstance(sensor, RGBCamera)}
+        libraries = graphics_library() if "opengl" in used else ()
+        return ", ".join([*(["software"] if "software" in used else []), *libraries])
 
     def _note_added(self, frame: StepRecord) -> None:
         """Write a metadata record when orders have added robots."""
@@ -219,6 +230,7 @@ class Recorder:
             "seed": str(self.seed),
             **versions(),
             **({"world": "physics"} if self.trial.world == "physics" else {}),
+            **({"balance": "true"} if self.trial.balance else {}),
             "step_ns": str(schedule.step_ns),
             **({} if exact else {"period_ns": str(schedule.period_ns)}),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),

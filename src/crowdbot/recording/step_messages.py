@@ -9,8 +9,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core import FreeClock
+from crowdbot.messages import (
+    FALL_POSES,
+    MeasuredReading,
+    Messages,
+    contact_messages,
+    encode_reading,
+    fall_pose_message,
+    markers,
+)
 from crowdbot.messages import MARKERS as MARKER_KIND
-from crowdbot.messages import MeasuredReading, Messages, contact_messages, encode_reading, markers
 from crowdbot.simulation import WALL, Simulation, StepRecord, write_order
 from crowdbot.trials import Trial
 from crowdbot.world import people_by_reaction
@@ -131,6 +139,9 @@ class StepMessages:
         if wants("/people"):
             people = make.people(now, scene, frame.ids)
             yield StepMessage("/people", "people_msgs/msg/People", now, make, people)
+        if frame.fall_poses and wants(FALL_POSES):
+            poses = {int(frame.ids[agent]): pose for agent, pose in frame.fall_poses.items()}
+            yield self._message(FALL_POSES, fall_pose_message(make, now, poses), now)
         if wants(REACTION_TOPIC) and (reactions := people_by_reaction(scene, frame.ids)) is not None:
             yield self._message(REACTION_TOPIC, make.text(as_json(reactions)), now)
         for topic, message in self.robots.scene(frame):

@@ -14,16 +14,22 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data import McapReader
+from crowdbot.humans import FallPose
 from crowdbot.messages import (
     COLLISIONS,
+    FALL_POSES,
+    FALLS,
     FORCES,
     KIND,
     MAP,
     REST,
     ContactEventRecord,
     ContactForceRecord,
+    FallRecord,
     decode_reading,
     read_contact_events,
+    read_fall_poses,
+    read_falls,
     read_forces,
 )
 from crowdbot.metrics import AgentStates
@@ -70,7 +76,9 @@ class RecordedStep:
         scans: scans of planar laser scanners, by ``robot/sensor``.
         joints: position [rad or m] and velocity of joints by robot and name; none in files before.
         transforms: parent frame, child frame, position [m] and rotation w, x, y, z.
-        forces, collisions: contact forces of this step, and contact events that ended, in the physics world.
+        forces, collisions, falls: contact forces of this step, and contact events and falls that ended, in the
+            physics world.
+        fall_poses: poses of people out of balance by id; none in files before.
         contacts: contacts of this step.
         orders: orders from outside in this step, as JSON.
         reactions: ids of the people who react to robots, by kind of reaction; None if nobody can.
@@ -87,6 +95,8 @@ class RecordedStep:
     transforms: list[tuple[str, str, tuple[float, ...]]] = field(default_factory=list)
     forces: list[ContactForceRecord] = field(default_factory=list)
     collisions: list[ContactEventRecord] = field(default_factory=list)
+    falls: list[FallRecord] = field(default_factory=list)
+    fall_poses: dict[int, FallPose] = field(default_factory=dict)
     contacts: list[RecordedContact] = field(default_factory=list)
     orders: list[str] = field(default_factory=list)
     reactions: dict[str, list[int]] | None = None
@@ -191,6 +201,10 @@ def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors:
         moment.forces = read_forces(moment.time, message)
     elif topic == COLLISIONS:
         moment.collisions = read_contact_events(message)
+    elif topic == FALLS:
+        moment.falls = read_falls(message)
+    elif topic == FALL_POSES:
+        moment.fall_poses = read_fall_poses(message)
     elif kind == "tf2_msgs/msg/TFMessage":
         for row in message.transforms:
             shift, turn = row.transform.translation, row.transform.rotation

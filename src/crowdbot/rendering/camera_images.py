@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +19,8 @@ __all__ = ["RenderRequest", "RenderedImage", "SimulationCamera", "camera_names",
 
 SMOOTH = 0.04
 """Default time between two images of a video [s], rounded to time steps."""
+STRIP, WIDEST = 5.0, 0.3
+"""Width [pixels] of the strips on the tops of walls in the overview, and their largest width [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +160,12 @@ def _check_drawing(trial: Trial, name: str) -> None:
     import_optional("mujoco", "an image of a trial", "sim")
 
 
+def _strip_width(camera: Camera) -> float:
+    """Return the width [m] of the strips on the tops of walls that shows in an image from above."""
+    pixel = camera.z / math.sin(camera.pitch) * 2.0 * math.tan(0.5 * camera.field_of_view) / camera.width
+    return min(STRIP * pixel, WIDEST)
+
+
 def _looks(mount: Mount) -> bool:
     return isinstance(mount.sensor, RGBCamera | DepthCamera)
 
@@ -208,6 +216,8 @@ class SimulationCamera:
 
     def _standing(self) -> tuple[Any, Any, Any]:
         view = self.camera.view(self.agent)
+        if self.camera.name == OVERVIEW and self.camera not in self.simulation.trial.cameras:
+            view = replace(view, wall_tops=_strip_width(self.camera))
         images = self.simulation.world.renderer.images(view, depth=self.depth, segmentation=self.segmentation)
         return (
             images.rgb,
@@ -223,12 +233,13 @@ class SimulationCamera:
         camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
             width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
             near=max(0.05, 0.25 * sensor.range_min),  # clip the housing around the lens
+            renderer="software", shadows=True, antialiasing=4,
         )  # fmt: skip
         pose, studio = probe.pose(self.control.agent, around), self.simulation.world.environment_renderer(0)
         picture = camera.read(around.flat, pose, self.rng, studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None
-        images = studio.render(camera, spatial_pose(pose))
+        images = studio.render(replace(camera, segmentation=True), spatial_pose(pose))
         depth = distort_image(images["depth"], camera.lens, np.inf)[0] if self.depth else None
         who = distort_image(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
         return picture.rgb[0], depth, who

@@ -7,7 +7,7 @@ from .ground_truth_people import GroundTruthPeople, TrackedPeople
 from .imu import IMU, ImuReading, ImuState
 from .infrared import Infrared
 from .lens import ImageSource, Lens, distort_image
-from .lidar import Lidar2D, Scan
+from .lidar import Lidar2D, Scan, cast_plane
 from .lidar3d import Lidar3D, PointCloud
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
 from .odometry.arcs import arc_between
@@ -16,9 +16,12 @@ from .odometry.wheel_rotation import WheelGeometry, WheelRotation
 from .presets import PRESETS, SensorPreset, preset
 from .range_reading import RangeReading
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
-from .rgb_camera import RGBCamera, RgbImage
+from .realism.exposed_camera import ExposedCamera
+from .realism.pulsed_lidar import PulsedLidar2D, PulsedScan
+from .rgb_camera import RENDERERS, SAMPLE_COUNTS, RGBCamera, RgbImage, check_renderer
 from .schedule import SensorSchedule
 from .sensor import Reading, Sensor, join_readings, planar_pose, spatial_pose
+from .skins.skin_scans import triangles_one_by_one
 from .state_rows import StateGroups, measure_rows, put_state_rows, take_state_rows
 from .ultrasound import Ultrasound
 from .view import SensorView
@@ -29,12 +32,15 @@ __all__ = [
     "NOTHING",
     "PRESETS",
     "PROP",
+    "RENDERERS",
+    "SAMPLE_COUNTS",
     "WALLS",
     "Bumper",
     "BumperReading",
     "DepthCamera",
     "DepthImage",
     "Dropout",
+    "ExposedCamera",
     "Gaussian",
     "GroundTruthPeople",
     "ImageSource",
@@ -50,6 +56,8 @@ __all__ = [
     "Offset",
     "Peak",
     "PointCloud",
+    "PulsedLidar2D",
+    "PulsedScan",
     "Quantised",
     "RGBCamera",
     "RangeReading",
@@ -68,6 +76,8 @@ __all__ = [
     "WheelRotation",
     "apply_noise",
     "arc_between",
+    "cast_plane",
+    "check_renderer",
     "check_sensor",
     "distort_image",
     "join_readings",
@@ -77,4 +87,5 @@ __all__ = [
     "put_state_rows",
     "spatial_pose",
     "take_state_rows",
+    "triangles_one_by_one",
 ]

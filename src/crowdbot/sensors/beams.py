@@ -8,7 +8,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Beams", "cone_directions", "sort_beams", "unit_vectors"]
+from crowdbot.core import kernel
+from crowdbot.core.windows import hull_in_view, hull_levels, hull_width
+
+__all__ = [
+    "TURN",
+    "Beams",
+    "cell_columns",
+    "cone_directions",
+    "first_cells",
+    "hull_cells",
+    "sees_hull",
+    "sort_beams",
+    "unit_vectors",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -16,6 +29,8 @@ Ints = NDArray[np.int64]
 PER_CELL = 2.0
 """Mean number of beams per cell."""
 TURN = 2.0 * math.pi
+MARGIN = 1e-9
+"""Margin [rad] of windows against rounding."""
 
 
 class Beams(NamedTuple):
@@ -43,6 +58,40 @@ class Beams(NamedTuple):
     wide: float
     down: float
     up: float
+
+
+@kernel
+def first_cells(left: float, bottom: float, top: float, beams: Beams) -> tuple[int, int, float]:
+    """Return the cells of a window of azimuth and elevation: first and last row, and start relative to column 0."""
+    first, last = 0, 0
+    if beams.rows > 1:
+        first = max(0, math.floor((bottom - MARGIN - beams.low) / beams.tall))
+        last = min(beams.rows - 1, math.floor((top + MARGIN - beams.low) / beams.tall))
+    return first, last, (left - MARGIN - beams.left) % TURN
+
+
+@kernel
+def hull_cells(corner: Floats, count: int, beams: Beams) -> tuple[int, int, float, float]:
+    """Return the cells of a hull as :func:`first_cells` does, and the width of its window [rad]."""
+    left, width = hull_width(corner, count)
+    bottom, top = 0.0, 0.0
+    if beams.rows > 1:
+        bottom, top = hull_levels(corner, count, width >= TURN)
+    first, last, start = first_cells(left, bottom, top, beams)
+    return first, last, start, width
+
+
+@kernel
+def sees_hull(corner: Floats, count: int, limit: float, beams: Beams) -> bool:
+    """Return whether a hull is within range and between the lowest and the highest beam."""
+    return hull_in_view(corner, count, limit, beams.down, beams.up)
+
+
+@kernel
+def cell_columns(start: float, width: float, turn: int, beams: Beams) -> tuple[int, int]:
+    """Return the first and last column of a window in turn 0 or 1; the first is above the last if it has none."""
+    a = max(0, math.floor((start - turn * TURN) / beams.wide))
+    return a, min(beams.columns - 1, math.floor((start - turn * TURN + width + 2.0 * MARGIN) / beams.wide))
 
 
 def sort_beams(directions: Floats) -> Beams:

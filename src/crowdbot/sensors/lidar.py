@@ -22,7 +22,7 @@ from .ray_shapes import WALLS as WALL
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan", "cast_plane"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -356,6 +356,25 @@ class Lidar2D(Ranging):
         else:
             _scan_parallel(*rows)
         return rows[-4:]
+
+
+def cast_plane(
+    pose: Pose, angles: Floats, centre: Floats, radius: Floats, segments: Floats, range_max: float
+) -> tuple[Floats, Indices]:
+    """Return ranges [m] and objects ``[E, R]`` of scans of discs ``[E, A]`` and of segments ``[S, 4]``, without noise.
+
+    ``hit`` is the index of a disc, -1 without a return, or -2 for a segment; a disc with a NaN centre is absent.
+    """
+    shape = (len(pose.heading), len(angles))
+    ranges, cosine, hit, part = np.empty(shape), np.empty(shape), np.empty(shape, np.int64), np.empty(shape, np.int64)
+    step = float(angles[1] - angles[0]) if len(angles) > 1 else TURN
+    place = np.ascontiguousarray(centre, dtype=np.float64)
+    _scan_rows(
+        0, len(ranges), np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.heading), angles, step, place,
+        np.ascontiguousarray(radius), np.isfinite(place[..., 0]), np.ascontiguousarray(segments),
+        (-2.0, 0.0, range_max, 0.0), True, ranges, cosine, hit, part,
+    )  # fmt: skip
+    return ranges, hit
 
 
 def _step(rays: int, field_of_view: float) -> float:

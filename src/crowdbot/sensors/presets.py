@@ -15,6 +15,7 @@ from .infrared import Infrared
 from .lidar import Lidar2D
 from .lidar3d import Lidar3D
 from .noise import Gaussian
+from .realism.pulsed_lidar import PulsedLidar2D
 from .sensor import Sensor
 from .ultrasound import SLIM, Ultrasound
 
@@ -67,6 +68,8 @@ SCIP = "Hokuyo, Communication protocol specification for SCIP 2.0, C-42-03320B"
 UTM_SHEET = "Hokuyo UTM-30LX specification sheet, as quoted in docs/source/laser.rst of github.com/Gastd/cacic"
 TIM_SHEET = "SICK TiM55x/TiM56x operating instructions 8015886/YDR0 (the same family)"
 TIM_DRIVER = "SICK, README of github.com/SICKAG/sick_scan, TiM571"
+TIM_INFO = "SICK, TiM55x/56x/57x technical information 8015883"
+TIM8_SHEET = "SICK, TiM8xxP operating instructions 8024355, section 3.7.4 (a newer scanner of the family)"
 SLAMTEC = "Slamtec, RPLIDAR A2M8 introduction and datasheet, revision 2.5"
 VELODYNE = "Velodyne, VLP-16 user manual 63-9243"
 INTEL = "Intel RealSense white papers on D400: tuning (revision 2.0) and subpixel linearity (revision 1.3)"
@@ -134,6 +137,56 @@ _PRESETS = {
             "noise": f"{TIM_SHEET} (statistical error 20 mm; a systematic one of up to 60 mm is left out)",
         },
         noise=0.02,
+    ),
+    "sick-tim571-pulsed": _made(
+        PulsedLidar2D(
+            rays=811,
+            field_of_view=math.radians(270.0),
+            range_min=0.05,
+            range_max=25.0,
+            resolution=0.001,
+            rate=15.0,
+            scan_time=0.05,
+            beam_width=0.0144,
+            pulse_length=0.75,
+            range_10=8.0,
+        ),
+        {
+            "rays": f"{TIM_DRIVER} (0.33 deg: 811 in 270 deg)",
+            "field_of_view": f"{TIM_INFO} (-45 to +225 deg)",
+            "range_min": ASSUMED + "0.05 m",
+            "range_max": TIM_DRIVER,
+            "resolution": ASSUMED + "whole millimetres",
+            "rate": TIM_DRIVER,
+            "noise": f"{TIM_SHEET} (statistical error 20 mm; a systematic one of up to 60 mm is left out)",
+            "scan_time": f"{TIM_INFO}, measured value output (15 turns a second, 270 of 360 deg in 50 ms)",
+            "beam_width": f"{TIM8_SHEET}: 8.6 mrad and 5.8 mrad of overlapping pulses",
+            "pulse_length": f"{TIM_SHEET}: pulses of at most 5 ns, half of 1.5 m",
+            "range_10": ASSUMED + "8 m",
+        },
+        noise=0.02,
+    ),
+    "hokuyo-utm-30lx-pulsed": _made(
+        PulsedLidar2D(
+            rays=1081,
+            field_of_view=math.radians(270.0),
+            range_min=0.1,
+            range_max=30.0,
+            resolution=0.001,
+            rate=40.0,
+            scan_time=0.01875,
+        ),
+        {
+            "rays": f"{SCIP}, table 2 (steps 0 to 1080)",
+            "field_of_view": f"{UTM_SHEET} (270 deg, 0.25 deg)",
+            "range_min": UTM_SHEET,
+            "range_max": UTM_SHEET,
+            "resolution": f"{SCIP} (distances in whole millimetres)",
+            "rate": f"{UTM_SHEET} (25 ms a scan)",
+            "noise": f"{UTM_SHEET} (sd under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
+            "scan_time": f"{UTM_SHEET}: 270 of the 360 deg of 25 ms",
+        },
+        noise=0.01,
     ),
     "rplidar-a2": _made(
         Lidar2D(rays=800, range_min=0.2, range_max=12.0, resolution=0.0005, rate=10.0),

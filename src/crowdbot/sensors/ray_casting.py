@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, SpatialPose, kernel, prange
+from crowdbot.core import STAGE, InputError, Scene, SpatialPose, kernel, prange
 from crowdbot.core.rays import (
     BOX,
     CAPSULE,
@@ -25,31 +25,29 @@ from crowdbot.core.rays import (
     ray_to_box,
     ray_to_capsule,
     ray_to_cylinder,
-    ray_to_triangle,
     ray_to_wall,
     within,
 )
 from crowdbot.core.windows import (
     ball_in_view,
     hull_gap,
-    hull_in_view,
-    hull_levels,
     hull_width,
     rod_gap,
     rod_levels,
     rod_width,
 )
 
-from .beams import Beams
-from .ray_shapes import FLOOR, NOTHING, RayShapes, collect_shapes
+from .beams import TURN, Beams, cell_columns, first_cells, hull_cells, sees_hull
+from .ray_shapes import FLOOR, NOTHING, PROP, RayShapes, collect_shapes
+from .skins.skin_casting import SkinCasting, skin_casting
 
 __all__ = ["RayHits", "cast_rays"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-TURN = 2.0 * math.pi
-MARGIN = 1e-9
-"""Margin [rad] of windows against rounding."""
+SKIN = -2
+"""Index of the shape of the first triangle of skins; those of the others are below."""
+NOBODY = np.zeros(0, dtype=np.int64)
 MANY = 4
 """Minimum number of environments for multi-threading."""
 
@@ -65,8 +63,6 @@ def _try(
             x, y, z = beams.x[k], beams.y[k], beams.z[k]
             if kind == CAPSULE:
                 reach = ray_to_capsule(x, y, z, a, b, c, d, e, f, g, h)
-            elif kind == TRIANGLE:
-                reach = ray_to_triangle(x, y, z, a, b, c, d, e, f, g, h, i)
             elif kind == WALL:
                 reach = ray_to_wall(x, y, z, a, b, c, d, e, f, g, h, i, j)
             elif kind == CYLINDER:
@@ -89,28 +85,20 @@ def _draw(
                 distance[k] = 0.0
                 which[k] = n
         return
-    bottom, top = 0.0, 0.0
     if kind in (CAPSULE, CYLINDER):
+        bottom, top = 0.0, 0.0
         ax, ay, az, length, radius = s[0], s[1], s[2], s[6], s[7]
         bx, by, bz = ax + length * s[3], ay + length * s[4], az + length * s[5]
         left, width = rod_width(ax, ay, bx, by, radius)
         if beams.rows > 1:
             bottom, top = rod_levels(ax, ay, az, bx, by, bz, radius, width >= TURN)
+        first, last, start = first_cells(left, bottom, top, beams)
     else:
-        count = 3 if kind == TRIANGLE else (4 if kind == WALL else 8)
-        left, width = hull_width(corner, count)
-        if beams.rows > 1:
-            bottom, top = hull_levels(corner, count, width >= TURN)
-    first, last, columns = 0, 0, beams.columns
-    if beams.rows > 1:
-        first = max(0, math.floor((bottom - MARGIN - beams.low) / beams.tall))
-        last = min(beams.rows - 1, math.floor((top + MARGIN - beams.low) / beams.tall))
-    start = (left - MARGIN - beams.left) % TURN
+        first, last, start, width = hull_cells(corner, 4 if kind == WALL else 8, beams)
     for turn in range(2):
-        a = max(0, math.floor((start - turn * TURN) / beams.wide))
-        b = min(columns - 1, math.floor((start - turn * TURN + width + 2.0 * MARGIN) / beams.wide))
+        a, b = cell_columns(start, width, turn, beams)
         for row in range(first, last + 1 if a <= b else first):
-            begin, end = beams.begin[row * columns + a], beams.begin[row * columns + b + 1]
+            begin, end = beams.begin[row * beams.columns + a], beams.begin[row * beams.columns + b + 1]
             _try(kind, s, n, begin, end, near, beams, distance, which)
 
 
@@ -125,12 +113,6 @@ def _turned(turn: Floats, x: float, y: float, z: float, out: Floats, at: int) ->
 @kernel
 def _moved(e: int, kind: int, n: int, shapes: RayShapes, place: Floats, turn: Floats, s: Floats, corner: Floats) -> int:
     """Write shape ``n`` of a kind in the sensor frame: its row and the corners of its hull; return their number."""
-    if kind == TRIANGLE:
-        for k in range(3):
-            p = shapes.vertices[e, shapes.faces[n, k]]
-            _turned(turn, p[0] - place[0], p[1] - place[1], p[2] - place[2], s, 3 * k)
-            corner[k] = s[3 * k : 3 * k + 3]
-        return 3
     row = shapes.rows[e, n]
     _turned(turn, row[0] - place[0], row[1] - place[1], row[2] - place[2], s, 0)
     if kind == BOX:
@@ -186,8 +168,8 @@ def _bring(
 
 @kernel
 def _bring_flat(
-    e: int, shapes: RayShapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
-    corner: Floats, seen: Ints, nearest: Floats, kept: int,
+    e: int, shapes: RayShapes, place: Floats, turn: Floats, limit: float, beams: Beams, rows: Floats, corner: Floats,
+    seen: Ints, nearest: Floats, kept: int,
 ) -> int:  # fmt: skip
     """Write the other visible shapes in the same way."""
     for n in range(len(shapes.kind)):
@@ -195,8 +177,8 @@ def _bring_flat(
         if not shapes.present[e, n] or kind in (CAPSULE, CYLINDER):
             continue
         count = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
-        if hull_in_view(corner, count, limit, down, up):
-            around = kind == TRIANGLE or hull_width(corner, count)[1] >= TURN
+        if sees_hull(corner, count, limit, beams):
+            around = hull_width(corner, count)[1] >= TURN
             nearest[kept] = 0.0 if around else hull_gap(corner, count) * (1.0 - 1e-12)
             seen[kept] = n
             kept += 1
@@ -204,13 +186,24 @@ def _bring_flat(
 
 
 @kernel
+def _skin_normal(e: int, f: int, shapes: RayShapes, place: Floats, turn: Floats) -> tuple[float, float, float]:
+    """Return the unit normal of a triangle in the sensor frame."""
+    s = np.empty(WIDTH)
+    for k in range(3):
+        p = shapes.vertices[e, shapes.faces[f, k]]
+        _turned(turn, p[0] - place[0], p[1] - place[1], p[2] - place[2], s, 3 * k)
+    return normal_at(TRIANGLE, 0.0, 0.0, 0.0, s)
+
+
+@kernel
 def _tell(
-    kind: Ints, owner: Ints, label: Ints, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
+    e: int, shapes: RayShapes, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
     which: Ints, distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     """Write the intersection of each beam, in the order of the input."""
     ox, oy, oz, height = turn[2, 0], turn[2, 1], turn[2, 2], place[2]
     told = len(normal) > 0
+    kind, owner, label = shapes.kind, shapes.owner, shapes.part
     before, fx, fy, fz = -1, 0.0, 0.0, 0.0
     for k in range(len(reach)):
         x, y, z, d, n, i = beams.x[k], beams.y[k], beams.z[k], reach[k], which[k], beams.order[k]
@@ -220,11 +213,13 @@ def _tell(
         if fall < 0.0 and height > 0.0 and height < -fall * d:
             d = -height / fall
             hit[i] = FLOOR
-        elif n >= 0:
-            hit[i], part[i] = owner[n], label[n]
+        elif n != -1:
+            f = SKIN - n
+            hit[i], part[i] = (owner[n], label[n]) if n >= 0 else (shapes.face_owner[f], shapes.face_part[f])
+            hit[i] = PROP if hit[i] == STAGE else hit[i]
             if d == 0.0:
                 nx, ny, nz = -x, -y, -z
-            elif kind[n] == CAPSULE:
+            elif n >= 0 and kind[n] == CAPSULE:
                 s = (d * x - rows[n, 0]) * rows[n, 3] + (d * y - rows[n, 1]) * rows[n, 4]
                 s = min(rows[n, 6], max(0.0, s + (d * z - rows[n, 2]) * rows[n, 5]))
                 over = 1.0 / rows[n, 7]
@@ -232,9 +227,11 @@ def _tell(
                 ny = (d * y - rows[n, 1] - s * rows[n, 4]) * over
                 nz = (d * z - rows[n, 2] - s * rows[n, 5]) * over
             else:
-                if n != before or kind[n] in (CYLINDER, BOX):  # flat shapes have the same normal at the next beam
-                    before = n
+                if n < 0 and n != before:
+                    fx, fy, fz = _skin_normal(e, f, shapes, place, turn)
+                elif n >= 0 and (n != before or kind[n] in (CYLINDER, BOX)):
                     fx, fy, fz = normal_at(kind[n], d * x, d * y, d * z, rows[n])
+                before = n  # flat shapes have the same normal at the next beam
                 nx, ny, nz = fx, fy, fz
                 if nx * x + ny * y + nz * z > 0.0:
                     nx, ny, nz = -nx, -ny, -nz
@@ -247,8 +244,16 @@ def _tell(
 
 
 @kernel
+def _take_skins(near: Floats, face: Ints, reach: Floats, which: Ints) -> None:
+    """Enter triangles that are nearer than the shapes so far."""
+    for k in range(len(near)):
+        if near[k] < reach[k]:
+            reach[k], which[k] = near[k], SKIN - face[k]
+
+
+@kernel
 def _one(
-    e: int, place: Floats, turn: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    e: int, place: Floats, turn: Floats, shapes: RayShapes, near: Floats, face: Ints, beams: Beams, limit: float,
     distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     count, total = len(beams.x), len(shapes.kind)
@@ -257,29 +262,21 @@ def _one(
     seen, nearest = np.empty(total, dtype=np.int64), np.empty(total)
     down, up = beams.down, beams.up
     kept = _bring(shapes.rows[e], shapes.kind, shapes.present[e], place, turn, limit, down, up, rows, seen, nearest)
-    kept = _bring_flat(e, shapes, place, turn, limit, down, up, rows, corner, seen, nearest, kept)
+    kept = _bring_flat(e, shapes, place, turn, limit, beams, rows, corner, seen, nearest, kept)
+    waiting = True  # skins come after rods around the sensor, before all others
     for i in np.argsort(nearest[:kept], kind="mergesort"):  # nearest first: hidden shapes are rarely tested
         n = seen[i]
         kind = shapes.kind[n]
-        if kind not in (CAPSULE, CYLINDER):
+        rod = kind in (CAPSULE, CYLINDER)
+        if waiting and not (rod and nearest[i] == 0.0):
+            _take_skins(near, face, reach, which)
+            waiting = False
+        if not rod:
             _moved(e, kind, n, shapes, place, turn, rows[n], corner)
         _draw(kind, rows[n], n, corner, nearest[i], beams, reach, which)
-    _tell(
-        shapes.kind,
-        shapes.owner,
-        shapes.part,
-        rows,
-        place,
-        turn,
-        beams,
-        reach,
-        which,
-        distance,
-        cos_incidence,
-        normal,
-        hit,
-        part,
-    )
+    if waiting:
+        _take_skins(near, face, reach, which)
+    _tell(e, shapes, rows, place, turn, beams, reach, which, distance, cos_incidence, normal, hit, part)
 
 
 @kernel
@@ -296,44 +293,28 @@ def _matrix(rotation: Floats) -> Floats:
 
 @kernel
 def _serial(
-    place: Floats, rotation: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    place: Floats, rotation: Floats, shapes: RayShapes, near: Floats, face: Ints, beams: Beams, limit: float,
     distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     for e in range(len(place)):
+        turn = _matrix(rotation[e])
         _one(
-            e,
-            place[e],
-            _matrix(rotation[e]),
-            shapes,
-            beams,
-            limit,
-            distance[e],
-            cos_incidence[e],
-            normal[e],
-            hit[e],
-            part[e],
-        )
+            e, place[e], turn, shapes, near[e], face[e], beams, limit, distance[e], cos_incidence[e], normal[e],
+            hit[e], part[e],
+        )  # fmt: skip
 
 
 @kernel(parallel=True)
 def _shared(
-    place: Floats, rotation: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    place: Floats, rotation: Floats, shapes: RayShapes, near: Floats, face: Ints, beams: Beams, limit: float,
     distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     for e in prange(len(place)):
+        turn = _matrix(rotation[e])
         _one(
-            e,
-            place[e],
-            _matrix(rotation[e]),
-            shapes,
-            beams,
-            limit,
-            distance[e],
-            cos_incidence[e],
-            normal[e],
-            hit[e],
-            part[e],
-        )
+            e, place[e], turn, shapes, near[e], face[e], beams, limit, distance[e], cos_incidence[e], normal[e],
+            hit[e], part[e],
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -372,22 +353,28 @@ def cast_rays(
     >>> hits.distance.tolist(), hits.normal.tolist(), hits.hit.tolist()
     ([[2.5]], [[[-1.0, 0.0, 0.0]]], [[0]])
     """
-    shapes = collect_shapes(scene, skins)
+    casting = _trees_of(scene) if skins else None
+    skin = scene.bodies.skins if casting is not None and scene.bodies is not None else None
+    shapes = collect_shapes(scene, skin, NOBODY if casting is None else casting.tree.person)
     size = (len(pose.position), len(beams.x))
     normal = np.zeros((size[0], size[1] if normals else 0, 3))
     hits = RayHits(np.empty(size), np.ones(size), normal, np.empty(size, np.int64), np.empty(size, np.int64))
     place, rotation = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
+    near, face = np.full((size[0], 0 if casting is None else size[1]), np.inf), np.empty((size[0], 0), dtype=np.int64)
+    if casting is not None:
+        face = np.full(size, -1)
+        for e in range(size[0]):
+            turn = _matrix(rotation[e])
+            casting.cast(shapes.vertices[e], scene.active[e], place[e], turn, limit, beams, near[e], face[e])
     work = _serial if size[0] < MANY else _shared
     work(
-        place,
-        rotation,
-        shapes,
-        beams,
-        float(limit),
-        hits.distance,
-        hits.cos_incidence,
-        hits.normal,
-        hits.hit,
-        hits.part,
-    )
+        place, rotation, shapes, near, face, beams, float(limit), hits.distance, hits.cos_incidence, hits.normal,
+        hits.hit, hits.part,
+    )  # fmt: skip
     return hits
+
+
+def _trees_of(scene: Scene) -> SkinCasting:
+    if scene.bodies is None or scene.bodies.skins is None:
+        raise InputError("skins: the scene has no triangle skins; give Scene.bodies skins, or leave skins=False")
+    return skin_casting(scene.bodies.skins)

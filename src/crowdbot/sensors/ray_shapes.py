@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, Walls, kernel
-from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
+from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, Scene, Skins, SpatialPose, Walls, kernel
+from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, WALL, WIDTH
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments", "wall_segments"]
 
@@ -30,21 +30,21 @@ OVERLAP = 1e-9
 """Walls are extended by this length [m] at both ends, against gaps at corners by rounding."""
 TALLEST = 1e4
 """Height of infinitely high walls [m]."""
-KINDS = (TRIANGLE, CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
-"""Order of the shapes: skins, limbs, boxes, posts, agents without limbs, walls."""
+KINDS = (CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
+"""Order of the shapes: limbs, boxes, posts, agents without limbs, walls."""
 NOBODY = Bodies.of()
 BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
 
 
 class RayShapes(NamedTuple):
-    """P shapes in E environments; shapes of kind ``TRIANGLE`` come first and have no rows.
+    """P shapes and the F triangles of skins in E environments.
 
     Fields:
         kind: ``[P]`` as in :mod:`crowdbot.core.rays`.
         rows: ``[E, P, 16]`` in the world.
         present: ``[E, P]``.
         owner, part: ``[P]`` labels of a hit.
-        vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
+        vertices, faces, face_owner, face_part: of the skins, see :class:`Skins`.
     """
 
     kind: Ints
@@ -54,23 +54,18 @@ class RayShapes(NamedTuple):
     part: Ints
     vertices: Floats
     faces: Ints
+    face_owner: Ints
+    face_part: Ints
 
 
-def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
-    """Return all shapes of ``scene``.
-
-    Raises:
-        InputError: ``skins`` is requested and the scene has none.
-    """
-    bodies = scene.bodies or NOBODY
-    if skins and bodies.skins is None:
-        raise InputError("skins: the scene has no triangle skins; give Scene.bodies skins, or leave skins=False")
-    skin = bodies.skins if skins and bodies.skins is not None else BARE
-    limbs, discs = _seen_as(scene, bodies, skin.owner)
+def collect_shapes(scene: Scene, skin: Skins | None, skinned: Ints) -> RayShapes:
+    """Return all shapes of ``scene``, without the limbs of the agents who are ``skinned``, whose skin is ``skin``."""
+    bodies, skin = scene.bodies or NOBODY, skin or BARE
+    limbs, discs = _seen_as(scene, bodies, skinned)
     walls = scene.walls
-    counts = (len(skin.owner), len(limbs), len(bodies.box_owner), len(bodies.post_owner), len(discs), len(walls))
+    counts = (len(limbs), len(bodies.box_owner), len(bodies.post_owner), len(discs), len(walls))
     rows = np.zeros((scene.shape[0], sum(counts), WIDTH))
-    skinned, capsules, boxes, posts, people, fences = _sections(counts)
+    capsules, boxes, posts, people, fences = _sections(counts)
     if len(limbs):
         _write_capsules(bodies.start, bodies.end, bodies.radius, limbs, rows[:, capsules])
     if len(bodies.box_owner):
@@ -84,18 +79,15 @@ def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
     _write_walls(walls.start, walls.end, walls.previous, walls.next, height, rows[:, fences])
     kind = np.repeat(np.array(KINDS), counts)
     owner = np.concatenate(
-        [skin.owner, bodies.owner[limbs], bodies.box_owner, bodies.post_owner, discs, np.full(len(walls), WALLS)]
+        [bodies.owner[limbs], bodies.box_owner, bodies.post_owner, discs, np.full(len(walls), WALLS)]
     )
     part = np.full(len(kind), -1)
-    for section, labels in (skinned, skin.part), (capsules, bodies.part[limbs]), (boxes, bodies.box_part):
+    for section, labels in (capsules, bodies.part[limbs]), (boxes, bodies.box_part):
         part[section] = labels
     part[posts] = bodies.post_part
     present = np.empty(rows.shape[:2], dtype=np.bool_)
     _mark_present(kind, rows, owner, scene.active, present)
-    if skins:
-        sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
-        present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
-    return RayShapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
+    return RayShapes(kind, rows, present, owner, part, skin.vertices, skin.faces, skin.owner, skin.part)
 
 
 def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:

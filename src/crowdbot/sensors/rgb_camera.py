@@ -19,7 +19,7 @@ from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, spatial_pose
 from .view import SensorView
 
-__all__ = ["RGBCamera", "RgbImage"]
+__all__ = ["RENDERERS", "SAMPLE_COUNTS", "RGBCamera", "RgbImage", "check_renderer"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,6 +27,24 @@ COLORS = {NOTHING: (204, 222, 240), WALLS: (219, 214, 204), FLOOR: (190, 190, 18
 """Colours of shapes without a renderer."""
 PEOPLE = ((196, 78, 82), (76, 114, 176), (85, 168, 104), (129, 114, 178), (221, 132, 82), (100, 181, 205))
 AMBIENT = 0.4
+RENDERERS = ("opengl", "software")
+"""``opengl`` draws plain colours with a graphics library. ``software`` draws textures, shadows and smooth edges on the
+processor, with the same bytes on every machine."""
+SAMPLE_COUNTS = (1, 2, 4, 8)
+
+
+def check_renderer(who: str, renderer: str, antialiasing: int) -> None:
+    """Check the choice of a renderer and its samples per pixel.
+
+    Raises:
+        InputError: a value is not allowed.
+    """
+    if renderer not in RENDERERS:
+        raise InputError(f"{who}: renderer = {renderer!r} must be one of {', '.join(RENDERERS)}")
+    if antialiasing not in SAMPLE_COUNTS:
+        raise InputError(f"{who}: antialiasing = {antialiasing} must be one of {', '.join(map(str, SAMPLE_COUNTS))}")
+    if renderer == "opengl" and antialiasing != 1:
+        raise InputError(f"{who}: antialiasing = {antialiasing} needs renderer = 'software'")
 
 
 @dataclass(frozen=True)
@@ -37,12 +55,18 @@ class RgbImage(Reading):
         rgb: ``[E, H, W, 3]`` red, green, blue from 0 to 255.
         hit: ``[E, H, W]`` segmentation, coded as in :class:`Scan`; None unless requested.
         lens: the intrinsics.
+        intrinsics: ``[E, 4]`` fx, fy, cx, cy [pixels]; keypoints: ``[E, A, 17, 3]`` column and row [pixels] of the
+            points of COCO, and 2 (visible), 1 (hidden) or 0 (outside); solid_boxes: ``[E, A, 7]`` centre x, y, z,
+            length, width, height [m] and heading [rad] in the world. None unless the camera has ``labels``.
     """
 
     shared_fields: ClassVar[tuple[str, ...]] = ("lens",)
     rgb: NDArray[np.uint8]
     hit: Ints | None
     lens: Lens
+    intrinsics: Floats | None = None
+    keypoints: Floats | None = None
+    solid_boxes: Floats | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +83,10 @@ class RGBCamera(Sensor):
         distortion: coefficients k1, k2, p1, p2, k3 of the lens (default: none).
         near, far: clipping distances [m].
         segmentation: whether the image includes the segmentation.
+        labels: whether the image includes keypoints and boxes of people; this needs a renderer.
+        renderer: one of :data:`RENDERERS`.
+        shadows: whether the sun casts shadows; ``opengl`` draws none.
+        antialiasing: samples per pixel, 1, 2, 4 or 8; ``opengl`` has 1.
 
     Raises:
         InputError: a value is not allowed.
@@ -79,9 +107,16 @@ class RGBCamera(Sensor):
     near: float = 0.05
     far: float = 100.0
     segmentation: bool = False
+    labels: bool = False
+    renderer: str = "opengl"
+    shadows: bool = False
+    antialiasing: int = 1
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_renderer("RGBCamera", self.renderer, self.antialiasing)
+        if self.renderer == "opengl" and self.shadows:
+            raise InputError("RGBCamera: shadows need renderer = 'software'")
         object.__setattr__(self, "distortion", tuple(float(k) for k in self.distortion))
         if not 0.0 < self.near < self.far < math.inf:
             raise InputError(
@@ -113,7 +148,12 @@ class RGBCamera(Sensor):
         if self.noises:
             values = apply_noise(rgb.astype(np.float64), self.noises, rng)
             rgb = np.round(np.clip(np.where(np.isfinite(values), values, 0.0), 0.0, 255.0))
-        return RgbImage(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
+        more: dict[str, Floats] = {}
+        if self.labels and view.renderer is not None:
+            more = {name: np.asarray(images[name]) for name in ("keypoints", "solid_boxes")}
+            more["intrinsics"] = np.tile((lens.fx, lens.fy, lens.cx, lens.cy), (len(rgb), 1))
+        masks = hit if self.segmentation else None
+        return RgbImage(view.time, pose, rgb.astype(np.uint8), masks, lens, **more), None
 
     def _by_rays(self, scene: Scene, pose: SpatialPose) -> tuple[NDArray[np.uint8], Ints]:
         bundle, ahead = pixel_beams(self.lens)

@@ -5,7 +5,7 @@ from .door_orders import DoorOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
-from .external_robots import UncommandedRobotWarning
+from .external_robots import OwnSource, UncommandedRobotWarning, open_own_sources
 from .failure import RunEnd, RunFailure, RunFailureWarning
 from .faults.fault_order import FaultOrder
 from .orders.avatar_order import AvatarOrder
@@ -14,8 +14,10 @@ from .orders.element_orders import AddElementOrder, RemoveElementOrder
 from .orders.goal_order import GoalOrder
 from .orders.joint_order import JointOrder
 from .orders.order import Order, VelocityOrder, order_kinds, read_order, write_order
+from .orders.order_schedule import OrderSchedule
 from .orders.parameter_order import ParameterOrder
 from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
+from .orders.push_order import PushOrder
 from .orders.robot_pose_order import RobotPoseOrder
 from .orders.trial_order import TrialOrder
 from .overrides import apply_overrides
@@ -62,8 +64,11 @@ __all__ = [
     "MissedDecisionOrder",
     "MoveOrder",
     "Order",
+    "OrderSchedule",
     "OrderSource",
+    "OwnSource",
     "ParameterOrder",
+    "PushOrder",
     "RecordedDecisions",
     "RedirectOrder",
     "RemoveElementOrder",
@@ -96,6 +101,7 @@ __all__ = [
     "decode_state",
     "encode_state",
     "log_of",
+    "open_own_sources",
     "order_kinds",
     "read_order",
     "restore_state",

@@ -16,7 +16,7 @@ from crowdbot.data import Trajectories
 from crowdbot.metrics import AgentLog, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial, floor_plan
-from crowdbot.world import BodyContactEvent, ContactForce
+from crowdbot.world import BodyContactEvent, ContactForce, Fall
 
 from .failure import RunFailure
 from .orders.order import Order
@@ -74,6 +74,7 @@ class Episode:
         contacts: time [s] and :class:`RobotContact` of every step with a contact of a robot.
         forces: time [s] and contact force of every step with one, in the physics world.
         collisions: contact events of the physics world, ordered by end.
+        falls: falls of people in the physics world, ordered by end.
         reactions: ``[T, A]`` code of the reaction of each person to a robot, an index in
             :data:`crowdbot.world.REACTIONS`, 0 for none; None if nobody can react.
         decision_times: compute times [s] of the decisions by robot, of those with a deadline or with a navigator in
@@ -102,6 +103,7 @@ class Episode:
     contacts: tuple[tuple[float, RobotContact], ...] = ()
     forces: tuple[tuple[float, ContactForce], ...] = ()
     collisions: tuple[BodyContactEvent, ...] = ()
+    falls: tuple[Fall, ...] = ()
     reactions: NDArray[np.int8] | None = None
     decision_times: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 

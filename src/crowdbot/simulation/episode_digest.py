@@ -22,7 +22,7 @@ from .step_batch import BatchReadings, StepBatch
 from .step_record import StepRecord
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyContactEvent, ContactForce
+    from crowdbot.world import BodyContactEvent, ContactForce, Fall
 
 __all__ = ["EpisodeDigest", "add_batch", "present"]
 
@@ -66,7 +66,7 @@ class EpisodeDigest:
             who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
             for array in (*who, *present(frame), frame.twists, frame.commands):
                 self._sum.update(_bytes(array))
-        self.add_rare(frame.nanoseconds, frame.forces, frame.orders, frame.collisions)
+        self.add_rare(frame.nanoseconds, frame.forces, frame.orders, frame.collisions, frame.falls)
 
     def add(self, *parts: Any) -> None:
         """Add bytes."""
@@ -79,14 +79,17 @@ class EpisodeDigest:
         forces: Sequence[ContactForce],
         orders: Sequence[Order],
         collisions: Sequence[BodyContactEvent],
+        falls: Sequence[Fall],
     ) -> None:
-        """Add forces, orders and contact events of a record, after its scene."""
+        """Add forces, orders, contact events and falls of a record, after its scene."""
         for force in forces:
             self._sum.update(f"force {_contact_text(*force)}\n".encode())
         for order in orders:
             self._sum.update(f"order {nanoseconds} {write_order(order)}\n".encode())
         for collision in collisions:
             self._sum.update(f"collision {_contact_text(*dataclasses.astuple(collision))}\n".encode())
+        for fall in falls:
+            self._sum.update(f"fall {dataclasses.astuple(fall)!r}\n".encode())
 
     def hexdigest(self, outcome: str) -> str:
         """Return the hash of all records so far and the outcome."""
@@ -107,8 +110,9 @@ def add_batch(digests: Sequence[EpisodeDigest], batch: StepBatch) -> None:
     for readings in batch.readings:
         _add_readings(own, times, readings)
     _add_scenes(own, times, batch)
-    for n in sorted({*batch.forces, *batch.orders, *batch.collisions}):
-        parts = (batch.forces.get(n, ()), batch.orders.get(n, ()), batch.collisions.get(n, ()))
+    for n in sorted({*batch.forces, *batch.orders, *batch.collisions, *batch.falls}):
+        rare = (batch.forces, batch.orders, batch.collisions, batch.falls)
+        parts: list[Any] = [part.get(n, ()) for part in rare]
         own[n].add_rare(times[n], *parts)
 
 

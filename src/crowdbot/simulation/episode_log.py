@@ -72,6 +72,7 @@ class EpisodeLog(EpisodeStatistics):
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         self._keep_rare(frame.tick, frame.nanoseconds, frame.touches, frame.forces, frame.collisions, frame.orders)
+        self.falls += frame.falls
         if frame.due:
             scene = frame.scene
             parts = (scene.active, scene.heading, scene.radius, scene.position, scene.velocity)
@@ -86,6 +87,7 @@ class EpisodeLog(EpisodeStatistics):
         touches, forces = batch.touches.get(row, ()), batch.forces.get(row, ())
         collisions, orders = batch.collisions.get(row, ()), batch.orders.get(row, ())
         self._keep_rare(int(batch.ticks[row]), nanoseconds, touches, forces, collisions, orders)
+        self.falls += batch.falls.get(row, ())
         if batch.due[row]:
             parts = (batch.ids, batch.active, batch.heading, batch.radius, batch.position, batch.velocity)
             arrays = [part[row, :slots] for part in parts]
@@ -161,6 +163,7 @@ class EpisodeLog(EpisodeStatistics):
             tuple(self.contacts),
             tuple(self.forces),
             tuple(self.collisions),
+            tuple(self.falls),
             self._reactions(),
             dict(decision_times or {}),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import warnings
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from crowdbot.core import InputError
 from crowdbot.navigation import ExternalNavigator
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["OwnSource", "UncommandedRobotWarning", "has_own_source", "open_own_sources", "warn_of_missing_source"]
 
 
+@runtime_checkable
 class OwnSource(Protocol):
     """A source of orders that a navigator of a trial opens itself, such as a connection to a robot software."""
 
@@ -25,6 +26,12 @@ class OwnSource(Protocol):
 
     def close(self) -> None:
         """End the connection; without effect the second time."""
+
+    def hold(self, stop: bool, reason: str) -> str:
+        """Let the robots of the source stand, or release them; return why they are not released. From any thread."""
+
+    def problems(self) -> list[str]:
+        """Return why robots of the source stand, for people. From any thread."""
 
 
 def has_own_source(trial: Trial) -> bool:

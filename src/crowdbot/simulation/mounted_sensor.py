@@ -314,8 +314,18 @@ def needs_bodies(trial: Trial) -> bool:
     """Return whether a world needs bodies of people: in physics, or for sensors that see them."""
     if trial.world == "physics":
         return True
-    kind = trial.bodies or PlanarWorld.people_shape
+    kind = people_shape(trial, PlanarWorld)
     return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
+
+
+def people_shape(trial: Trial, world: World | type[World]) -> str:
+    """Return the shape of people for laser scanners: that of the trial, limbs where avatars are, or of the world."""
+    return trial.bodies or ("limbs" if trial.avatars else world.people_shape)
+
+
+def shows_avatars(trial: Trial) -> bool:
+    """Return whether rays hit the skins of avatars, while other people consist of limbs or are discs."""
+    return bool(trial.avatars) and trial.bodies != "discs"
 
 
 def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
@@ -329,14 +339,15 @@ def mounted_sensors(
     trial: Any, robot: RobotSpec, world: World, seeds: Sequence[int], known: Mapping[str, MountedSensor] | None = None
 ) -> tuple[MountedSensor, ...]:
     """Return the sensors of a robot; those in ``known`` keep their random state and pending readings."""
-    bodies = trial.bodies or world.people_shape
+    bodies = people_shape(trial, world)
+    skins = bodies == "skins" or shows_avatars(trial)
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
         space = spatial(robot, mount, bodies)
         own = type(sensor).__module__.startswith("crowdbot.sensors.")
         probe = MountedSensor(
-            dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
+            dataclasses.replace(mount, sensor=sensor.with_skins()) if skins else mount,
             robot.sensor_pose(mount),
             robot.schedule(mount, world.clock),
             RandomStreams(seeds, "sensor", robot.name, mount.name),

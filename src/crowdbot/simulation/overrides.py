@@ -144,7 +144,7 @@ def _check_added_robots(simulation: Any, robots: _Robots) -> None:
     former = {control.robot.name for control in simulation.former_robots}
     scene = simulation.world.scene
     for robot in robots.added:
-        if robot.pose is not None:
+        if robot.mirror is not None:
             raise InputError(f"robot {robot.name!r} has <pose>; only robots of the start can be moved from outside")
         if robot.name in former or any(robot.name == control.robot.name for control in robots.removed):
             raise InputError(f"a robot {robot.name!r} was removed from this run; give the new one another name")

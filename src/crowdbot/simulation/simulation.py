@@ -17,6 +17,7 @@ At tick 0, only parts 6 to 8 run. Sensors, navigators and recorders are due ever
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -31,19 +32,20 @@ from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import put_environments, select_environments, step_environments
 
 from .failure import RunFailure
+from .mounted_sensor import shows_avatars
 from .phases.decision import let_decide
 from .phases.drawing import simulation_svg
-from .phases.evaluation import note_arrivals, robot_contacts
+from .phases.evaluation import new_events, note_arrivals, robot_contacts
 from .phases.sensing import RobotReadings, read_sensors
 from .robot_control import RobotControl
 from .step_record import RobotContact, StepRecord
-from .termination import FINISHED, end_condition_numbers, goal_zones, leave_goal_zones, note_events
+from .termination import end_condition_numbers, goal_zones, leave_goal_zones, note_events, run_outcome
 from .world_builder import check_clock, environment_index
 from .world_template import WorldTemplate
 from .world_view import WorldView
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyContactEvent
+    from crowdbot.world import BodyContactEvent, Fall
 
     from .orders.order import Order
 
@@ -79,7 +81,7 @@ class Simulation:
         former_robots: robots that orders have removed.
         readings: readings that arrived in the latest step, with their robots; see :meth:`new_readings`.
         event: ``[E]`` the first of :data:`COLLISION` and :data:`SUCCESS`, :data:`NONE` before.
-        ended: ``[E]`` number of the end condition that has ended an environment, 0 for none.
+        ended: ``[E]`` number of the end condition that has ended an environment.
         failures: the exception that ended each environment, or None.
         begun: ``[E]`` whether parts 6 to 8 of tick 0 have run.
         failed: ``[E]`` whether an exception has ended an environment.
@@ -118,7 +120,7 @@ class Simulation:
         self.failures: list[RunFailure | None] = [None] * count
         self._contacts: dict[int, tuple[RobotContact, ...]] = {}
         self.begun, self.failed, self.broken = (np.zeros(count, dtype=np.bool_) for _ in range(3))
-        self._told = np.zeros(count, dtype=np.int64)
+        self._told, self._fallen = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
         self._ways_out = goal_zones(self.people)
         if clock is not None:
             self.world.clock = check_clock(clock, self.world.clock)
@@ -224,10 +226,12 @@ class Simulation:
             self.contacts(e),
             world.forces_of(e),
             self._collisions(e, last) if collisions else (),
+            self._falls(e, last) if collisions else (),
             orders,
             e if number is None else number,
             tuple(robot.robot for robot in self.robots),
             tuple(world.ids[e, [robot.agent for robot in self.robots]].tolist()),
+            world.fall_poses_of(e) if due else {},
         )
 
     def _repr_svg_(self) -> str:
@@ -248,7 +252,7 @@ class Simulation:
     def may_end(self) -> Bools:
         """Return ``[E]`` whether :meth:`outcome` is not None."""
         end = self.trial.end
-        found = self.failed | (self.ended > 0) | (self.ticks >= self.trial.ticks)
+        found: Bools = self.failed | (self.ended != 0) | (self.ticks >= self.trial.ticks)
         if end.collision:
             found = found | (self.event == COLLISION)
         return found | (self.event == SUCCESS) if end.goal else found
@@ -258,18 +262,11 @@ class Simulation:
 
         A run ends at a recorded instant, or with an error.
         """
-        end, event, e = self.trial.end, int(self.event[environment]), environment
-        if self.failures[e] is not None:
+        if self.failures[environment] is not None:
             return "error"
-        if event == COLLISION and end.collision:
-            return "collision"
-        if event == SUCCESS and end.goal:
-            return "success"
-        if self.ended[e]:
-            return FINISHED if self.ended[e] == 1 else end.conditions[int(self.ended[e]) - 2].outcome
-        if int(self.ticks[e]) < self.trial.ticks:
-            return None
-        return ("timeout" if self.robots else FINISHED, "collision", "success")[event]
+        event = ("", "collision", "success")[self.event[environment]]
+        over = int(self.ticks[environment]) >= self.trial.ticks
+        return run_outcome(self.trial.end, event, int(self.ended[environment]), over, bool(self.robots))
 
     def fail(self, environment: int, error: Exception) -> None:
         """End an environment with an exception."""
@@ -314,6 +311,7 @@ class Simulation:
         ]
         some.failures = [self.failures[e] for e in index]
         some.event, some.ended, some._told = self.event[index], self.ended[index], self._told[index]
+        some._fallen = self._fallen[index]
         some.begun, some.failed, some.broken = self.begun[index], self.failed[index], self.broken[index]
         some._contacts = {k: self._contacts[e] for k, e in enumerate(index.tolist()) if e in self._contacts}
         return some
@@ -331,7 +329,7 @@ class Simulation:
             self._contacts.pop(e, None)
             if k in other._contacts:
                 self._contacts[e] = other._contacts[k]
-        for name in ("event", "ended", "begun", "_told", "failed", "broken"):
+        for name in ("event", "ended", "begun", "_told", "_fallen", "failed", "broken"):
             getattr(self, name)[index] = getattr(other, name)
 
     def _take_template(self, template: WorldTemplate) -> None:
@@ -347,8 +345,9 @@ class Simulation:
 
     def _set_around(self) -> None:
         trial = self.trial
-        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
-        self.around = WorldView(self.world, skins)
+        whole = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
+        others = "avatars" if shows_avatars(trial) else "nobody"
+        self.around = WorldView(self.world, "everybody" if whole else others)
 
     def _step(self) -> None:
         """Parts 1 to 5."""
@@ -377,14 +376,13 @@ class Simulation:
 
     def _collisions(self, environment: int, last: bool) -> tuple[BodyContactEvent, ...]:
         """Return the contact events that ended since the previous call, ordered by end."""
-        events = self.world.contact_events_of(environment)
-        if not events:
-            return ()
-        now = float(self.world.times[environment])
-        over = [one for one in events if last or now - one.end > HOLD + INSTANT]
-        over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
-        new, self._told[environment] = over[self._told[environment] :], len(over)
-        return tuple(new)
+        events, now = self.world.contact_events_of(environment), float(self.world.times[environment])
+        return new_events(events, self._told, environment, math.inf if last else now - HOLD - INSTANT)
+
+    def _falls(self, environment: int, last: bool) -> tuple[Fall, ...]:
+        """Return the falls that ended since the previous call, ordered by end."""
+        falls, now = self.world.falls_of(environment), float(self.world.times[environment])
+        return new_events(falls, self._fallen, environment, math.inf if last else now + INSTANT)
 
     def _evaluate(self, ids: Ints) -> None:
         """Detect contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""

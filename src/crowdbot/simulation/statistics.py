@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.metrics import AgentStates, NavigationMetrics, impact_metrics
+from crowdbot.metrics import AgentStates, NavigationMetrics, fall_metrics, impact_metrics
 from crowdbot.trials import Trial
-from crowdbot.world import BodyContactEvent
+from crowdbot.world import BodyContactEvent, Fall
 
 from .episode_digest import EpisodeDigest
 from .failure import RunFailure
@@ -68,6 +68,7 @@ class EpisodeStatistics:
         self._touching: set[int] = set()
         self.travels = new_metrics(trial, self.robot_ids)
         self.collisions: list[BodyContactEvent] = []
+        self.falls: list[Fall] = []
 
     def take(self, frame: StepRecord) -> None:
         """Add a record."""
@@ -83,6 +84,7 @@ class EpisodeStatistics:
                 self.travels[names.index(order.robot)].tolerance = float(order.tolerance)
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
         self.collisions += frame.collisions
+        self.falls += frame.falls
         if frame.due:
             self.end = frame.nanoseconds / 1e9
             self.begin = self.end if math.isnan(self.begin) else self.begin
@@ -106,6 +108,10 @@ class EpisodeStatistics:
             body = ("robot", self.robot_ids[k])
             own = [one for one in self.collisions if tuple(one.first) == body and one.second.kind == "person"]
             values = impact_metrics(own)
+            if self.trial.balance:
+                caused = [one for one in self.falls if (one.cause, one.causer) == body]
+                values |= fall_metrics(self.falls, caused)
+                values["max_severity"] = max(values["max_severity"], values["fall_severity"])
             found |= {(key if k == 0 else f"{robot.name}.{key}"): value for key, value in values.items()}
         return found
 

@@ -16,7 +16,7 @@ from .mounted_sensor import SensorReadings
 from .step_record import RobotContact
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyContactEvent, ContactForce
+    from crowdbot.world import BodyContactEvent, ContactForce, Fall
 
     from .orders.order import Order
     from .simulation import Simulation
@@ -51,7 +51,7 @@ class StepBatch:
         goals: ``[N, R, 2]`` current goal of each robot [m].
         twists, commands: ``[N, R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
         readings: readings of this step, sensor by sensor.
-        touches, forces, collisions, orders: as in :class:`StepRecord`, by row; rows without are missing.
+        touches, forces, collisions, falls, orders: as in :class:`StepRecord`, by row; rows without are missing.
         reactions: ``[N, A]`` codes of the reactions to robots, see :data:`crowdbot.world.REACTIONS`; None without.
     """
 
@@ -73,6 +73,7 @@ class StepBatch:
     touches: Mapping[int, tuple[RobotContact, ...]] = field(default_factory=dict)
     forces: Mapping[int, tuple[ContactForce, ...]] = field(default_factory=dict)
     collisions: Mapping[int, tuple[BodyContactEvent, ...]] = field(default_factory=dict)
+    falls: Mapping[int, tuple[Fall, ...]] = field(default_factory=dict)
     orders: Mapping[int, tuple[Order, ...]] = field(default_factory=dict)
     reactions: NDArray[np.int8] | None = None
 
@@ -120,7 +121,7 @@ class StepBatch:
             BatchReadings(spec, robot.mount(told.name), told, place[told.environments])
             for spec, (robot, told) in zip(names, simulation.readings, strict=True)
         ]
-        touches, forces, collisions = _rare_parts(simulation, index, last)
+        touches, forces, collisions, falls = _rare_parts(simulation, index, last)
         return cls(
             numbers,
             ticks,
@@ -140,6 +141,7 @@ class StepBatch:
             touches,
             forces,
             collisions,
+            falls,
             {n: found for n, e in enumerate(index.tolist()) if (found := (orders or {}).get(e))},
             None if (codes := reaction_codes(scene)) is None else codes[index],
         )
@@ -151,11 +153,12 @@ class StepBatch:
 
 
 def _rare_parts(simulation: Simulation, index: Ints, last: bool) -> tuple[dict[int, Any], ...]:
-    """Return contacts, forces and contact events by row."""
+    """Return contacts, forces, contact events and falls by row."""
     world = simulation.world
     parts: tuple[Callable[[int], tuple[Any, ...]], ...] = (
         simulation.contacts,
         world.forces_of,
         lambda e: simulation._collisions(e, last),
+        lambda e: simulation._falls(e, last),
     )
     return tuple({n: found for n, e in enumerate(index.tolist()) if (found := part(e))} for part in parts)

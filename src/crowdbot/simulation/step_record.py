@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,7 +14,8 @@ from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyContactEvent, ContactForce
+    from crowdbot.humans import FallPose
+    from crowdbot.world import BodyContactEvent, ContactForce, Fall
 
     from .orders.order import Order
 
@@ -46,9 +48,11 @@ class StepRecord:
         touches: contacts of the last step.
         forces: contact forces of the last step, in the physics world.
         collisions: contact events that ended since the last record, in the physics world.
+        falls: falls of people that ended since the last record, in the physics world with balance.
         orders: orders from outside that were applied in this step.
         environment: number of the environment.
         robots, robot_ids: the robots of the rows of ``twists`` and ``commands``, and their ids.
+        fall_poses: poses of people out of balance by agent, if the scene is recorded, in the physics world.
     """
 
     tick: int
@@ -62,7 +66,9 @@ class StepRecord:
     touches: tuple[RobotContact, ...] = ()
     forces: tuple[ContactForce, ...] = ()
     collisions: tuple[BodyContactEvent, ...] = ()
+    falls: tuple[Fall, ...] = ()
     orders: tuple[Order, ...] = ()
     environment: int = 0
     robots: tuple[RobotSpec, ...] = ()
     robot_ids: tuple[int, ...] = ()
+    fall_poses: Mapping[int, FallPose] = field(default_factory=dict)

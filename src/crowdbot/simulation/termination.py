@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
-from crowdbot.trials import Agent, EndCondition, InitialPeople, Spawner, Trial, area
+from crowdbot.trials import Agent, End, EndCondition, InitialPeople, Spawner, Trial, area
 from crowdbot.world import World
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "leave_goal_zones",
     "may_be_near",
     "note_events",
+    "run_outcome",
 ]
 
 Floats = NDArray[np.float64]
@@ -32,6 +33,8 @@ ARRIVED = 0.3
 """Distance [m] to the own goal point within which people in a goal zone leave."""
 ROUNDING = 1e-6
 """Relative margin of squared distances against rounding."""
+FALLEN = -1
+"""Number of the end condition that somebody has fallen."""
 FINISHED = "finished"
 """Outcome of a trial that ends when nobody is left."""
 
@@ -160,7 +163,8 @@ def arrivals_of(robots: Sequence[Any]) -> list[Bools]:
 def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, robots: Mapping[str, int]) -> Ints | None:
     """Return the number of the end condition that holds in each environment ``[E]``.
 
-    It is 0 for none, 1 if nobody is left, and 2 + k for condition k of the trial. None if the trial has no conditions.
+    It is 0 for none, -1 if somebody has fallen, 1 if nobody is left, and 2 + k for condition k of the trial. None if
+    the trial has no conditions.
 
     Args:
         trial: trial with end conditions.
@@ -168,20 +172,49 @@ def end_condition_numbers(trial: Trial, world: World, people: InitialPeople, rob
         people: initial and recorded people.
         robots: agent index of each robot by name, in the order of the trial.
     """
-    if not trial.end.empty and not trial.end.conditions:
+    end = trial.end
+    if not (end.empty or end.fall or end.conditions):
         return None
     met = np.zeros(len(world.slots), dtype=np.int64)
-    if trial.end.empty:
+    if end.fall:
+        for e, now in enumerate(world.times.tolist()):
+            if any(fall.end <= now + ROUNDING for fall in world.falls_of(e)):
+                met[e] = FALLEN
+    if end.empty:
         alone = _people_count(world) == len(trial.avatars)  # avatars never leave
         if alone.any():
-            met[alone & ~_expects_people(trial, world, people)] = 1
-    for number, condition in enumerate(trial.end.conditions):
+            met[(met == 0) & alone & ~_expects_people(trial, world, people)] = 1
+    for number, condition in enumerate(end.conditions):
         value = _value(condition, world, robots)
         if value is not None:
             below = condition.below
             holds = value < below if below is not None else value > (condition.above or 0.0)
             met[(met == 0) & holds] = 2 + number
     return met
+
+
+def run_outcome(end: End, event: str, number: int, over: bool, robots: bool) -> str | None:
+    """Return the outcome of a run that ends now, None while it continues.
+
+    Args:
+        end: end conditions of the trial.
+        event: first event, ``collision`` or ``success``, empty for none.
+        number: number of the end condition that holds, see :func:`end_condition_numbers`.
+        over: whether the duration is over.
+        robots: whether there are robots.
+
+    >>> run_outcome(End(), "", 1, False, True), run_outcome(End(fall=True), "", FALLEN, False, True)
+    ('finished', 'fall')
+    """
+    if (event == "collision" and end.collision) or (event == "success" and end.goal):
+        return event
+    if number == FALLEN:
+        return "fall"
+    if number:
+        return FINISHED if number == 1 else end.conditions[number - 2].outcome
+    if not over:
+        return None
+    return event or ("timeout" if robots else FINISHED)
 
 
 def _people_count(world: World) -> Ints:

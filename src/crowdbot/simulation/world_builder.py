@@ -184,7 +184,7 @@ def avatars_of(trial: Trial, end: int, first: int) -> Avatars | None:
         end: index after that of the last avatar.
         first: index of the first robot.
     """
-    led = [(first + k, robot, robot.pose) for k, robot in enumerate(trial.robots) if robot.pose is not None]
+    led = [(first + k, robot, robot.mirror) for k, robot in enumerate(trial.robots) if robot.mirror is not None]
     if not (trial.avatars or led):
         return None
     count, robots = len(trial.avatars), [agent for agent, _, _ in led]

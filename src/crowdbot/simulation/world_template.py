@@ -147,7 +147,7 @@ class WorldTemplate:
     def _is_alone(self) -> bool:
         """Whether worlds are made one by one: with bodies or avatars, or if people enter a mixture of crowds."""
         mixed = isinstance(self.trial.crowd, Crowds) and bool(self.trial.sources)
-        led = bool(self.trial.avatars) or any(robot.pose is not None for robot in self.trial.robots)
+        led = bool(self.trial.avatars) or any(robot.mirror is not None for robot in self.trial.robots)
         return self.posed or self._embodied or mixed or led or bool(self.trial.stage.doors)
 
     @functools.cached_property
@@ -279,6 +279,8 @@ class WorldTemplate:
             people=figures.people,
             riders=figures.riders,
             physics_dt=self.trial.physics_step,
+            balance=self.trial.balance,
+            get_up=self.trial.get_up,
             ghosts=[agent for agent, robot in robots.items() if robot.ghost],
             **how,
         )

@@ -25,11 +25,12 @@ class WorldView:
 
     Args:
         world: planar or physics world.
-        skins: whether rays hit the skins of people.
+        skins: whose skins rays hit: of ``nobody``, of ``avatars`` only, or of ``everybody``.
     """
 
-    def __init__(self, world: World, skins: bool) -> None:
-        self.world, self._skins = world, SKIN if skins else None
+    def __init__(self, world: World, skins: str) -> None:
+        self.world, self._skins = world, None if skins == "nobody" else SKIN
+        self._avatars = skins == "avatars"
         self._known: tuple[Scene, dict[tuple[str, int], Scene]] | None = None
 
     @property
@@ -73,7 +74,7 @@ class WorldView:
             if kind == "flat":
                 scenes[key] = self.world.plane_scene(environment)
             else:
-                scenes[key] = self.world.body_scene(self._skins, environment)
+                scenes[key] = self.world.body_scene(self._skins, environment, self._avatars)
         return scenes[key]
 
 

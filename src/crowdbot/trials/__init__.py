@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from .agent import Agent, AgentParameter, Avatar
     from .builtin import load_trial
     from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
-    from .camera import OVERVIEW, Camera, overview
+    from .cameras.camera import OVERVIEW, Camera, overview
+    from .cameras.camera_remarks import camera_remarks
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
     from .faults.blind_sensor import BlindSensor
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from .faults.slipping_wheel import SlippingWheel
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_digest, code_references, is_code
-    from .files.layout_file import load_layout
+    from .files.layout_file import builtin_stages, load_layout
     from .files.stage_maps import is_area_file, map_files
     from .files.trial_files import resolve_file
     from .ground.door import Door
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from .parser import check_trial, parse_trial
     from .partial_element import has_kind, kind_of, readable, skip_unreadable
     from .people import Group, SourceSpec, Spawner
-    from .placement.appearance import PeopleAppearance, people_appearance
+    from .placement.appearance import PeopleAppearance, people_appearance, trial_bodies, trial_clips
     from .placement.expansion import expand_spawners
     from .placement.placement_plan import PeopleBatch, PlacementPlan
     from .placement.population import place
@@ -83,12 +84,13 @@ __getattr__, __dir__ = lazy_exports(
         "agent": ["Agent", "AgentParameter", "Avatar"],
         "builtin": ["load_trial"],
         "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
-        "camera": ["OVERVIEW", "Camera", "overview"],
+        "cameras.camera": ["OVERVIEW", "Camera", "overview"],
+        "cameras.camera_remarks": ["camera_remarks"],
         "crowd": ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"],
         "distribution": ["Distribution"],
         "fields": ["UNWRITABLE", "attribute", "check", "children", "element_word", "outline", "quote_value"],
         "files.code_references": ["code_digest", "code_references", "is_code"],
-        "files.layout_file": ["load_layout"],
+        "files.layout_file": ["builtin_stages", "load_layout"],
         "files.stage_maps": ["is_area_file", "map_files"],
         "files.trial_files": ["resolve_file"],
         "ground.door": ["Door"],
@@ -109,7 +111,7 @@ __getattr__, __dir__ = lazy_exports(
         "parser": ["check_trial", "parse_trial"],
         "partial_element": ["has_kind", "kind_of", "readable", "skip_unreadable"],
         "people": ["Group", "SourceSpec", "Spawner"],
-        "placement.appearance": ["PeopleAppearance", "people_appearance"],
+        "placement.appearance": ["PeopleAppearance", "people_appearance", "trial_bodies", "trial_clips"],
         "placement.expansion": ["expand_spawners"],
         "placement.placement_plan": ["PeopleBatch", "PlacementPlan"],
         "placement.population": ["place"],
@@ -229,7 +231,9 @@ __all__ = [
     "apply_values",
     "area",
     "attribute",
+    "builtin_stages",
     "builtin_trials",
+    "camera_remarks",
     "check",
     "check_stage",
     "check_trial",
@@ -281,6 +285,8 @@ __all__ = [
     "robot_reactions",
     "schema",
     "skip_unreadable",
+    "trial_bodies",
+    "trial_clips",
     "trial_remarks",
     "trial_titles",
     "trial_xml",

@@ -145,6 +145,14 @@ class Avatar:
         min=0.0,
         max=10.0,
     )
+    headset: bool = attribute(True, about="whether a participant in a headset can move an external avatar")
+    picture_delay: float = attribute(
+        0.0, about="added delay of the picture in the headset of the participant", unit="s", min=0.0, max=2.0
+    )
+    noise: float = attribute(
+        0.0, about="standard deviation of noise added to each coordinate that a headset measures", unit="m", min=0.0,
+        max=1.0,
+    )  # fmt: skip
     radius: float = attribute(0.25, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     height: float | None = attribute(None, about="stature (default: that of the body)", unit="m", min=0.5, max=2.5)
     body: str = attribute("", about=ABOUT_BODY)
@@ -164,6 +172,8 @@ class Avatar:
                 raise InputError(f'{name}={quote_value(given)} needs source="{name}", not source="{self.source}"')
         if self.source == "external" and (self.x is None or self.y is None):
             raise InputError('source="external" needs x and y: the place before the first order')
+        if self.source != "external" and (self.picture_delay or self.noise):
+            raise InputError(f'picture-delay and noise need source="external" (a headset), not source="{self.source}"')
         if self.source != "external" and not (self.x is None and self.y is None):
             raise InputError(f'x and y need source="external"; here the {self.source} gives the place')
 

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
+
 from crowdbot import humans
 from crowdbot.core import InputError, did_you_mean
 
 from .fields import quote_value
 
-__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "ABOUT_RIDER", "KINDS", "check_words", "rider_problems", "word_problems"]
+__all__ = [
+    "ABOUT_ACTIVITY",
+    "ABOUT_BODY",
+    "ABOUT_RIDER",
+    "KINDS",
+    "check_words",
+    "clip_names",
+    "own_body_names",
+    "rider_problems",
+    "word_problems",
+]
 
 KINDS = {
     "man": ("man",),
@@ -19,11 +32,16 @@ KINDS = {
     "mannequin": ("mannequin",),
 }
 ABOUT_BODY = (
-    "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); from a list, one is chosen at"
-    " random"
+    "name of a body (woman-36), kind (man, woman, adult, boy, girl, child, mannequin) or file of an imported body"
+    " (ann.body); from a list, one is chosen at random"
 )
 ABOUT_RIDER = "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
-ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is chosen at random"
+ABOUT_ACTIVITY = (
+    "walk, talk, phone, bottle, text, sit, wave, carry, read, stick, pram, wheelchair, run, look, or a file of motion"
+    " capture (walk.clip); from a list, one is chosen at random"
+)
+CLIP_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}\.clip")
+"""Names of clips: files beside the trial."""
 
 
 def check_words(body: str, activity: str) -> None:
@@ -36,7 +54,7 @@ def check_words(body: str, activity: str) -> None:
     >>> check_words("womn", "")
     Traceback (most recent call last):
     crowdbot.core.errors.InputError: body="womn" has 'womn', did you mean 'woman'?; it takes man, woman, boy, girl, \
-adult, child, mannequin or a name from crowdbot list humans
+adult, child, mannequin, a name from crowdbot list humans, or a body beside the trial such as ann.body
     """
     for problem in word_problems(body, activity):
         raise InputError(problem)
@@ -45,18 +63,41 @@ adult, child, mannequin or a name from crowdbot list humans
 def word_problems(body: str, activity: str) -> list[str]:
     """Return a sentence for every unknown body or activity."""
     bodies = (*KINDS, *humans.names())
-    takes = f"{', '.join(KINDS)} or a name from crowdbot list humans"
-    wrong = [(word, "body", body, bodies, takes) for word in body.split() if word not in bodies]
-    acts = ", ".join(humans.ACTIVITIES)
+    takes = f"{', '.join(KINDS)}, a name from crowdbot list humans, or a body beside the trial such as ann.body"
+    wrong = [
+        (word, "body", body, bodies, takes)
+        for word in body.split()
+        if word not in bodies and not humans.BODY_NAME.fullmatch(word)
+    ]
+    acts = f"{', '.join(humans.ACTIVITIES)}, or a clip beside the trial such as walk.clip"
     wrong += [
         (word, "activity", activity, humans.ACTIVITIES, acts)
         for word in activity.split()
-        if word not in humans.ACTIVITIES
+        if word not in humans.ACTIVITIES and not CLIP_NAME.fullmatch(word)
     ]
     return [
         f"{what}={quote_value(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
         for word, what, text, known, takes in wrong
     ]
+
+
+def clip_names(activities: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of clips among activities, each once.
+
+    >>> clip_names(["walk limp.clip", "limp.clip"])
+    ('limp.clip',)
+    """
+    words = {word for text in activities for word in text.split() if CLIP_NAME.fullmatch(word)}
+    return tuple(sorted(words))
+
+
+def own_body_names(bodies: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of the files of imported bodies among bodies, each once.
+
+    >>> own_body_names(["man ann.body", "ann.body"])
+    ('ann.body',)
+    """
+    return tuple(sorted({word for text in bodies for word in text.split() if humans.BODY_NAME.fullmatch(word)}))
 
 
 def rider_problems(rider: str, seat: bool) -> list[str]:
@@ -67,4 +108,6 @@ def rider_problems(rider: str, seat: bool) -> list[str]:
     """
     if rider and not seat:
         return [f'rider={quote_value(rider)} needs type="wheelchair": other robots have no seat; leave it out']
+    if own_body_names([rider]):
+        return [f"rider={quote_value(rider)} is an imported body; riders take the included bodies"]
     return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

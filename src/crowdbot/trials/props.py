@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
+from crowdbot.world import FLOORS, RANDOM, SKIES, WALL_SURFACES
 
 from .fields import attribute, check
 
-__all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
+__all__ = ["Appearance", "Cube", "Light", "Prop", "Table", "Tree"]
 
 
 class _FixedProp(ABC):
@@ -110,6 +111,32 @@ class Light:
     def light(self) -> world.LightSource:
         """Return the light of a physics world."""
         return world.LightSource(**_values(Light, self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Appearance:
+    """Surfaces, sky and light of a stage in images. Nothing else depends on them.
+
+    >>> Appearance(floor="wood", sky="random").appearance().floor
+    'wood'
+    """
+
+    floor: str = attribute(
+        "tiles", about="surface of the floor; random: drawn for each seed", choices=(*FLOORS, RANDOM)
+    )
+    walls: str = attribute("plaster", about="surface of walls", choices=(*WALL_SURFACES, RANDOM))
+    sky: str = attribute("clear", about="sky and light; random: also the place of the sun", choices=(*SKIES, RANDOM))
+    sun_heading: float = attribute(
+        2.15, about="direction in which the sun shines, counter-clockwise from +x", unit="rad"
+    )
+    sun_elevation: float = attribute(0.95, about="height of the sun", unit="rad", min=0.0873, max=1.5707)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def appearance(self) -> world.StageAppearance:
+        """Return the surfaces, sky and light of a physics world."""
+        return world.StageAppearance(**_values(Appearance, self))
 
 
 Prop = Cube | Table | Tree

@@ -37,7 +37,7 @@ from .partial_element import readable
 from .robots.joint_target import JointTarget, joint_problems
 from .robots.people_input import ABOUT_PEOPLE, PEOPLE_INPUTS, people_problems
 from .robots.predictor import RobotPredictor, forecast_problems
-from .robots.robot_pose import RobotPose
+from .robots.robot_pose import RobotPose, mirrored_pose
 from .robots.robot_types import robot_folder_of, robot_of_type
 from .robots.safety import SafetySpec, safety_problems
 
@@ -231,13 +231,9 @@ class RobotSpec:
             )
         if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
-        for problem in safety_problems(self.safety, self.navigator):
-            raise InputError(problem)
-        for problem in forecast_problems(self.predictor, self.tracks, self.control_period):
-            raise InputError(problem)
-        for problem in people_problems(self.people, self.sensors):
-            raise InputError(problem)
-        for problem in rider_problems(self.rider_kind, self.body.seat):
+        forecasts = forecast_problems(self.predictor, self.tracks, self.control_period)
+        others = (*people_problems(self.people, self.sensors), *rider_problems(self.rider_kind, self.body.seat))
+        for problem in (*safety_problems(self.safety, self.navigator), *forecasts, *others):
             raise InputError(problem)
         for problem in fault_problems(self.faults, self.sensors):
             raise InputError(problem)
@@ -302,6 +298,11 @@ class RobotSpec:
     def controller(self) -> Navigator:
         """The navigator that decides, behind the safety layer of the robot."""
         return self.navigator if self.safety is None else self.safety.layer().around(self.navigator)
+
+    @property
+    def mirror(self) -> RobotPose | None:
+        """Where the robot is if its drive does not move it: ``pose``, or the poses of a real robot."""
+        return mirrored_pose(self.pose, self.navigator)
 
     @property
     def rider_kind(self) -> str:

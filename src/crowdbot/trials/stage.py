@@ -17,11 +17,12 @@ from crowdbot.world import add_rings
 
 from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.stage_maps import area_of, map_of
+from .files.trial_files import resolve_file
 from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
 from .notation import Points
 from .partial_element import readable
-from .props import Cube, Light, Prop, Table, Tree
+from .props import Appearance, Cube, Light, Prop, Table, Tree
 
 if TYPE_CHECKING:
     from crowdbot.world import PhysicsStage
@@ -74,6 +75,11 @@ class Stage:
     map: str = attribute("", about="name of the .yaml file of a ROS map; occupied cells are solid")
     unknown: str = attribute("occupied", about="treatment of unknown cells of the map", choices=("occupied", "free"))
     wall_height: float = attribute(2.5, about="height of walls and obstacles", unit="m", min=0.001, max=100.0)
+    building: str = attribute(
+        "",
+        about="name of a .glb file that is drawn instead of the walls; its walls are those of the stage",
+        pattern=r"([A-Za-z0-9_. -]{1,80}\.glb)?",
+    )
     friction: float = attribute(
         1.0, about="friction coefficient of the floor in the physics world", exclusive_min=0.0, max=10.0
     )
@@ -85,6 +91,7 @@ class Stage:
         {"ramp": Ramp, "stairs": Stairs, "platform": Platform, "threshold": Threshold}, about="uneven ground", max=1000
     )
     doors: tuple[Door, ...] = children("door", about="doors", max=100)
+    appearance: tuple[Appearance, ...] = children("appearance", about="surfaces, sky and light in images", max=1)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Folder of the files, and whether files may lie outside; not part of the XML."""
@@ -106,6 +113,11 @@ class Stage:
         if values.get("walkable") and values.get("area"):
             said.append((("walkable", "area"), TWO_GROUNDS))
         folder, trust = values["folder"], values["trust"]
+        if values.get("building"):
+            try:
+                resolve_file(values["building"], folder, trust)
+            except InputError as error:
+                said.append((("building",), f"building={quote_value(values['building'])}: {error}"))
         for word, read in (
             ("area", area_of),
             ("map", functools.partial(map_of, unknown=values.get("unknown", "free"))),
@@ -148,11 +160,16 @@ class Stage:
 
     def physical(self) -> PhysicsStage:
         """Return props, lights and heights for the physics world."""
-        from crowdbot.world import PhysicsStage
+        from crowdbot.world import PhysicsStage, StageAppearance, read_building
 
         props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
         doors = tuple(one.leaf() for one in self.doors)
-        return PhysicsStage(self.wall_height, self.friction, props, lights, ground=ground_of(self.ground), doors=doors)
+        looks = [one.appearance() for one in self.appearance] or [StageAppearance()]
+        return PhysicsStage(
+            self.wall_height, self.friction, props, lights, ground=ground_of(self.ground), doors=doors,
+            appearance=looks[0],
+            building=read_building(resolve_file(self.building, self.folder, self.trust)) if self.building else None,
+        )  # fmt: skip
 
     @property
     def shapes(self) -> tuple[tuple[Any, ...], Any]:

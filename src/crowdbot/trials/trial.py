@@ -11,7 +11,7 @@ from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 
 from .agent import Agent, Avatar
-from .camera import Camera
+from .cameras.camera import Camera
 from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg
 from .fields import attribute, check, child, children
@@ -57,6 +57,7 @@ class End:
 
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
+    fall: bool = attribute(False, about="somebody has fallen, in the physics world with balance; outcome: fall")
     empty: bool = attribute(False, about="ends when no people are left and none will enter")
     conditions: tuple[EndCondition, ...] = children("when", about="other conditions, of which one suffices", max=100)
 
@@ -96,10 +97,17 @@ class Trial:
         "planar", about="discs in the plane, or bodies with contact forces", choices=("planar", "physics")
     )
     physics_step: float = attribute(0.005, about="time step of the physics world", unit="s", min=0.0001, max=0.02)
+    balance: bool = attribute(
+        False,
+        about="whether pushed people brace, step and fall, in the physics world; otherwise they stay upright",
+    )
+    get_up: float | None = attribute(
+        5.0, about="time on the floor after which people get up", unit="s", min=0.0, max=86_400.0
+    )
     bodies: str | None = attribute(
         None,
-        about="shape of people for laser scanners (default: discs in the planar, limbs in the physics world);"
-        " other sensors see limbs or skins",
+        about="shape of people for laser scanners (default: limbs in the physics world and in trials with avatars,"
+        " otherwise discs); other sensors see limbs or skins; unless it is discs, avatars have their skin",
         choices=("discs", "limbs", "skins"),
     )
     step: float = attribute(0.05, about="time step of the world", unit="s", min=0.001, max=1.0)
@@ -142,6 +150,10 @@ class Trial:
     def __post_init__(self) -> None:
         check(self)
         steps = self.step / self.physics_step
+        if self.balance and self.world != "physics":
+            raise InputError('balance="true" needs the bodies of world="physics"')
+        if self.end.fall and not self.balance:
+            raise InputError('<end fall="true"> needs people who can fall: world="physics" and balance="true"')
         if self.world == "physics" and (steps < 1.0 - 1e-6 or abs(steps - round(steps)) > 1e-6):
             raise InputError(
                 f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='

@@ -3,8 +3,8 @@
 from .avatar_contacts import AvatarContacts
 from .body_estimate import BodyEstimator, BodySize
 from .calibration_pose import BodyMeasure, measure_pose
+from .capture import CapturesDesk, Suit
 from .certificate import certificate_files, local_addresses, tls_context
-from .clock_sync import ClockSync
 from .headset_access import session_of_token, token_of_session
 from .headset_recording import (
     HeadsetClock,
@@ -16,7 +16,7 @@ from .headset_recording import (
 from .headset_sample import HeadsetSample
 from .headset_stream import HeadsetStream, StreamSettings
 from .headset_window import HEADSET_COMMANDS, HeadsetWindow, headset_frame, pack_triples
-from .latency_log import LatencyLog
+from .latency import ClockSync, HeadsetLatency, LatencyLog, read_headset_latency
 from .link_code import link_picture, link_text
 from .rigid_transform import RigidFit, RigidTransform, fit_rigid
 from .robot_stop import RobotStop
@@ -25,7 +25,7 @@ from .shared_rooms import RealRoom, SharedRooms
 from .trial_seats import TrialSeats
 from .vr_desk import VrDesk
 from .vr_participant import VrParticipant
-from .vr_server import VR_DESKS, VrServer
+from .vr_server import VR_DESKS, VrServer, with_captures
 
 __all__ = [
     "HEADSET_COMMANDS",
@@ -34,8 +34,10 @@ __all__ = [
     "BodyEstimator",
     "BodyMeasure",
     "BodySize",
+    "CapturesDesk",
     "ClockSync",
     "HeadsetClock",
+    "HeadsetLatency",
     "HeadsetRecord",
     "HeadsetRecorder",
     "HeadsetSample",
@@ -49,6 +51,7 @@ __all__ = [
     "RoomLimits",
     "SharedRooms",
     "StreamSettings",
+    "Suit",
     "TrialSeats",
     "VrDesk",
     "VrParticipant",
@@ -62,8 +65,10 @@ __all__ = [
     "measure_pose",
     "pack_triples",
     "read_headset_clock",
+    "read_headset_latency",
     "read_headset_recording",
     "session_of_token",
     "tls_context",
     "token_of_session",
+    "with_captures",
 ]

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from crowdbot.simulation import Simulation
+from crowdbot.world import two_body_force
 
 __all__ = ["AvatarContacts"]
 
+Floats = NDArray[np.float64]
+REGION = "chest"
+"""Region of the body that a disc of the planar world touches."""
 STRONG = 60.0
 """Force [N] at which a controller vibrates with full strength."""
 WEAKEST = 0.25
@@ -18,7 +25,8 @@ class AvatarContacts:
     """Contacts of one person, step by step.
 
     In the physics world each has a force: the mean over the last step, an estimate from the masses and velocities of
-    both bodies. In the planar world bodies are discs, and a contact has no force.
+    both bodies. In the planar world bodies are discs: the force is the peak of the two-body model of ISO/TS 15066, from
+    the closing speed of both and the mass of the robot, for the chest of a person.
 
     Args:
         agent: index of the person in the scene.
@@ -31,14 +39,16 @@ class AvatarContacts:
     def __init__(self, agent: int) -> None:
         self.agent = agent
         self._held: set[tuple[str, int, str]] = set()
+        self._velocity: Floats | None = None
 
     def update(self, simulation: Simulation) -> list[dict[str, Any]]:
         """Return the contacts of the last step, JSON.
 
         Each has ``kind`` and ``number`` of the other body, ``limb``, ``side`` (``left``, ``right`` or empty), ``force``
-        [N] or null, ``begins`` (whether there was none in the step before), and ``strength`` from 0 to 1.
+        [N], ``point`` [m] or null, ``begins`` (whether there was none in the step before), ``strength`` from 0 to 1.
         """
         found = self._forces(simulation) or self._overlaps(simulation)
+        self._velocity = simulation.world.environment_scene(0).velocity[0].copy()
         keys = {(one["kind"], one["number"], one["limb"]) for one in found}
         for one in found:
             one["begins"] = (one["kind"], one["number"], one["limb"]) not in self._held
@@ -64,10 +74,28 @@ class AvatarContacts:
         return found
 
     def _overlaps(self, simulation: Simulation) -> list[dict[str, Any]]:
-        own = int(simulation.world.ids[0, self.agent])
-        return [
-            {"kind": "robot", "number": int(one.robot), "limb": "", "side": "", "force": None, "point": None,
-             "strength": WEAKEST}
-            for one in simulation.contacts()
-            if one.other == own
-        ]  # fmt: skip
+        ids = simulation.world.ids[0].tolist()
+        own = ids[self.agent]
+        found = []
+        for one in simulation.contacts():
+            if one.other != own:
+                continue
+            force = self._impact(simulation, ids.index(one.robot))
+            strength = round(min(1.0, max(WEAKEST, force / STRONG)), 3)
+            found.append(
+                {"kind": "robot", "number": int(one.robot), "limb": "", "side": "", "force": round(force, 2),
+                 "point": None, "strength": strength}
+            )  # fmt: skip
+        return found
+
+    def _impact(self, simulation: Simulation, robot: int) -> float:
+        """Return the peak force [N] of an impact at the closing speed before or after the last step."""
+        scene = simulation.world.environment_scene(0)
+        apart = scene.position[0, self.agent] - scene.position[0, robot]
+        normal = apart / max(1e-9, float(np.hypot(*apart)))
+        moves = [scene.velocity[0]]
+        if self._velocity is not None and self._velocity.shape == scene.velocity[0].shape:
+            moves.append(self._velocity)
+        speed = max(float((move[robot] - move[self.agent]) @ normal) for move in moves)
+        mass = next(float(one.robot.mass) for one in simulation.robots if one.agent == robot)
+        return two_body_force(speed, mass, REGION)

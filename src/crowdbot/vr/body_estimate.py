@@ -58,7 +58,7 @@ class BodySize(NamedTuple):
         True
         """
         bones = rest_skeleton(people, number)
-        eye = bones.head[bones.bone("head")] + eye_offsets()[int(people.body[number])] * float(people.scale[number])
+        eye = bones.head[bones.bone("head")] + eye_offsets(people)[number]
         neck, pelvis = bones.head[bones.bone("neck_01")], bones.head[0]
         hips = float(bones.head[bones.bone("thigh_l"), 2])
         ahead, up = (float(one) for one in (eye - neck)[[0, 2]])

@@ -97,7 +97,7 @@ def _is_whole(sample: HeadsetSample) -> bool:
 def _arms(head: Floats, left: Floats, right: Floats, people: People) -> list[Floats]:
     """Return the vectors from shoulder to wrist of the left and right arm."""
     bones = rest_skeleton(people)
-    eyes = bones.head[bones.bone("head")] + eye_offsets()[int(people.body[0])] * float(people.scale[0])
+    eyes = bones.head[bones.bone("head")] + eye_offsets(people)[0]
     aside = (left - right)[:2] / max(1e-9, float(np.linalg.norm((left - right)[:2])))
     turn = np.array([[aside[1], aside[0], 0.0], [-aside[0], aside[1], 0.0], [0.0, 0.0, 1.0]])
     shoulders = [bones.head[bones.bone(f"upperarm_{side}")] - eyes for side in "lr"]

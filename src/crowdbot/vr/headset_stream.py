@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 
-from .clock_sync import ClockSync
 from .headset_sample import PARTS, HeadsetSample
-from .latency_log import LatencyLog
+from .latency import ClockSync, LatencyLog
 
 __all__ = ["HeadsetStream", "StreamSettings"]
 
@@ -78,6 +77,10 @@ class HeadsetStream:
 
     def __init__(self, settings: StreamSettings | None = None, seed: int = 0) -> None:
         self.settings = settings or StreamSettings()
+        self.trial_delay, self.trial_noise = 0.0, 0.0
+        """``delay`` [s] of the avatar, which the simulation adds itself, and its ``noise`` [m]."""
+        self.age = math.nan
+        """Age of the sample that was used last, with the delay of the trial [s]."""
         self.clock, self.latency = ClockSync(), LatencyLog()
         self.last = -math.inf
         """Time of the server at which the head was tracked last [s]."""
@@ -99,8 +102,9 @@ class HeadsetStream:
         time = self.clock.to_server(sample.time)
         if sample.head is None or not sample.visible or not abs(time - arrival) < HISTORY:
             return
-        if self.settings.noise > 0.0:
-            sample = self._with_noise(sample)
+        noise = math.hypot(self.settings.noise, self.trial_noise)
+        if noise > 0.0:
+            sample = self._with_noise(sample, noise)
         k = bisect.bisect(self._times, time)
         self._times.insert(k, time)
         self._samples.insert(k, sample)
@@ -120,18 +124,19 @@ class HeadsetStream:
         if k < len(self._times):
             share = (wish - used) / (self._times[k] - used)
             used, found = wish, found.blend(self._samples[k], share)
-        self.latency.add("motion", now - used)
+        self.age = now - used + self.trial_delay
+        self.latency.add("motion", self.age)
         return found
 
     def is_lost(self, now: float) -> bool:
         """Return whether the head has not been tracked for longer than the timeout."""
         return now - self.last > self.settings.timeout
 
-    def _with_noise(self, sample: HeadsetSample) -> HeadsetSample:
+    def _with_noise(self, sample: HeadsetSample, noise: float) -> HeadsetSample:
         parts = {}
         for name in PARTS:
             pose = getattr(sample, name)
             if pose is not None:
                 parts[name] = pose.copy()
-                parts[name][:3] += self.settings.noise * self._random.standard_normal(3)
+                parts[name][:3] += noise * self._random.standard_normal(3)
         return dataclasses.replace(sample, **parts)

@@ -20,12 +20,12 @@ from crowdbot.web import AppSession, DeskWindows, ExperimentDesk, LiveRun, Simul
 
 from .body_estimate import BodySize
 from .calibration_pose import BodyMeasure, measure_pose
+from .capture import CapturesDesk
 from .free_place import free_place
 from .headset_recording import HeadsetRecorder
 from .headset_stream import StreamSettings
-from .rigid_transform import RigidTransform
 from .robot_stop import RobotStop
-from .rooms_desk import RoomsDesk
+from .shared_rooms import PERSON
 from .trial_seats import TrialSeats, external_avatars, with_bodies
 from .vr_participant import VrParticipant, avatar_body
 
@@ -39,7 +39,7 @@ OPENING = 5.0
 """Longest time [s] that a headset waits for the first trial of a session."""
 
 
-class ParticipantsDesk(RoomsDesk):
+class ParticipantsDesk(CapturesDesk):
     """A desk whose participants move avatars: of the trial of the simulator tab, or of an experiment that is open.
 
     Everything that happens to a simulation is an order, so the episode replays without a headset.
@@ -55,7 +55,8 @@ class ParticipantsDesk(RoomsDesk):
         self._stop = RobotStop()
         self._seats: TrialSeats | None = None
         self._in_experiment = False
-        self._attached: LiveRun | None = None
+        self._placed: dict[str, LiveRun] = {}
+        self._room_names: dict[str, str] = {}
         self._warnings: set[str] = set()
         self._number = 0
 
@@ -73,11 +74,12 @@ class ParticipantsDesk(RoomsDesk):
         found = self.session.desks.get("experiments") if isinstance(self.session, AppSession) else None
         return found if isinstance(found, ExperimentDesk) and found.session_open else None
 
-    def join(self, tell: Callable[[dict[str, Any]], None]) -> VrParticipant:
+    def join(self, tell: Callable[[dict[str, Any]], None], wish: str = "") -> VrParticipant:
         """Add a participant, who moves the first external avatar that is free.
 
         Args:
             tell: sends messages to the headset, from any thread.
+            wish: name of the avatar that the same headset moved before; it is taken if it is free.
 
         Raises:
             InputError: a trial does not run, or each of its avatars already has a participant.
@@ -92,8 +94,10 @@ class ParticipantsDesk(RoomsDesk):
             free = [name for name in names if name not in self.participants]
             if not free:
                 raise InputError(f"each avatar of the trial has a participant already: {', '.join(names)}")
-            person = VrParticipant(free[0], self.rooms, self.settings, tell=tell)
-            self.participants[free[0]] = person
+            name = wish if wish in free else free[0]
+            person = VrParticipant(name, self.rooms, self.settings, tell=tell)
+            person.room, person.suit = self._room_of(name), self.suit_of(name)
+            self.participants[name] = person
             if run is not None:
                 person.record_to(self._recorder())
                 self._attach(run, person)
@@ -149,7 +153,7 @@ class ParticipantsDesk(RoomsDesk):
         """Give the avatars of a trial of the experiment to the participants, and record them in its folder."""
         self.follow_experiment()
         with self._lock:
-            if not external_avatars(trial):
+            if not any(one.source == "external" for one in trial.avatars):
                 return trial, ()
             stop = RobotStop()
             stop.set = self._stop.set
@@ -159,6 +163,7 @@ class ParticipantsDesk(RoomsDesk):
             self._warnings = {one for one in self._warnings if not one.startswith(("paused", "tracking"))}
             for one in self.participants.values():
                 self._take_seat(self._seats, one)
+            self._seats.capture(self.captures_of(trial, self._seats.avatars))
             return trial, [self._seats]
 
     def leave_trial(self) -> None:
@@ -167,6 +172,16 @@ class ParticipantsDesk(RoomsDesk):
             seats, self._seats = self._seats, None
             if seats is not None:
                 seats.close()
+
+    def unmoved_avatars(self) -> list[str]:
+        """Return a warning for each avatar of the trial of an experiment that nothing moves."""
+        seats = self._seats
+        if seats is None:
+            return []
+        moved = {*seats.avatars, *self.captures.targets}
+        rest = [one for one in seats.trial.avatars if one.source == "external" and one.name not in moved]
+        ways = {True: "a headset or motion capture", False: "motion capture"}
+        return [f"nothing moves {one.name!r}: it needs {ways[one.headset]}" for one in rest]
 
     @web.command
     def set(self, settings: dict[str, Any]) -> None:
@@ -195,9 +210,9 @@ class ParticipantsDesk(RoomsDesk):
                 raise InputError(f"the {side} controller or hand of {avatar!r} is not tracked")
             rows = [getattr(one, side)[:3].tolist() for one in found]
             source = [statistics.median(row[k] for row in rows) for k in range(3)]
-            self.rooms.add_pair("person", source, [x, y, z])
+            self.rooms.add_pair(person.room, source, [x, y, z])
             self._tell_state()
-            return len(self.rooms.rooms["person"].source)
+            return len(self.rooms.room(person.room).source)
 
     @web.command
     def measure_body(self, avatar: str) -> float:
@@ -250,24 +265,38 @@ class ParticipantsDesk(RoomsDesk):
         seats.seat(person)
         if person.avatar not in seats.names:
             return
+        person.suit = self.suit_of(person.avatar)
+        seats.capture(self.captures_of(seats.trial, seats.avatars))
         own = next(one for one in seats.trial.avatars if one.name == person.avatar)
-        room = self.rooms.rooms["person"]
-        if room.fit is None and own.x is not None and own.y is not None:
-            room.place = RigidTransform.at(own.x, own.y, own.heading)
+        room = self.rooms.room(person.room)
+        room.guess_place(own.x, own.y, own.heading)
         self._note(person, {"avatar": person.avatar, "trial": seats.trial.name, "room": room.state(),
                             "settings": dataclasses.asdict(self.settings)})  # fmt: skip
 
+    def _room_of(self, avatar: str) -> str:
+        """Return the name of the room of the participant who moves an avatar; a second headset has its own origin."""
+        taken = any(one.room == PERSON for one in self.participants.values())
+        if avatar not in self._room_names or (taken and self._room_names[avatar] == PERSON):
+            self._room_names[avatar] = self.rooms.add_person(avatar) if taken else PERSON
+        return self._room_names[avatar]
+
     def _attach(self, run: LiveRun, person: VrParticipant) -> None:
-        avatars = {one.name: one for one in run.trial.avatars if one.source == "external"}
+        avatars = {one.name: one for one in run.trial.avatars if one.name in external_avatars(run.trial)}
         if person.avatar not in avatars:
             return
-        own, room = avatars[person.avatar], self.rooms.rooms["person"]
-        if room.fit is None and self._attached is not run and own.x is not None and own.y is not None:
-            room.place = RigidTransform.at(own.x, own.y, own.heading)
+        own, room = avatars[person.avatar], self.rooms.room(person.room)
+        if self._placed.get(person.room) is not run:
+            room.guess_place(own.x, own.y, own.heading)
         run.controls[person.avatar] = person
-        self._attached = run
+        self._placed[person.room] = run
         self._note(person, {"avatar": person.avatar, "trial": run.trial.name, "seed": run.seed, "room": room.state(),
                             "settings": dataclasses.asdict(self.settings)})  # fmt: skip
+
+    def _apply_captures(self) -> None:
+        for one in self.participants.values():
+            one.suit = self.suit_of(one.avatar)
+        if self._seats is not None:
+            self._seats.capture(self.captures_of(self._seats.trial, self._seats.avatars))
 
     def _near_limits(self, simulation: Simulation) -> bool:
         """Return whether a robot is near the limits of its room."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from crowdbot.navigation import ExternalNavigator
-from crowdbot.simulation import Order, ParameterOrder, Simulation, VelocityOrder
-from crowdbot.trials import Trial
+from crowdbot.simulation import Order, OwnSource, ParameterOrder, Simulation, VelocityOrder
+from crowdbot.trials import RobotSpec, Trial
 from crowdbot.web import navigator_orders
 
-__all__ = ["RobotStop", "movable_robots"]
+__all__ = ["RobotStop", "hold_sources", "linked_robots", "movable_robots", "source_problems"]
 
 SOURCE = "vr"
+OPERATOR = "the stop button"
+"""Reason for robots with a connection."""
 REPEAT = 0.2
 """Simulated time [s] after which the velocity is ordered again."""
 
@@ -17,8 +21,8 @@ REPEAT = 0.2
 class RobotStop:
     """Stops all robots of a trial while it is set, and gives them back to their navigators afterwards.
 
-    It is a source of orders: whatever happens is in the episode. A robot with ``<pose>`` is where its source says, so
-    it cannot be stopped from here.
+    It is a source of orders: whatever happens is in the episode. Robots with a connection of their navigator are
+    stopped there (:func:`hold_sources`). A robot with ``<pose>`` is where its source says: it is stopped at itself.
 
     >>> from crowdbot.trials import load_trial
     >>> stop = RobotStop()
@@ -57,4 +61,24 @@ class RobotStop:
 
 def movable_robots(trial: Trial) -> list[str]:
     """Return the names of the robots that orders can stop."""
-    return [robot.name for robot in trial.robots if robot.pose is None]
+    return [robot.name for robot in trial.robots if robot.mirror is None and not _has_source(robot)]
+
+
+def linked_robots(trial: Trial) -> list[str]:
+    """Return the names of the robots that are stopped at the connection of their navigator."""
+    return [robot.name for robot in trial.robots if _has_source(robot)]
+
+
+def hold_sources(sources: Sequence[object], stop: bool) -> list[str]:
+    """Stop or release the robots of connections; return why some of them are not released."""
+    found = [one.hold(stop, OPERATOR) for one in sources if isinstance(one, OwnSource)]
+    return [one for one in found if one]
+
+
+def source_problems(sources: Sequence[object]) -> list[str]:
+    """Return why robots of connections stand."""
+    return [line for one in sources if isinstance(one, OwnSource) for line in one.problems()]
+
+
+def _has_source(robot: RobotSpec) -> bool:
+    return isinstance(robot.navigator, ExternalNavigator) and bool(robot.navigator.source)

@@ -27,7 +27,7 @@ class RoomsDesk(Desk):
 
     @web.command
     def add_pair(self, room: str, source: list[float], target: list[float]) -> None:
-        """Add a calibration point: coordinates in the room ``person`` or ``robot`` and in the virtual room [m]."""
+        """Add a calibration point: coordinates in a room, such as ``robot``, and in the virtual room [m]."""
         with self._lock:
             self.rooms.add_pair(room, source, target)
         self._tell_state()
@@ -53,8 +53,7 @@ class RoomsDesk(Desk):
     def place_room(self, room: str, x: float, y: float, heading: float = 0.0) -> None:
         """Set the place of a room without calibration: its origin and heading in the virtual room [m], [rad]."""
         with self._lock:
-            self.rooms.room(room).place = RigidTransform.at(float(x), float(y), float(heading))
-            self.rooms.clear(room)
+            self.rooms.room(room).set_place(RigidTransform.at(float(x), float(y), float(heading)))
         self._tell_state()
 
     @web.command

@@ -11,11 +11,13 @@ from crowdbot.core import InputError
 from .rigid_transform import RigidFit, RigidTransform, fit_rigid
 from .room_limits import RoomLimits
 
-__all__ = ["ROOMS", "RealRoom", "SharedRooms"]
+__all__ = ["PERSON", "ROOMS", "RealRoom", "SharedRooms"]
 
 ROOMS = ("person", "robot")
 FEWEST = 3
 """Points that define the place of a room."""
+PERSON = "person"
+"""Room of the first participant, and begin of the names of the rooms of others."""
 MOST = 200
 """Largest number of calibration points of a room."""
 
@@ -28,7 +30,8 @@ class RealRoom:
         place: transform from the room to the virtual room.
         limits: free floor in the frame of the room, or None.
         source, target: touched points in the frame of the room and of the virtual room [m].
-        fit: the calibration, or None while ``place`` is a guess.
+        fit: the calibration, or None without one.
+        chosen: whether the operator has set the place; otherwise it is a guess.
     """
 
     place: RigidTransform = field(default_factory=lambda: RigidTransform.at(0.0, 0.0))
@@ -36,6 +39,17 @@ class RealRoom:
     source: list[list[float]] = field(default_factory=list)
     target: list[list[float]] = field(default_factory=list)
     fit: RigidFit | None = None
+    chosen: bool = False
+
+    def set_place(self, place: RigidTransform) -> None:
+        """Set the place without points."""
+        self.place, self.chosen = place, True
+        self.source, self.target, self.fit = [], [], None
+
+    def guess_place(self, x: float | None, y: float | None, heading: float) -> None:
+        """Set the place [m], [rad] unless it is known better."""
+        if self.fit is None and not self.chosen and x is not None and y is not None:
+            self.place = RigidTransform.at(x, y, heading)
 
     def state(self) -> dict[str, Any]:
         """Return the room as JSON: place, limits, points, and the residuals [m] of the calibration."""
@@ -58,8 +72,10 @@ class SharedRooms:
     """Three workspaces: the room of the person, that of the robot, and the virtual room of the trial.
 
     A point that is touched in a real room, with its coordinates in the virtual one, is a pair of the calibration. After
-    it, real walls are where virtual walls are. The place of the robot's room is the origin of its motion capture or
-    odometry in the trial.
+    it, real walls are where virtual walls are. The place of the robot's room is the origin of its motion capture in the
+    trial.
+
+    Each headset has an origin of its own, so a second participant has a room of its own, ``person NAME``.
 
     >>> rooms = SharedRooms()
     >>> for x, y in ((0, 0), (2, 0), (2, 3)):
@@ -72,10 +88,16 @@ class SharedRooms:
         self.rooms = {name: RealRoom() for name in ROOMS}
 
     def room(self, name: str) -> RealRoom:
-        """Return the room ``person`` or ``robot``; raises InputError for another name."""
+        """Return a room by its name, such as ``person`` or ``robot``; raises InputError for another name."""
         if name not in self.rooms:
-            raise InputError(f"room = {name!r}: expected {' or '.join(ROOMS)}")
+            raise InputError(f"room = {name!r}: expected {' or '.join(self.rooms)}")
         return self.rooms[name]
+
+    def add_person(self, name: str) -> str:
+        """Add the room of one more participant, by the name of the avatar, and return the name of the room."""
+        room = f"{PERSON} {name}"
+        self.rooms.setdefault(room, RealRoom())
+        return room
 
     def add_pair(self, name: str, source: Sequence[float], target: Sequence[float]) -> None:
         """Add a point of a room and the same point of the virtual room [m]; raises InputError for other values."""
@@ -97,7 +119,7 @@ class SharedRooms:
         """Compute the place of a room from its points; raises InputError if they do not define it."""
         room = self.room(name)
         room.fit = fit_rigid(room.source, room.target)
-        room.place = room.fit.transform
+        room.place, room.chosen = room.fit.transform, True
         return room.fit
 
     def record(self) -> dict[str, Any]:
@@ -112,13 +134,13 @@ class SharedRooms:
             InputError: it is no record of rooms; nothing changes.
         """
         made = SharedRooms()
-        if not isinstance(record, dict) or not set(record) <= set(ROOMS):
+        if not isinstance(record, dict) or len(record) > MOST or not all(map(_is_room, record)):
             raise InputError(f"a file of rooms must have the keys {' and '.join(ROOMS)}")
         try:
             for name, one in record.items():
-                room = made.room(name)
+                room = made.rooms.setdefault(name, RealRoom())
                 numbers = [float(one[key]) for key in ("x", "y", "z", "heading")]
-                room.place = RigidTransform.at(numbers[0], numbers[1], numbers[3], numbers[2])
+                room.set_place(RigidTransform.at(numbers[0], numbers[1], numbers[3], numbers[2]))
                 room.limits = RoomLimits(tuple(tuple(row) for row in one["limits"])) if one["limits"] else None
                 for source, target in zip(one["source"], one["target"], strict=True):
                     made.add_pair(name, source, target)
@@ -137,3 +159,7 @@ class SharedRooms:
             return None
         inside = room.place.inverse().apply([x, y, 0.0])
         return room.limits.margin(float(inside[0]), float(inside[1]))
+
+
+def _is_room(name: object) -> bool:
+    return isinstance(name, str) and (name in ROOMS or name.startswith(f"{PERSON} "))

@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+import threading
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
+from crowdbot.bridges import MotionCapture
 from crowdbot.core import InputError
-from crowdbot.navigation import ExternalNavigator
-from crowdbot.simulation import Order, Simulation
+from crowdbot.experiments import write_trial_latency
+from crowdbot.simulation import Order, OwnSource, Simulation, open_own_sources
 from crowdbot.trials import Trial
 
 from .calibration_pose import BodyMeasure
+from .capture import StreamTap, link_captures
 from .headset_recording import HeadsetRecorder
-from .robot_stop import RobotStop
+from .latency import read_headset_latency
+from .robot_stop import RobotStop, hold_sources
 from .vr_participant import VrParticipant
 
 __all__ = ["TrialSeats", "external_avatars", "with_bodies"]
 
+CAPTURES = "motion-capture"
+"""Name of the file of the raw samples of motion capture, as that of an avatar."""
 Watch = Callable[[Simulation], bool]
 
 
@@ -29,29 +37,46 @@ class TrialSeats:
         folder: folder of the trial, for the raw messages of each participant.
         stop: holds the robots.
         watch: returns whether the robots must stop; called in the thread of the run.
-
-    Raises:
-        InputError: a robot of the trial is driven over a connection of its own, which a source of orders replaces.
     """
 
     def __init__(self, trial: Trial, folder: Path, stop: RobotStop, watch: Watch) -> None:
-        driven = [one.name for one in trial.robots if _has_source(one.navigator)]
-        if driven:
-            raise InputError(
-                f"robot {driven[0]!r} is driven over a connection of its navigator, which does not work together with"
-                " a headset yet; give it another navigator"
-            )
         self.trial, self.folder = trial, folder
         self.names = external_avatars(trial)
-        self._stop, self._watch = stop, watch
+        self._stop, self._watch, self._held = stop, watch, False
         self._seated: dict[str, VrParticipant] = {}
+        self._captures: Sequence[MotionCapture] = ()
+        self._moved: list[MotionCapture] | None = None
+        self._raw: HeadsetRecorder | None = None
+        self._lock = threading.Lock()
+        self._files: dict[str, list[Path]] = {}
+        self.links: tuple[OwnSource, ...] | None = None
+        """Connections of navigators, such as to a real robot; None before the first step."""
 
     def seat(self, person: VrParticipant) -> None:
         """Give a participant the avatar with its name, and record its messages in the folder of the trial."""
         if person.avatar not in self.names:
             return
-        person.record_to(HeadsetRecorder(_free_file(self.folder, person.avatar)))
+        file = _free_file(self.folder, person.avatar)
+        self._files.setdefault(person.avatar, []).append(file)
+        person.record_to(HeadsetRecorder(file))
         self._seated[person.avatar] = person
+
+    @property
+    def avatars(self) -> list[str]:
+        """Names of the avatars that participants in headsets move."""
+        return list(self._seated)
+
+    def capture(self, captures: Sequence[MotionCapture]) -> None:
+        """Let motion capture move robots, and avatars without a headset, from the next step on."""
+        taps = [MotionCapture(StreamTap(one.stream, self._note_sample), one.bindings) for one in captures]
+        self._captures, self._moved = taps, None
+
+    def _note_sample(self, record: dict[str, Any]) -> None:
+        """Write a sample of motion capture, from any thread."""
+        with self._lock:
+            if self._raw is None:
+                self._raw = HeadsetRecorder(_free_file(self.folder, CAPTURES))
+        self._raw.note(time.monotonic(), record)
 
     def leave(self, person: VrParticipant) -> None:
         """Take the avatar away from a participant."""
@@ -63,20 +88,46 @@ class TrialSeats:
         """Return the orders of the participants for this step, and those that hold the robots."""
         if self._watch(simulation):
             self._stop.set = True
-        found = self._stop.orders(simulation)
+        found = self._linked(simulation)
+        found += self._stop.orders(simulation)
         for person in list(self._seated.values()):
             found += person.orders(simulation)
+        if self._moved is None:
+            self._moved = link_captures(self._captures, self.links or ())
+        for one in self._moved:
+            found += one.orders(simulation)
         return found
 
+    def hold(self, stop: bool) -> list[str]:
+        """Stop or release the robots that have a connection; return why some of them are not released."""
+        return hold_sources(self.links or (), stop)
+
+    def _linked(self, simulation: Simulation) -> list[Order]:
+        """Return the orders of the connections, which this source opens, since it takes their place."""
+        if self.links is None:
+            self.links = open_own_sources(simulation)
+            self._moved = link_captures(self._captures, self.links)
+        if self._stop.set and not self._held:
+            self.hold(True)
+        self._held = self._stop.set
+        return [order for one in self.links for order in one.orders(simulation)]
+
     def close(self) -> None:
-        """Close the recordings."""
+        """Close the recordings and connections, and write the latencies of the trial to its folder."""
+        for one in self.links or ():
+            one.close()
         for person in list(self._seated.values()):
             self.leave(person)
+        if self._raw is not None:
+            self._raw.close()
+        if self._files and self.folder.is_dir():
+            found = {name: read_headset_latency(files).of_trial() for name, files in self._files.items()}
+            write_trial_latency(self.folder, found)
 
 
 def external_avatars(trial: Trial) -> list[str]:
-    """Return the names of the avatars of a trial that participants can move."""
-    return [one.name for one in trial.avatars if one.source == "external"]
+    """Return the names of the avatars of a trial that participants in headsets can move."""
+    return [one.name for one in trial.avatars if one.source == "external" and one.headset]
 
 
 def with_bodies(trial: Trial, bodies: dict[str, BodyMeasure]) -> Trial:
@@ -88,10 +139,6 @@ def with_bodies(trial: Trial, bodies: dict[str, BodyMeasure]) -> Trial:
         for one in trial.avatars
     )
     return dataclasses.replace(trial, avatars=avatars)
-
-
-def _has_source(navigator: object) -> bool:
-    return isinstance(navigator, ExternalNavigator) and bool(navigator.source)
 
 
 def _free_file(folder: Path, avatar: str) -> Path:

@@ -7,16 +7,19 @@ import dataclasses
 import json
 import threading
 import time
+from collections.abc import Sequence
 from typing import Any
 
 from crowdbot import web
 from crowdbot.core import CrowdbotError, InputError
 from crowdbot.simulation import Simulation
+from crowdbot.trials import Trial
 from crowdbot.web import DeskWindows, LiveRun, Resource
 
+from .capture import link_captures
 from .link_code import link_picture
 from .participants_desk import ParticipantsDesk
-from .robot_stop import movable_robots
+from .robot_stop import hold_sources, linked_robots, movable_robots, source_problems
 from .vr_participant import VrParticipant
 
 __all__ = ["VrDesk"]
@@ -28,6 +31,8 @@ STATUS = 5
 MARGIN = 0.3
 """Distance [m] of a robot from the limits of its room at which it is stopped."""
 STOPPED = "robots are stopped"
+CAPTURE = "motion capture "
+"""Begin of the names of motion capture among the controls of a run."""
 
 
 class VrDesk(ParticipantsDesk):
@@ -46,11 +51,15 @@ class VrDesk(ParticipantsDesk):
         """Address of the page of participants; the server sets it."""
         self.mirror, self.own_body = False, True
         self._pose: tuple[str, float] | None = None
+        self._robot_margin: float | None = None
+        self._captured: tuple[object, ...] = ()
         self._closed = threading.Event()
         self._watcher: threading.Thread | None = None
 
     def greet(self) -> dict[str, Any]:
         """Return the state."""
+        if self.captures.texts:
+            self._start_watcher()
         return self.state()
 
     @web.command
@@ -62,12 +71,14 @@ class VrDesk(ParticipantsDesk):
                 "participants": [one.summary() for one in self.participants.values()],
                 "settings": dataclasses.asdict(self.settings),
                 "rooms": {name: room.state() for name, room in self.rooms.rooms.items()},
-                "warnings": sorted(self._warnings),
+                "captures": self.capture_states(),
+                "warnings": sorted({*self._warnings, *source_problems(self._links()), *self._problems()}),
                 "address": self.address,
                 "mirror": self.mirror,
                 "own_body": self.own_body,
                 "pose": None if pose is None else {"avatar": pose[0], "seconds": max(0.0, pose[1] - time.monotonic())},
                 "experiment": self._in_experiment,
+                "robot_margin": self._robot_margin,
             }
 
     @web.command
@@ -94,7 +105,8 @@ class VrDesk(ParticipantsDesk):
 
     @web.command
     def pause(self) -> None:
-        """Pause the run, or the session of the experiment, for everybody."""
+        """Pause the run, or the session of the experiment, for everybody; real robots stop at once."""
+        self._hold_links(True)
         experiment = self.experiment
         if experiment is None:
             self.simulator.pause()
@@ -106,6 +118,8 @@ class VrDesk(ParticipantsDesk):
         """Continue the run or the session."""
         with self._lock:
             self._warnings = {one for one in self._warnings if not one.startswith("paused")}
+        if not self._stop.set:
+            self._hold_links(False)
         experiment = self.experiment
         if experiment is None:
             self.simulator.play()
@@ -117,14 +131,13 @@ class VrDesk(ParticipantsDesk):
     def stop_robots(self) -> list[str]:
         """Stop all robots at once: they get velocity 0 until they are released. Returns their names."""
         self._stop.set = True
-        seats = self._seats
-        if self._in_experiment:
-            names = [] if seats is None else movable_robots(seats.trial)
-        else:
-            names = movable_robots(self.simulator.run.trial)
-            for name in names:
-                self.simulator.take_over(name)
-                self.simulator.drive(name, 0.0, 0.0)
+        self._hold_links(True)
+        trial = self._trial()
+        names = [] if trial is None else movable_robots(trial)
+        for name in names if not self._in_experiment else ():
+            self.simulator.take_over(name)
+            self.simulator.drive(name, 0.0, 0.0)
+        names += [] if trial is None else linked_robots(trial)
         with self._lock:
             self._warnings.add(STOPPED)
             self._note_all({"stops": names})
@@ -135,22 +148,51 @@ class VrDesk(ParticipantsDesk):
     def release_robots(self) -> None:
         """Give the robots back to their navigators."""
         self._stop.set = False
-        if not self._in_experiment:
-            for name in movable_robots(self.simulator.run.trial):
-                self.simulator.release(name)
+        self._hold_links(False)
+        trial = None if self._in_experiment else self._trial()
+        for name in () if trial is None else movable_robots(trial):
+            self.simulator.release(name)
         with self._lock:
             self._warnings.discard(STOPPED)
             self._note_all({"releases": True})
         self._tell_state()
 
-    def arrive(self, tell: Any) -> VrParticipant:
+    def _trial(self) -> Trial | None:
+        """Return the trial that runs, or None."""
+        if self._in_experiment:
+            return None if self._seats is None else self._seats.trial
+        with contextlib.suppress(InputError):
+            return self.simulator.run.trial
+        return None
+
+    def _links(self) -> Sequence[object]:
+        """Return the connections of robots in what runs."""
+        if self._in_experiment:
+            seats = self._seats
+            return () if seats is None or seats.links is None else seats.links
+        with contextlib.suppress(InputError):
+            return self.simulator.run.running.sources
+        return ()
+
+    def _hold_links(self, stop: bool) -> None:
+        for problem in hold_sources(self._links(), stop):
+            self.session.tell("vr.problem", problem)
+
+    def arrive(self, tell: Any, wish: str = "") -> VrParticipant:
         """Add a participant as :meth:`join` does, and watch over everybody from now on."""
-        person = self.join(tell)
+        person = self.join(tell, wish)
+        self._start_watcher()
+        return person
+
+    def _start_watcher(self) -> None:
         with self._lock:
             if self._watcher is None:
                 self._watcher = threading.Thread(target=self._watch, name="crowdbot-vr", daemon=True)
                 self._watcher.start()
-        return person
+
+    def _apply_captures(self) -> None:
+        super()._apply_captures()
+        self._start_watcher()
 
     def depart(self, person: VrParticipant, cut: bool) -> None:
         """Remove a participant; the run pauses if the connection was cut, and in an experiment always."""
@@ -175,6 +217,7 @@ class VrDesk(ParticipantsDesk):
             self._discard_recording(one)
         if self._watcher is not None:
             self._watcher.join(2.0)
+        self.close_captures()
 
     def _watch(self) -> None:
         count = 0
@@ -182,7 +225,7 @@ class VrDesk(ParticipantsDesk):
             count += 1
             try:
                 self._check()
-                if count % STATUS == 0 and self.participants:
+                if count % STATUS == 0 and (self.participants or self.captures.texts):
                     self._tell_state()
             except CrowdbotError as error:
                 self.session.tell("vr.problem", str(error))
@@ -197,12 +240,28 @@ class VrDesk(ParticipantsDesk):
                 for one in people:
                     if run.controls.get(one.avatar) is not one and run.state == "running":
                         self._attach(run, one)
+                self._move_by_captures(run)
                 self._stop_at_limits(run)
         for one in people:
             self._pause_if_lost(one)
         if self._stop.set and STOPPED not in self._warnings:  # a robot was near the limits of its room
             self._warnings.add(STOPPED)
             self._tell_state()
+
+    def _problems(self) -> list[str]:
+        return self.unmoved_avatars() + ([self.capture_problem] if self.capture_problem else [])
+
+    def _move_by_captures(self, run: LiveRun) -> None:
+        """Let motion capture move robots, and avatars without a headset, of a run of the simulator."""
+        worn = [one.avatar for one in self.participants.values() if run.controls.get(one.avatar) is one]
+        wanted = (run, self.captures.texts, tuple(worn))
+        if run.state != "running" or wanted == self._captured:
+            return
+        self._captured = wanted
+        for name in [name for name in run.controls if name.startswith(CAPTURE)]:
+            run.controls.pop(name, None)
+        found = link_captures(self.captures_of(run.trial, worn), self._links())
+        run.controls.update({f"{CAPTURE}{k}": one for k, one in enumerate(found)})
 
     def _measure_when_due(self) -> None:
         pose = self._pose
@@ -238,6 +297,7 @@ class VrDesk(ParticipantsDesk):
     def _pause_for(self, reason: str) -> None:
         with self._lock:
             self._warnings.add(reason)
+        self._hold_links(True)
         with contextlib.suppress(InputError):  # paused already, or ended
             experiment = self.experiment
             if experiment is None:
@@ -246,17 +306,22 @@ class VrDesk(ParticipantsDesk):
                 experiment.pause(reason.removeprefix("paused since "))
 
     def _near_limits(self, simulation: Simulation) -> bool:
+        self._robot_margin = None
         if self.rooms.rooms["robot"].limits is None:
             return False
         scene = simulation.world.environment_scene(0)
         places = [scene.position[0, one.agent] for one in simulation.robots if scene.active[0, one.agent]]
-        return any((self.rooms.margin("robot", *place.tolist()) or 0.0) < MARGIN for place in places)
+        margins = [self.rooms.margin("robot", *place.tolist()) or 0.0 for place in places]
+        self._robot_margin = min(margins, default=None)
+        return any(one < MARGIN for one in margins)
 
     def _stop_at_limits(self, run: LiveRun) -> None:
         """Stop the robots if one of them is near the limits of its room."""
-        if self.rooms.rooms["robot"].limits is None or STOPPED in self._warnings or run.state != "running":
+        if self.rooms.rooms["robot"].limits is None:
+            self._robot_margin = None
             return
-        if run.do(lambda: self._near_limits(run.simulation)):
+        near = run.state == "running" and run.do(lambda: self._near_limits(run.simulation))
+        if near and STOPPED not in self._warnings:
             self.stop_robots()
 
     def _tell_state(self) -> None:

@@ -8,18 +8,21 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from crowdbot.core import InputError
-from crowdbot.humans import People
+from crowdbot.humans import BodyPose, People
 from crowdbot.simulation import AvatarOrder, Order, Simulation
 from crowdbot.trials import people_appearance
 from crowdbot.web import StateFrame
 
 from .avatar_contacts import AvatarContacts
 from .body_estimate import BodyEstimator, BodySize
+from .capture import Suit
 from .headset_recording import HeadsetRecorder
 from .headset_sample import HeadsetSample
 from .headset_stream import HeadsetStream, StreamSettings
-from .shared_rooms import SharedRooms
+from .shared_rooms import PERSON, SharedRooms
 
 __all__ = ["VrParticipant", "avatar_body"]
 
@@ -57,6 +60,10 @@ class VrParticipant:
     ) -> None:
         self.avatar, self.rooms, self.recorder = avatar, rooms, recorder
         self.stream = HeadsetStream(settings)
+        self.room = PERSON
+        """Name of the room in which the participant is."""
+        self.suit: Suit | None = None
+        """Motion capture suit of the participant; it moves the whole body while it sends."""
         self.refused, self.reason = 0, ""
         """Number of samples that are no pose of a person, and why the last one is not."""
         self.sample: HeadsetSample | None = None
@@ -70,6 +77,9 @@ class VrParticipant:
         self._estimator: BodyEstimator | None = None
         self._contacts: AvatarContacts | None = None
         self._id: int | None = None
+        self._picture_delay = 0.0
+        self._figure: tuple[People, int] = (People.of(["man-20"]), 0)
+        self._dressed: Suit | None = None
 
     def take(self, data: bytes) -> dict[str, Any]:
         """Take a message of the headset, and return the answer: the times of its arrival and of the answer.
@@ -100,12 +110,15 @@ class VrParticipant:
             return []
         at = round(float(simulation.world.times[0]) + float(simulation.world.clock.dt), 9)
         try:
-            pose = self._estimator.update(sample, self.rooms.rooms["person"].place)
+            pose = self._estimator.update(sample, self.rooms.room(self.room).place)
             if pose is None:
                 return []
             parts = {name: getattr(pose, name) for name in ("head", "left_hand", "right_hand")}
             if sample.gaze is not None and pose.head is not None:
                 parts["gaze"] = tuple(sample.gaze.tolist())
+            body = self._body(pose, float(simulation.world.times[0]), at)
+            if body is not None:
+                pose, parts = body, {"head": parts["head"], "gaze": parts.get("gaze"), "skeleton": body.skeleton}
             order = AvatarOrder(
                 avatar=self.avatar, time=at, x=pose.x, y=pose.y, heading=pose.heading, source=SOURCE, **parts
             )
@@ -115,8 +128,21 @@ class VrParticipant:
         recorder = self.recorder
         if recorder is not None:
             place = [pose.x, pose.y, pose.heading]
-            recorder.note(now, {"step": at, "avatar": self.avatar, "sample": sample.time, "pose": place})
+            age = round(self.stream.age, 6)
+            recorder.note(now, {"step": at, "avatar": self.avatar, "sample": sample.time, "pose": place, "age": age})
+            if body is not None and self.suit is not None:
+                recorder.note(now, {"suit": self.suit.raw()})
         return [order]
+
+    def _body(self, pose: BodyPose, now: float, at: float) -> BodyPose | None:
+        """Return the pose of the suit, with the head where the headset is; None without one, or while it is silent."""
+        suit = self.suit
+        if suit is None or pose.head is None:
+            return None
+        if self._dressed is not suit:
+            suit.dress(*self._figure)
+            self._dressed = suit
+        return suit.pose(np.array(pose.head), now, at)
 
     def move_to(self, avatar: str) -> None:
         """Move another avatar from now on, of another trial."""
@@ -151,17 +177,18 @@ class VrParticipant:
             found: dict[str, Any] = dict(self.stream.latency.summary())
             clock = self.stream.clock
             found |= {
-                "avatar": self.avatar, "id": self._id, "lost_tracking": self.stream.is_lost(now),
+                "avatar": self.avatar, "room": self.room, "id": self._id, "lost_tracking": self.stream.is_lost(now),
                 "refused": self.refused, "reason": self.reason, "offset": clock.offset if clock else None,
                 "round_trip": round(1e3 * clock.delay, 3) if clock else None,
-                "steps": self.stream.latency.count("motion"),
+                "suit": self.suit is not None, "steps": self.stream.latency.count("motion"),
+                "picture_delay": self.stream.settings.picture_delay + self._picture_delay,
                 "gaze": getattr(sample, "gaze", None) is not None,
                 "hands": [name for name in ("left", "right") if getattr(sample, name, None) is not None],
             }  # fmt: skip
             if sample is not None and sample.head is not None:
-                place = self.rooms.rooms["person"].place.apply(sample.head[:3])
+                place = self.rooms.room(self.room).place.apply(sample.head[:3])
                 found["place"] = place.round(3).tolist()
-                found["margin"] = self.rooms.margin("person", float(place[0]), float(place[1]))
+                found["margin"] = self.rooms.margin(self.room, float(place[0]), float(place[1]))
         return found
 
     def _note_clock(self, now: float) -> None:
@@ -179,7 +206,12 @@ class VrParticipant:
         self._simulation = simulation
         people, number, agent = avatar_body(simulation, self.avatar)
         self._estimator = BodyEstimator(BodySize.of(people, number))
+        self._figure, self._dressed = (people, number), None
         self._contacts = AvatarContacts(agent)
+        spec = next(one for one in simulation.trial.avatars if one.name == self.avatar)
+        with self._lock:
+            self.stream.trial_delay, self.stream.trial_noise = spec.delay, spec.noise
+            self._picture_delay = spec.picture_delay
         self._id = int(simulation.world.ids[0, agent])
 
     def _tell_contacts(self, simulation: Simulation, now: float) -> None:

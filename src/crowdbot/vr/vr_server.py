@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 from urllib.parse import quote
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
+from crowdbot.bridges import parse_binding
 from crowdbot.core import CrowdbotError, InputError
 from crowdbot.web import DESKS, AppServer, Desk
 
@@ -19,16 +20,32 @@ from .headset_window import HeadsetWindow
 from .vr_desk import VrDesk
 from .vr_participant import VrParticipant
 
-__all__ = ["VR_DESKS", "VrServer"]
+__all__ = ["VR_DESKS", "VrServer", "with_captures"]
 
 VR_DESKS: tuple[type[Desk], ...] = (*DESKS, VrDesk)
 """The tabs of the app with that for virtual reality."""
+
 MESSAGE = 1 << 16
 """Largest message of a headset [B]."""
 SILENCE = 5.0
 """Time [s] without a message after which the connection to a headset is closed."""
 WAITING = 200
 """Messages that may wait for a headset; more are left out."""
+
+
+def with_captures(desks: Sequence[type[Desk]], captures: Sequence[str]) -> tuple[type[Desk], ...]:
+    """Return the tabs of an app whose session opens motion capture, such as ``xsens:9763=participant``.
+
+    Raises:
+        InputError: a text has another form.
+
+    >>> [desk for desk in with_captures(VR_DESKS, ["xsens:9763=guest"]) if desk.name == "vr"][0].first_captures
+    ('xsens:9763=guest',)
+    """
+    for text in captures:
+        parse_binding(text)
+    more = {"first_captures": tuple(captures), "__doc__": VrDesk.__doc__}
+    return tuple(type("VrDesk", (desk,), more) if issubclass(desk, VrDesk) else desk for desk in desks)
 
 
 class VrServer(AppServer):
@@ -108,7 +125,7 @@ class VrServer(AppServer):
         await socket.prepare(request)
         self._sockets.add(socket)
         try:
-            await _Headset(desk, socket).serve()
+            await _Headset(desk, socket).serve(request.query.get("avatar", ""))
         finally:
             self._sockets.discard(socket)
         return socket
@@ -129,10 +146,10 @@ class _Headset:
         self._loop = asyncio.get_running_loop()
         self._waiting: asyncio.Queue[dict[str, Any]] = asyncio.Queue(WAITING)
 
-    async def serve(self) -> None:
-        """Exchange messages until the headset is gone or silent."""
+    async def serve(self, wish: str) -> None:
+        """Exchange messages until the headset is gone or silent; it wishes to move an avatar, such as before a cut."""
         try:
-            person = await self._loop.run_in_executor(None, self._desk.arrive, self._tell)
+            person = await self._loop.run_in_executor(None, self._desk.arrive, self._tell, wish)
         except CrowdbotError as error:
             await self._socket.send_str(json.dumps({"refused": str(error)}))
             await self._socket.close(code=1013, message=b"refused")

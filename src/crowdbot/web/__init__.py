@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from .desk import Desk, DeskWindows, Resource
     from .experiments import ExperimentDesk
     from .jobs import JobBoard
-    from .scene import PlayerFile, app_measurements, scene_description, scene_frame, scene_resource, write_player
+    from .scene import PlayerFile, scene_description, scene_frame, scene_resource, write_player
+    from .scene.measurements import app_measurements
     from .session_limits import CLASSROOM, SessionLimits
     from .simulator import LiveRun, SimulatorDesk, navigator_orders
     from .state_frame import StateFrame
-    from .tabs import DESKS, opened_first, with_streams
+    from .tabs import DESKS, FirstView, opened_first, with_streams
     from .window import CREDIT, Window
     from .workspace import Workspace
 
@@ -37,17 +38,17 @@ __getattr__, __dir__ = lazy_exports(
         "jobs": ["JobBoard"],
         "scene": [
             "PlayerFile",
-            "app_measurements",
             "scene_description",
             "scene_frame",
             "scene_resource",
             "write_player",
         ],
+        "scene.measurements": ["app_measurements"],
         "session_limits": ["CLASSROOM", "SessionLimits"],
         "experiments": ["ExperimentDesk"],
         "simulator": ["LiveRun", "SimulatorDesk", "navigator_orders"],
         "state_frame": ["StateFrame"],
-        "tabs": ["DESKS", "opened_first", "with_streams"],
+        "tabs": ["DESKS", "FirstView", "opened_first", "with_streams"],
         "window": ["CREDIT", "Window"],
         "workspace": ["Workspace"],
     },
@@ -65,6 +66,7 @@ __all__ = [
     "Desk",
     "DeskWindows",
     "ExperimentDesk",
+    "FirstView",
     "JobBoard",
     "LiveRun",
     "PlayerFile",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import hmac
 import ipaddress
 import secrets
@@ -12,6 +14,8 @@ __all__ = ["COOKIE", "AccessPolicy", "is_loopback"]
 
 COOKIE = "crowdbot-token"
 """Name of the cookie that holds the token after the first page."""
+SIGNATURE = 32
+"""Characters of the signature in the token of a session: 192 bits."""
 
 
 def is_loopback(host: str) -> bool:
@@ -50,6 +54,28 @@ class AccessPolicy:
     def needs_token(self) -> bool:
         """Whether requests need the token."""
         return not is_loopback(self.host)
+
+    def session_token(self, session: str) -> str:
+        """Return the token that opens one session only: its name and a signature by the token of the server.
+
+        >>> AccessPolicy("0.0.0.0", "secret").session_token("anna").partition(".")[0]
+        'anna'
+        """
+        digest = hmac.new(self.token.encode(), b"session:" + session.encode(), hashlib.sha256).digest()
+        return f"{session}.{base64.urlsafe_b64encode(digest).decode()[:SIGNATURE]}"
+
+    def opens(self, token: str, path: str) -> bool:
+        """Return whether the token of a session opens an address of the server: the page, or what its session has.
+
+        >>> policy = AccessPolicy("0.0.0.0", "secret")
+        >>> token = policy.session_token("anna")
+        >>> [policy.opens(token, path) for path in ("/", "/api/anna/socket", "/api/ben/socket")]
+        [True, True, False]
+        """
+        session = token.partition(".")[0]
+        if not hmac.compare_digest(token.encode(), self.session_token(session).encode()):
+            return False
+        return not path.startswith("/api/") or path.startswith(f"/api/{session}/")
 
     def refusal(self, host: str, origin: str | None, token: str | None) -> str | None:
         """Return why a request is refused, or None if it is allowed.

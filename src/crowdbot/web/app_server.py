@@ -138,12 +138,16 @@ class AppServer:
         finally:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
+            connected = runner.server
             await runner.cleanup()
             closing = [asyncio.wrap_future(DeskThread("closing").call(one.close)) for one in self.sessions.values()]
             if closing:  # a desk that is still busy then ends with the program
                 await asyncio.wait(closing, timeout=CLOSING)
             self.sessions.clear()
-            await asyncio.sleep(0.2)  # connections that windows have cut are closed by the loop
+            for _ in range(50):  # connections that windows have cut are closed by the loop
+                await asyncio.sleep(0.1)
+                if connected is None or not connected.connections:
+                    break
 
     def application(self) -> web.Application:
         """Return the aiohttp application."""
@@ -191,7 +195,17 @@ class AppServer:
     def _refusal(self, request: web.Request) -> str | None:
         """Return why a request is refused, or None if it is allowed."""
         token = request.query.get("token") or request.cookies.get(COOKIE)
+        if self.access.needs_token and token and self.access.opens(token, request.path):
+            token = self.access.token
         return self.access.refusal(request.host, request.headers.get("Origin"), token)
+
+    def session_address(self, session: str) -> str:
+        """Return the address of the page of a session; its token, if one is needed, opens this session only."""
+        if not NAME.match(session):
+            raise InputError(f"session {session!r:.60}: expected 1 to 40 letters, digits, - or _")
+        base = self.url.partition("?")[0]
+        token = f"?token={self.access.session_token(session)}" if self.access.needs_token else ""
+        return f"{base}{token}#session={session}"
 
     def _cookie(self, request: web.Request) -> str:
         """Return the name of the cookie for the token in the address of an allowed request."""

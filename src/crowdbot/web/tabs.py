@@ -4,47 +4,83 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from crowdbot.core import InputError, did_you_mean
+from crowdbot.data import detect_format
 from crowdbot.trials import builtin_trials
 
 from .desk import Desk
 from .editor import EditorDesk
-from .evaluation import EvaluationDesk
+from .evaluation import RESULT, EvaluationDesk
 from .experiments import ExperimentDesk, chosen_streams
 from .jobs.job_desk import JobDesk
 from .prediction import PredictionDesk
 from .simulator import SimulatorDesk
 
-__all__ = ["DESKS", "opened_first", "with_streams"]
+__all__ = ["DESKS", "FirstView", "opened_first", "with_streams"]
 
 DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk, JobDesk)
 
 
-def opened_first(desks: tuple[type[Desk], ...], name: str) -> tuple[tuple[type[Desk], ...], tuple[Path, ...]]:
-    """Return the desks of a server whose sessions first show a trial or an episode, and the folder to be readable.
+class FirstView(NamedTuple):
+    """What a server shows first.
+
+    Fields:
+        desks: the tabs.
+        readable: folders that may be read besides the folder of the app.
+        tab: name of the tab; empty for the one that every page shows first.
+    """
+
+    desks: tuple[type[Desk], ...]
+    readable: tuple[Path, ...]
+    tab: str
+
+
+def opened_first(desks: tuple[type[Desk], ...], name: str) -> FirstView:
+    """Return the desks of a server whose sessions first show a trial, an episode, a recording or an evaluation.
 
     Args:
         desks: the tabs.
-        name: trial file, episode file, or name of a built-in trial.
+        name: trial file, episode file, recording of people, ``result.json`` of an evaluation or its folder, or name of
+            a built-in trial.
 
     Raises:
-        InputError: there is no such file or trial.
+        InputError: there is no such file or trial, or the file is none of these.
 
-    >>> opened_first(DESKS, "frontal")[0][0].first
+    >>> opened_first(DESKS, "frontal").desks[0].first
     'frontal'
     """
     path = Path(name)
-    if path.suffix in (".xml", ".mcap"):
-        if not path.is_file():
-            raise InputError(f"--open {name}: the file does not exist")
+    if path.is_dir() and (path / RESULT).is_file():
+        path /= RESULT
+    if path.is_file():
+        own: type[Desk] = _desk_of(path)
         first, readable = str(path.resolve()), [path.resolve().parent]
     elif name in builtin_trials():
-        first, readable = name, list[Path]()
+        own, first, readable = SimulatorDesk, name, list[Path]()
+    elif path.suffix:
+        raise InputError(f"--open {name}: the file does not exist")
     else:
         raise InputError(f"--open {name}: no file and no built-in trial{did_you_mean(name, builtin_trials())}")
-    own = type("SimulatorDesk", (SimulatorDesk,), {"first": first, "__doc__": SimulatorDesk.__doc__})
-    return tuple(own if desk is SimulatorDesk else desk for desk in desks), tuple(readable)
+    shown = type(own.__name__, (own,), {"first": first, "__doc__": own.__doc__})
+    return FirstView(
+        tuple(shown if desk is own else desk for desk in desks), tuple(readable), "" if own is desks[0] else own.name
+    )
+
+
+def _desk_of(path: Path) -> type[Desk]:
+    """Return the tab that shows a file."""
+    if path.suffix in (".xml", ".mcap"):
+        return SimulatorDesk
+    if path.name == RESULT:
+        return EvaluationDesk
+    try:
+        detect_format(path)
+    except InputError as error:
+        kinds = "a trial (.xml), an episode (.mcap), the result.json of an evaluation"
+        raise InputError(f"--open {path}: neither {kinds} nor a recording of people: {error}") from None
+    return PredictionDesk
 
 
 def with_streams(desks: tuple[type[Desk], ...], send: bool, record: Sequence[str]) -> tuple[type[Desk], ...]:

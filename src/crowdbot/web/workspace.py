@@ -10,7 +10,7 @@ from xml.parsers import expat  # expat loads no external entity; declarations of
 
 from crowdbot.core import InputError
 
-__all__ = ["SESSIONS", "Workspace"]
+__all__ = ["SESSIONS", "Workspace", "shown_path"]
 
 SESSIONS = "sessions"
 """Folder of the other sessions, which lie inside the folder of the first one."""
@@ -118,6 +118,12 @@ class Workspace:
         if not name or "\0" in name or len(name) > 1000:
             raise InputError(f"name of a file = {name!r:.60}: expected 1 to 1000 characters")
         return (self.folder / name).resolve()
+
+
+def shown_path(path: str | Path) -> str:
+    """Return a path relative to the working folder, if the file is inside it."""
+    here = Path.cwd()
+    return os.path.relpath(path, here) if Path(path).is_relative_to(here) else str(path)
 
 
 def _root(path: Path) -> str:

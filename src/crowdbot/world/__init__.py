@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from crowdbot.world.robots.drives.tricycle import TricycleDrive
     from crowdbot.world.robots.drives.wheeled import WheeledDrive
 
+    from .buildings.building import Building, BuildingDoor, BuildingPart, read_building
     from .crowd.arrivals import arrival_counts
     from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
@@ -46,10 +47,14 @@ if TYPE_CHECKING:
         check_room,
         move_agent,
         next_person,
+        push_person,
         redirect_person,
         remove_person,
         slot_of,
     )
+    from .physics.balance.ability import BalanceAbility, balance_ability, maximum_lean
+    from .physics.balance.balance import Balance
+    from .physics.balance.fall import Fall
     from .physics.body_region_limits import (
         BODY_REGION_LIMITS,
         BodyRegionLimits,
@@ -70,6 +75,7 @@ if TYPE_CHECKING:
     from .reactions.reaction import REACTIONS, RobotReaction
     from .reactions.robot_reactions import RobotReactions, people_by_reaction, reaction_codes
     from .rendering.camera import CameraImages, SceneCamera
+    from .rendering.gl_context import graphics_library
     from .rendering.renderer import Renderer
     from .robot_contract import check_robot
     from .robots.guess_table import Guess
@@ -80,7 +86,8 @@ if TYPE_CHECKING:
     from .robots.robot_import import RobotFolder, import_robot
     from .robots.wheel import Wheel
     from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
-    from .urdf import RobotModel, describe, read_urdf
+    from .stage_appearance import FLOORS, RANDOM, SKIES, WALL_SURFACES, StageAppearance
+    from .urdf import RobotModel, describe, read_mesh, read_urdf
     from .urdf.link_surface import LinkSurface, link_surface
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
@@ -90,6 +97,8 @@ _LAZY = {
     "AckermannDrive": "robots.drives.ackermann",
     "Avatars": "crowd.avatars",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
+    "Balance": "physics.balance.balance",
+    "BalanceAbility": "physics.balance.ability",
     "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
     "CameraImages": "rendering.camera",
@@ -110,6 +119,15 @@ _LAZY = {
     "HeadingWaypoint": "crowd.waypoint",
     "JourneyAssignment": "crowd.journey",
     "LeggedDrive": "robots.drives.legged",
+    "Building": "buildings.building",
+    "BuildingDoor": "buildings.building",
+    "BuildingPart": "buildings.building",
+    "read_building": "buildings.building",
+    "FLOORS": "stage_appearance",
+    "RANDOM": "stage_appearance",
+    "SKIES": "stage_appearance",
+    "StageAppearance": "stage_appearance",
+    "WALL_SURFACES": "stage_appearance",
     "LightSource": "physics.stage",
     "LimbCapsules": "physics.people_motion",
     "LinkSurface": "urdf.link_surface",
@@ -129,6 +147,7 @@ _LAZY = {
     "PropBody": "physics.stage",
     "REACTIONS": "reactions.reaction",
     "Renderer": "rendering.renderer",
+    "graphics_library": "rendering.gl_context",
     "ReplayedPeople": "crowd.replay",
     "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
@@ -155,6 +174,7 @@ _LAZY = {
     "add_person": "live_changes",
     "add_rings": "physics.scenery",
     "arrival_counts": "crowd.arrivals",
+    "balance_ability": "physics.balance.ability",
     "builtin_robots": "robots.robot",
     "check_goal": "live_changes",
     "check_joint": "robots.joint_motion",
@@ -164,6 +184,7 @@ _LAZY = {
     "describe": "urdf",
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
+    "Fall": "physics.balance.fall",
     "free_joints": "robots.joint_motion",
     "give_pose": "crowd.avatars",
     "import_robot": "robots.robot_import",
@@ -171,6 +192,7 @@ _LAZY = {
     "join_worlds": "environments",
     "joint_states": "robots.wheel_encoders",
     "link_surface": "urdf.link_surface",
+    "maximum_lean": "physics.balance.ability",
     "move_agent": "live_changes",
     "next_person": "live_changes",
     "move_joint": "robots.joint_motion",
@@ -180,7 +202,9 @@ _LAZY = {
     "put_environments": "environments",
     "quaternion": "urdf.transforms",
     "reaction_codes": "reactions.robot_reactions",
+    "read_mesh": "urdf",
     "read_urdf": "urdf",
+    "push_person": "live_changes",
     "redirect_person": "live_changes",
     "region_of": "physics.body_region_limits",
     "remove_person": "live_changes",
@@ -202,11 +226,20 @@ _LAZY = {
 
 __all__ = [
     "BODY_REGION_LIMITS",
+    "FLOORS",
+    "RANDOM",
     "REACTIONS",
+    "SKIES",
+    "WALL_SURFACES",
     "AckermannDrive",
     "Avatars",
+    "Balance",
+    "BalanceAbility",
     "BodyContactEvent",
     "BodyRegionLimits",
+    "Building",
+    "BuildingDoor",
+    "BuildingPart",
     "CameraImages",
     "CommandDelay",
     "Contact",
@@ -219,6 +252,7 @@ __all__ = [
     "DoorLeaf",
     "Doors",
     "Drive",
+    "Fall",
     "Ground",
     "GroundPart",
     "Guess",
@@ -255,6 +289,7 @@ __all__ = [
     "SceneCamera",
     "SensorMount",
     "SkidSteerDrive",
+    "StageAppearance",
     "SteeredTwists",
     "TableBody",
     "TreeBody",
@@ -269,6 +304,7 @@ __all__ = [
     "add_person",
     "add_rings",
     "arrival_counts",
+    "balance_ability",
     "builtin_robots",
     "check_goal",
     "check_joint",
@@ -280,20 +316,25 @@ __all__ = [
     "frame",
     "free_joints",
     "give_pose",
+    "graphics_library",
     "import_robot",
     "integrate_twist",
     "join_worlds",
     "joint_states",
     "link_surface",
+    "maximum_lean",
     "move_agent",
     "move_joint",
     "next_person",
     "people_by_reaction",
     "permitted_speed",
     "planar_world",
+    "push_person",
     "put_environments",
     "quaternion",
     "reaction_codes",
+    "read_building",
+    "read_mesh",
     "read_urdf",
     "redirect_person",
     "region_of",

@@ -13,7 +13,8 @@ from crowdbot.core import InputError
 from .crowd.journey import JOURNEY, STOP
 from .crowd.routing import WAY, fresh
 from .crowd.source import TOP
-from .planar_live_changes import widen
+from .phases.pushes import PUSH, push_memory
+from .planar_live_changes import rest_robot, widen
 from .world import World
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "check_room",
     "move_agent",
     "next_person",
+    "push_person",
     "redirect_person",
     "remove_person",
     "slot_of",
@@ -89,6 +91,8 @@ def move_agent(world: World, person: int, x: float, y: float, heading: float | N
     if heading is not None:
         changes["heading"] = math.pi - (math.pi - heading) % (2.0 * math.pi)
     _put(world, environment, slot, **changes)
+    if slot in world.twists:
+        rest_robot(world, slot, [environment])
 
 
 def redirect_person(world: World, person: int, x: float, y: float, environment: int = 0) -> None:
@@ -96,6 +100,39 @@ def redirect_person(world: World, person: int, x: float, y: float, environment: 
     slot = slot_of(world, person, environment)
     memory = {JOURNEY: -1.0} if JOURNEY in world.scene.memory else {}
     _put(world, environment, slot, memory, goal=(x, y))
+
+
+def push_person(
+    world: World, person: int, force: tuple[float, float], duration: float, mass: float, height: float,
+    environment: int = 0,
+) -> None:  # fmt: skip
+    """Push a person with a force for a time, from the next step on; a push replaces the rest of an earlier one.
+
+    Args:
+        world: the world.
+        person: id of the person.
+        force: x, y [N].
+        duration: time [s].
+        mass: mass of the person [kg].
+        height: stature [m].
+        environment: index of the environment.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.world import PlanarWorld
+    >>> standing = Scene.of([[0.0, 0.0]], goal=[[0.0, 0.0]], preferred_speed=[0.0], max_speed=[0.0])
+    >>> world = PlanarWorld(standing, ORCA(), {}, dt=0.1)
+    >>> push_person(world, 0, (300.0, 0.0), 0.2, 75.0, 1.75)
+    >>> [world.step({}).velocity[0, 0, 0].round(2).item() for _ in range(3)]
+    [0.39, 0.66, 0.52]
+    """
+    slot, own = slot_of(world, person, environment), _own(world, environment)
+    row = environment if own is world else 0
+    scene = own.scene
+    pushes = push_memory(
+        scene.memory.get(PUSH), scene.shape, row, slot, person, np.array(force), duration, mass, height
+    )
+    own.scene = scene.replace(memory={**scene.memory, PUSH: pushes})
 
 
 def add_person(

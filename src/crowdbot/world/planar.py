@@ -32,6 +32,7 @@ from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
 from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, step_models, widen_robots
 from .phases.people_exchange import exchange_people
+from .phases.pushes import without_drift
 from .phases.robot_contacts import find_contacts
 from .phases.robot_motion import check_commands, initial_twist, move_robots
 from .planar_checks import check_arguments
@@ -182,7 +183,8 @@ class PlanarWorld(PlanarLiveChanges):
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
         elapsed = self.environment_time.age
-        earlier, crowd = self._step_crowd(hide_ghosts(before, self.ghosts))
+        earlier, crowd = self._step_crowd(hide_ghosts(without_drift(before), self.ghosts))
+        crowd = self._push_people(crowd)
         if self.avatars is not None:
             earlier, before, crowd = self.avatars.move(self, earlier, before, crowd, elapsed)
         after = self._step_robots(before, crowd, asked)
@@ -271,9 +273,11 @@ class PlanarWorld(PlanarLiveChanges):
         """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
         return hide_ghosts(self.scene if environment is None else self.environment_scene(environment), self.ghosts)
 
-    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+    def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
         """Return the scene with bodies; see :class:`World`."""
-        return self._embodied(environment).scene(hide_ghosts(self.environment_scene(environment), self.ghosts), skins)
+        scene = hide_ghosts(self.environment_scene(environment), self.ghosts)
+        only = self.avatars.people if avatars and self.avatars is not None else None
+        return self._embodied(environment).scene(scene, skins, only)
 
     @property
     def renderer(self) -> Renderer:

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Twist, Walls, did_you_mean
+from crowdbot.core import InputError, Scene, Twist, Walls, did_you_mean
 from crowdbot.world.robots.drives.drive import Drive, Twists
 
 from .crowd.environment_rows import pad_ids, pad_scene, set_models
+from .phases.pushes import drift_people
 from .robots.robot import Robot
 from .world import World
 
@@ -32,6 +33,7 @@ __all__ = [
     "prop_number",
     "put_robot_at",
     "remove_robot_at",
+    "rest_robot",
     "robot_environments",
     "widen",
     "without_last",
@@ -134,6 +136,11 @@ def remove_robot_at(world: Any, agent: int, environments: Sequence[int]) -> None
     active = world.scene.active.copy()
     active[environments, agent] = False
     world.scene = world.scene.replace(active=active)
+    rest_robot(world, agent, environments)
+
+
+def rest_robot(world: Any, agent: int, environments: Sequence[int]) -> None:
+    """Let a robot stand in some environments: its velocity is 0 until the next command."""
     left = ~np.isin(np.arange(len(world.slots)), environments)
     twist = world.twists[agent]
     still = Twists(*(np.where(left, part, 0.0) for part in (twist.forward, twist.turn, twist.left)))
@@ -229,6 +236,10 @@ class PlanarLiveChanges(World):
             bodies.robots = {**bodies.robots, agent: robot}
             bodies.forget_renderer()
         return agent
+
+    def _push_people(self, crowd: Scene) -> Scene:
+        """Return the scene after the motion by pushes in a step of the crowd."""
+        return drift_people(crowd, self.ids, self.dt)
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
         """Remove a robot; see :meth:`World.remove_robot`."""

@@ -16,9 +16,10 @@ from .environment_time import EnvironmentTime
 from .robots.mount import MountPlacement
 
 if TYPE_CHECKING:
-    from crowdbot.humans import People
+    from crowdbot.humans import FallPose, People
 
     from .crowd.source import PeopleSource
+    from .physics.balance.fall import Fall
     from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.people_motion import PeopleMotion
     from .physics.stage import PhysicsStage, PropBody
@@ -127,6 +128,19 @@ class World(ABC):
         """Return the contact events of one environment so far, ordered by start time."""
         return self.contact_events
 
+    def falls_of(self, environment: int) -> tuple[Fall, ...]:
+        """Return the falls of people in one environment so far, ordered by start time; also those that go on."""
+        return self.falls
+
+    def fall_poses_of(self, environment: int) -> Mapping[int, FallPose]:
+        """Return the poses of people who lean, fall or lie in one environment, by agent."""
+        return {} if self.people is None else self.people.fall_poses(self.scene.active[environment])
+
+    @property
+    def falls(self) -> tuple[Fall, ...]:
+        """All falls of people so far; empty in a world in which nobody loses balance."""
+        return ()
+
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All contact events so far, ordered by start time; empty in a world without forces."""
@@ -152,12 +166,13 @@ class World(ABC):
         """Return the scene in the plane, with the outlines of props among the walls: of all environments, or of one."""
 
     @abstractmethod
-    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+    def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
         """Return the scene of one environment with the bodies of people, robots and props, for range sensors.
 
         Args:
             skins: level of detail of people's skins; None for capsules.
             environment: index of the environment.
+            avatars: whether only avatars have a skin, and everybody else capsules.
 
         Raises:
             InputError: the world has no bodies, see :meth:`embody`.

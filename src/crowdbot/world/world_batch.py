@@ -25,10 +25,12 @@ from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
 
 if TYPE_CHECKING:
+    from crowdbot.humans import FallPose
     from crowdbot.world.crowd.source import PeopleSource
     from crowdbot.world.rendering.renderer import Renderer
     from crowdbot.world.robots.robot import Robot
 
+    from .physics.balance.fall import Fall
     from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.stage import PhysicsStage, PropBody
 
@@ -217,9 +219,9 @@ class WorldBatch(World):
         found: Scene = self.worlds[environment].plane_scene()
         return found
 
-    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+    def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
         """Return the scene of one environment with bodies; see :class:`World`."""
-        found: Scene = self.worlds[environment].body_scene(skins)
+        found: Scene = self.worlds[environment].body_scene(skins, avatars=avatars)
         return found
 
     def environment_scene(self, environment: int) -> Scene:
@@ -246,6 +248,16 @@ class WorldBatch(World):
     def contact_events_of(self, environment: int) -> tuple[BodyContactEvent, ...]:
         """Return the contact events of one environment so far."""
         found: tuple[BodyContactEvent, ...] = self.worlds[environment].contact_events
+        return found
+
+    def falls_of(self, environment: int) -> tuple[Fall, ...]:
+        """Return the falls of people in one environment so far."""
+        found: tuple[Fall, ...] = self.worlds[environment].falls
+        return found
+
+    def fall_poses_of(self, environment: int) -> Mapping[int, FallPose]:
+        """Return the poses of people out of balance in one environment, by agent."""
+        found: Mapping[int, FallPose] = self.worlds[environment].fall_poses_of(0)
         return found
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:

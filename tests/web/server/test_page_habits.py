@@ -10,6 +10,9 @@ CONTROLS = (
     "textarea:not([disabled]), a[href], [tabindex='0']"
 )
 
+SCENE = "globalThis.crowdbot?.tab('simulator')?.picture.scene"
+"""The picture of the simulator."""
+
 
 def show(page, tab):
     page.get_by_role("tab", name=re.compile(tab, re.IGNORECASE)).click()
@@ -59,6 +62,17 @@ def test_every_control_is_reached_with_the_tab_key_and_shows_it(page, tab):
     assert without == []
 
 
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing_on_the_tabs_of_an_empty_start(page, axe, theme):
+    page.get_by_label("View", exact=True).select_option("2d")
+    page.evaluate("theme => document.documentElement.dataset.theme = theme", theme)
+    found = {}
+    for tab in ("simulator", *TABS):
+        show(page, tab)
+        found[tab] = axe(page)
+    assert found == {tab: [] for tab in found}
+
+
 def test_tabs_and_a_job_by_keyboard_alone(page):
     page.evaluate("document.getElementById('tab-simulator').focus()")
     for _ in range(5):
@@ -102,9 +116,15 @@ def test_a_link_shows_the_same(page, browser, app):
     page.get_by_label("Jump to frame").fill("17")
     page.get_by_label("Jump to frame").press("Enter")
     page.locator("canvas.scene[data-frame='10']").wait_for()
+    page.get_by_role("checkbox", name="Numbers").check()
+    page.get_by_role("checkbox", name="Observed").uncheck()
+    page.evaluate("crowdbot.tab('prediction').store.emit('plot', {variable: 'cost', person: 3})")
     other.goto("about:blank")
     other.goto(page.url)
     other.locator("canvas.scene[data-frame='10']").wait_for()
+    assert other.get_by_role("checkbox", name="Numbers").is_checked()
+    assert not other.get_by_role("checkbox", name="Observed").is_checked()
+    assert "curves=cost%403" in other.url
 
     show(page, "jobs")
     page.get_by_role("button", name="Generate data").click()
@@ -112,4 +132,34 @@ def test_a_link_shows_the_same(page, browser, app):
     other.goto(page.url)
     other.get_by_role("form", name="Generate data").wait_for()
     assert other.evaluate("crowdbot.keys.active") == "jobs"
+    other.close()
+
+
+@pytest.mark.parametrize(("view", "eye"), [("2d", [1.5, -2.0, 40.0]), ("3d", [-3.0, -4.0, 5.0, 1.0, 2.0, 0.5])])
+def test_a_link_shows_the_same_view_of_the_simulator(page, browser, app, view, eye):
+    page.wait_for_function(f"() => {SCENE}.info().people > 20")
+    if view == "2d":
+        page.get_by_label("View", exact=True).select_option("2d")
+        page.wait_for_function(f"() => {SCENE}.info().calls === 0 && {SCENE}.info().people > 20")
+    page.wait_for_function("() => crowdbot.tab('simulator').status.state === 'running'")
+    page.evaluate("crowdbot.connection.call('simulator.pause')")
+    page.evaluate("crowdbot.tab('simulator').inspector.select({ kind: 'person', id: 7 })")
+    page.wait_for_function("() => location.hash.includes('chosen=person-7')")
+    page.get_by_label("Camera", exact=True).select_option("free")
+    page.get_by_role("checkbox", name="Zones").uncheck()
+    page.evaluate(f"(eye) => {SCENE}.setViewpoint(eye)", eye)
+    page.locator("canvas.stage").dispatch_event("pointerup")
+    page.wait_for_function(
+        f"() => new URLSearchParams(location.hash.slice(1)).get('eye') === '{','.join(f'{one:g}' for one in eye)}'"
+    )
+    other = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
+    other.set_default_timeout(180_000)
+    other.goto(page.url)
+    other.wait_for_function(
+        f"() => {SCENE}?.info().people > 20 && crowdbot.tab('simulator').inspector.chosen?.id === 7"
+    )
+    other.wait_for_function(f"(eye) => {SCENE}.viewpoint().every((one, i) => Math.abs(one - eye[i]) < 0.02)", arg=eye)
+    assert other.evaluate(f"{SCENE}.camera") == "free"
+    assert other.evaluate(f"{SCENE}.layers().find((one) => one.name === 'zones').visible") is False
+    assert f"view={view}" in other.url or view == "3d"
     other.close()

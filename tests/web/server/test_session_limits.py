@@ -2,14 +2,19 @@
 
 import asyncio
 import io
+from dataclasses import replace
 
 import aiohttp
 import pytest
 from job_functions import count
 
+from crowdbot.bridges.stacks.stack_program import StackProgram
 from crowdbot.cli import main
-from crowdbot.core import InputError
-from crowdbot.web import CLASSROOM, AppServer, Desk, SessionLimits, Workspace, command
+from crowdbot.core import PROGRAMS, InputError
+from crowdbot.navigation import ProcessNavigator
+from crowdbot.simulation import RunFailureWarning, simulate
+from crowdbot.trials import load_trial
+from crowdbot.web import CLASSROOM, AccessPolicy, AppServer, Desk, SessionLimits, Workspace, command
 from crowdbot.web.jobs import JobWork
 
 
@@ -123,6 +128,33 @@ def test_the_first_session_does_not_see_the_files_of_others(tmp_path):
             act("sessions/anna/secret.xml")
 
 
+def test_the_address_of_a_student_opens_no_other_session(tmp_path):
+    access = AccessPolicy("0.0.0.0", "secret")
+
+    async def talk(server, _):
+        base, _, rest = server.session_address("anna").replace("0.0.0.0", "127.0.0.1").partition("?")
+        token, _, session = rest.partition("#")
+        assert session == "session=anna"
+        async with aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as client:
+            answers = []
+            for path in (f"?{token}", "app.js", "api/anna/notes/x", "api/ben/notes/x", "api/main/socket"):
+                async with client.get(base + path) as answer:  # after the first one, with the cookie
+                    answers.append(answer.status)
+            origin = {"Origin": base.rstrip("/")}
+            async with client.ws_connect(f"{base}api/anna/socket", headers=origin) as socket:
+                assert (await socket.receive_json())["data"]["session"] == "anna"
+            with pytest.raises(aiohttp.WSServerHandshakeError):
+                await client.ws_connect(f"{base}api/ben/socket", headers=origin)
+        forged = token.replace("anna", "ben")
+        async with aiohttp.ClientSession() as client, client.get(f"{base}api/ben/notes/x?{forged}") as answer:
+            answers.append(answer.status)
+        with pytest.raises(InputError, match="expected 1 to 40 letters"):
+            server.session_address("../x")
+        return answers
+
+    assert serve(tmp_path, talk, host="0.0.0.0", access=access) == [200, 200, 404, 403, 403, 403]
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -141,10 +173,11 @@ def test_limits_of_the_command_line_reach_the_server(monkeypatch, tmp_path):
 
     servers = []
 
-    async def stop(server, browser, vr):
+    async def stop(server, browser, vr, place, students):
         servers.append(server)
 
     monkeypatch.setattr(app, "_serve", stop)
+    monkeypatch.setenv(PROGRAMS, "")
     folder = ["--folder", str(tmp_path), "--no-browser"]
     assert main(["app", *folder]) == 0
     assert main(["app", *folder, "--host", "0.0.0.0", "--disk-space", "500", "--idle-time", "5"]) == 0
@@ -152,6 +185,32 @@ def test_limits_of_the_command_line_reach_the_server(monkeypatch, tmp_path):
     assert servers[1].limits.disk == 500e6
     assert servers[1].limits.idle == 300.0
     assert servers[1].limits.cpu == CLASSROOM.cpu
+
+
+@pytest.mark.parametrize(
+    ("words", "may"),
+    [([], True), (["--host", "0.0.0.0"], False), (["--host", "0.0.0.0", "--programs"], True)],
+)
+def test_trials_on_a_server_for_other_machines_start_no_programs(monkeypatch, tmp_path, words, may):
+    from crowdbot.cli import app
+
+    async def stop(server, browser, vr, place, students):
+        assert server.access.needs_token == bool(words)
+
+    monkeypatch.setattr(app, "_serve", stop)
+    monkeypatch.setenv(PROGRAMS, "")
+    assert main(["app", "--folder", str(tmp_path), "--no-browser", *words]) == 0
+    written = tmp_path / "written"
+    navigator = ProcessNavigator(command=f"touch {written}", sandbox=False)
+    trial = load_trial("frontal", duration=1.0)
+    trial = replace(trial, robots=(replace(trial.robots[0], navigator=navigator),))
+    with pytest.warns(
+        RunFailureWarning, match="its process has ended" if may else "navigator touch is a program, and this server"
+    ):
+        simulate(trial, 0)
+    assert written.exists() == may
+    with pytest.raises(InputError, match="cannot be started" if may else "'none-such' is a program, and this server"):
+        StackProgram("none-such", {}, {})
 
 
 def test_a_limit_is_positive():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,8 @@ MOST_LINES = len(COLORS)
 SHOWN_ROWS = 80
 ANIMATIONS = (".gif", ".mp4", ".webp")
 """Endings of animations."""
+FAINTEST = 0.06
+"""Opacity of the least probable futures."""
 FRAMES_A_ROW = 3
 """Images per row of the recording in an animation."""
 
@@ -113,9 +115,7 @@ def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
     axis.set_xlabel(f"x [{recording.tracks.units}]", fontsize=8)
     axis.set_ylabel(f"y [{recording.tracks.units}]", fontsize=8)
     axis.set_title(f"{recording.name}, frame {frame}", fontsize=10)
-    lines = [
-        axis.plot([], [], color=color, linewidth=1.6, label=name)[0] for color, name in zip(COLORS, paths, strict=False)
-    ]
+    lines = [_fan(axis, color, name, tracks) for color, (name, tracks) in zip(COLORS, paths.items(), strict=False)]
     discs = axis.scatter([], [], s=60, color=PEOPLE, edgecolor="black", linewidth=0.5, zorder=3)
     figure.legend(*axis.get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
     steps = recording.predict
@@ -124,7 +124,7 @@ def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
         reach = number / FRAMES_A_ROW
         discs.set_offsets(_at(past, future, reach))
         for line, tracks in zip(lines, paths.values(), strict=True):
-            line.set_data(*_until(tracks, reach))
+            line.set_segments(_until(tracks.path, reach))
 
     _animate(figure, draw, steps * FRAMES_A_ROW + 1, max(1, round(FRAMES_A_ROW / past.dt)), file)
     return file
@@ -151,25 +151,50 @@ def _animate(figure: Any, draw: Callable[[int], None], images: int, fps: int, fi
         raise
 
 
-def _paths(
-    spec: PredictorSpec, recording: Recording, past: Windows, evaluation: Evaluation
-) -> list[NDArray[np.float64]]:
-    """Return one line ``[T + 1, 2]`` per person and future with a weight, from the last observed row on."""
+class _Futures(NamedTuple):
+    """Futures of all people.
+
+    Fields:
+        path: one line ``[T + 1, 2]`` per person and future with a weight, from the last observed row on.
+        opacity: of each line, in proportion to the probability of the future; 1 for the most probable one of a person.
+    """
+
+    path: list[NDArray[np.float64]]
+    opacity: list[float]
+
+
+def _paths(spec: PredictorSpec, recording: Recording, past: Windows, evaluation: Evaluation) -> _Futures:
+    """Return the futures of the people of a window."""
     predictor = spec.build(recording)
     forecast = predictor.predict(past, recording.predict, evaluation.samples, stream(evaluation.seed, "animate"))
-    who = np.flatnonzero(past.present[0, -1])
-    futures = np.flatnonzero(forecast.weight[0] > 0.0)
-    return [
-        np.concatenate([past.position[0, -1:, person], forecast.position[0, k, :, person]])
-        for person in who
-        for k in futures
-    ]
+    own = forecast.person_weight
+    found = _Futures([], [])
+    for person in np.flatnonzero(past.present[0, -1]):
+        weight = forecast.weight[0] if own is None else own[0, :, person]
+        order = np.argsort(weight, kind="stable")  # the most probable one is drawn last
+        for k in order[weight[order] > 0.0]:
+            found.path.append(np.concatenate([past.position[0, -1:, person], forecast.position[0, k, :, person]]))
+            found.opacity.append(max(FAINTEST, float(weight[k] / weight.max())))
+    return found
 
 
-def _background(axis: Any, past: Windows, future: Windows, paths: dict[str, list[NDArray[np.float64]]]) -> None:
+def _fan(axis: Any, color: str, name: str, futures: _Futures) -> Any:
+    """Add the futures of a predictor to a picture as a fan, with a line in the legend."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgba
+
+    axis.plot([], [], color=color, linewidth=1.6, label=name)
+    colors = [to_rgba(color, one) for one in futures.opacity]
+    single = min(futures.opacity, default=1.0) == 1.0  # single trajectories are drawn above the fans of others
+    fan = LineCollection([], colors=colors, linewidths=1.6, zorder=2.5 if single else 2.0)
+    axis.add_collection(fan)
+    return fan
+
+
+def _background(axis: Any, past: Windows, future: Windows, paths: dict[str, _Futures]) -> None:
     for ring in past.walls:
         axis.plot(*np.vstack([ring, ring[:1]]).T, color="black", linewidth=1)
-    everything = [point for tracks in paths.values() for point in tracks]
+    everything = [point for tracks in paths.values() for point in tracks.path]
     for person in np.flatnonzero(past.present[0, -1]):
         seen = past.position[0, past.present[0, :, person], person]
         later = future.position[0, future.present[0, :, person], person]
@@ -195,18 +220,15 @@ def _at(past: Windows, future: Windows, reach: float) -> NDArray[np.float64]:
     return np.asarray(place[known])
 
 
-def _until(tracks: list[NDArray[np.float64]], reach: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the lines up to ``reach`` rows ahead as one line with gaps."""
-    if not tracks:
-        return np.zeros(0), np.zeros(0)
+def _until(tracks: list[NDArray[np.float64]], reach: float) -> list[NDArray[np.float64]]:
+    """Return the lines up to ``reach`` rows ahead."""
     row = int(reach)
-    jobs = []
+    found = []
     for track in tracks:
         after = min(row + 1, len(track) - 1)
         tip = track[min(row, len(track) - 1)] + (reach - row) * (track[after] - track[min(row, len(track) - 1)])
-        jobs.append(np.vstack([track[: row + 1], tip, [np.nan, np.nan]]))
-    joined = np.concatenate(jobs)
-    return joined[:, 0], joined[:, 1]
+        found.append(np.vstack([track[: row + 1], tip]))
+    return found
 
 
 def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

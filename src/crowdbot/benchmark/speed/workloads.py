@@ -17,8 +17,8 @@ from crowdbot.recording import run
 from .measurement import Gauge, Measurement
 from .ray_casting import mujoco_rays, people_with_limbs
 from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
-from .skinning import posing_and_skinning
-from .tracking import tracking
+from .skinning import posing_and_skinning, rays_of_skins
+from .tracking import TRACKING_PAIRS, scan_prediction, tracking
 
 __all__ = ["crowd", "measurements"]
 
@@ -66,11 +66,15 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     if sys.platform != "win32":  # Windows does not report the peak memory of a process
         found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "lidar-1080-batch": _lidar_batch, "trial": _trial}
-    found["track-1080"] = tracking
+    found |= {name: functools.partial(tracking, *pair) for name, pair in TRACKING_PAIRS.items()}
+    found["predict-scans-1080"] = scan_prediction
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
+    found |= {f"physics-{people}-balance": functools.partial(_balance, people) for people in (50, 200)}
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
+    for level in (0, 2):
+        found[f"lidar3d-16x1800-skins-{level}"] = functools.partial(rays_of_skins, level)
     found["posing-and-skinning"] = posing_and_skinning
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
         found[f"predict-{kebab_case(predictor)}"] = functools.partial(_predictor, predictor)
@@ -226,12 +230,12 @@ def _predictor(name: str) -> Measurement:
     return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
 
 
-def _physics(people: int) -> Measurement:
+def _physics(people: int, balance: bool = False) -> Measurement:
     """Time one robot among people in steps of 5 ms, with odometry and a laser scanner of limbs, both at 10 Hz."""
     from crowdbot.core import Twist
     from crowdbot.sensors import Lidar2D, SensorView
 
-    world, robot = _bodies(people)
+    world, robot = _bodies(people, balance)
     laser, body = Lidar2D(rays=1080), world.robot_body(robot)
     wheels = body.robot.mount("odometry").sensor
     _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
@@ -246,6 +250,12 @@ def _physics(people: int) -> Measurement:
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 
 
+def _balance(people: int) -> Measurement:
+    """Time the same with people who can lose their balance, against the world without balance."""
+    one, other = _physics(people, True), _physics(people)
+    return Measurement(one.unit, one.amount, one.work, "the same without balance", 0.0, other.work, other.amount)
+
+
 def _camera() -> Measurement:
     """Time images of 640 x 480 pixels with depth."""
     from crowdbot.world import SceneCamera
@@ -255,7 +265,7 @@ def _camera() -> Measurement:
     return Measurement("images/s", 1, lambda: world.render(camera, depth=True), "a camera of 10 Hz", 10.0)
 
 
-def _bodies(people: int) -> tuple[Any, int]:
+def _bodies(people: int, balance: bool = False) -> tuple[Any, int]:
     """Return a physics world with a robot in the middle of a crowd, and the agent index of the robot."""
     from crowdbot.models import ORCA
     from crowdbot.world import PhysicsWorld, Robot
@@ -267,7 +277,7 @@ def _bodies(people: int) -> tuple[Any, int]:
         radius=np.append(np.full(people, 0.25), robot.radius), external=np.append(np.zeros(people, dtype=bool), True),
         active=np.append(np.hypot(*(some.position[0] - middle).T) > robot.radius + 0.5, True),
     )  # fmt: skip
-    return PhysicsWorld(scene, ORCA(), {people: robot}, DT), people
+    return PhysicsWorld(scene, ORCA(), {people: robot}, DT, balance=balance), people
 
 
 def _trial() -> Measurement:

@@ -50,6 +50,12 @@ class ClientListener:
         self._speed = 1.0
         self._lock = threading.Lock()
 
+    @property
+    def has_channels(self) -> bool:
+        """Whether a client can send messages."""
+        with self._lock:
+            return bool(self._channels)
+
     def on_subscribe(self, client: Any, channel: Any) -> None:
         """Count a subscription."""
         self.server.note_subscription(channel.topic, 1)

@@ -66,6 +66,7 @@ class FoxgloveServer:
         """Simulated time [ns]."""
         self._server: Any = None
         self._context: Any = None
+        self._listener: ClientListener | None = None
         self._channels: dict[str, tuple[str, Any]] = {}
         self._latched: dict[str, StepMessage] = {}
         self._keep: frozenset[str] = frozenset()
@@ -101,7 +102,7 @@ class FoxgloveServer:
         self._announce(interface)
 
     def _open(self, interface: RobotInterface, inbox: Inbox) -> None:
-        listener = ClientListener(self, inbox, self._sdk.websocket)
+        self._listener = listener = ClientListener(self, inbox, self._sdk.websocket)
         logging.getLogger("foxglove").addHandler(logging.NullHandler())  # bad frames are no news for the console
         capability = self._sdk.websocket.Capability
         try:
@@ -167,9 +168,14 @@ class FoxgloveServer:
         self._server.publish_status(text, levels.get(level, kinds.Error))
 
     def wants(self, topic: str) -> bool:
-        """Return whether a client subscribes a topic, or with a final slash one that starts with it."""
+        """Return whether a client subscribes a topic, or with a final slash one that starts with it.
+
+        The time is sent to all clients, so that one that sends commands wants it.
+        """
         with self._lock:
             wanted = [one for one, count in self._wanted.items() if count > 0]
+        if self._listener is not None and self._listener.has_channels:
+            wanted.append("/clock")
         if not topic.endswith("/"):
             return topic in wanted or topic == "/clock"
         return any(one == topic[:-1] or one.startswith(topic) for one in wanted)

@@ -112,6 +112,11 @@ class CommandGuard:
         """Take the pose of the robot in the frame of the trial [m], [rad]."""
         self._pose, self._pose_time = (x, y, heading), now
 
+    @property
+    def has_pose(self) -> bool:
+        """Whether a pose has come."""
+        return self._pose is not None
+
     def note_command(self, twist: Twist, now: float) -> None:
         """Take a wanted velocity.
 

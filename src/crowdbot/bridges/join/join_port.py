@@ -77,6 +77,8 @@ class JoinPort(BridgePort):
         self.note, self.monotonic = note, monotonic
         self.captures: Sequence[OrderSource] = ()
         """Motion capture that gives poses to :meth:`note_pose` when it is asked for its orders."""
+        self.tracked = False
+        """Whether motion capture gives the pose, and odometry is ignored."""
         self._frame = StartAlignment(robot.x, robot.y, robot.heading)
         self._lock = threading.Lock()
         self._latest: tuple[float, tuple[float, float, float]] | None = None
@@ -104,6 +106,8 @@ class JoinPort(BridgePort):
 
     def _take_pose(self, x: float, y: float, heading: float) -> None:
         """Keep a pose of the odometry; runs in the thread of a transport."""
+        if self.tracked:
+            return
         with self._lock:
             self.note_pose(*self._frame.pose(x, y, heading))
 
@@ -112,6 +116,17 @@ class JoinPort(BridgePort):
         now = self.monotonic()
         self._latest = (now, (x, y, heading))
         self.guard.note_pose(x, y, heading, now)
+
+    @property
+    def has_pose(self) -> bool:
+        """Whether a pose of the robot has come."""
+        return self.guard.has_pose
+
+    def want(self, twist: Twist) -> None:
+        """Take a wanted velocity from this program."""
+        with self._lock:
+            self.guard.note_command(twist, self.monotonic())
+        self._next = 0.0
 
     def _take_stop(self, stop: bool) -> None:
         """Stop or release; runs in the thread of a transport."""

@@ -22,13 +22,14 @@ from crowdbot.sensors import Lidar2D, RGBCamera
 from crowdbot.simulation import Simulation, StepRecord
 from crowdbot.trials import Mount, Trial, load_trial
 
-__all__ = ["LOADED_BRIDGES", "BridgeLoad", "bridge_load"]
+__all__ = ["LOADED_BRIDGES", "LOAD_TOPICS", "BridgeLoad", "LoadTraffic", "bridge_load"]
 
 BEAMS, WIDTH, HEIGHT, RATE = 1080, 640, 480, 10.0
 """Beams of the scanner, size of the image [pixels], and rate of both [Hz]."""
 SECONDS, WARM = 5.0, 1.0
 """Real time that is measured, and before it [s]."""
-TOPICS = ("/robot/scan", "/robot/odom", "/tf", "/robot/camera/image")
+LOAD_TOPICS = ("/robot/scan", "/robot/odom", "/tf", "/robot/camera/image")
+"""Topics that are sent."""
 KEPT = 20
 """Number of steps whose records are sent again and again."""
 LOADED_BRIDGES = ("rosbridge", "rosbridge-cbor", "foxglove")
@@ -70,22 +71,46 @@ def bridge_load(connection: str = "rosbridge", seconds: float = SECONDS) -> Brid
     """
     if connection not in LOADED_BRIDGES:
         raise InputError(f"load of {connection!r} is not measured; measured are {', '.join(LOADED_BRIDGES)}")
-    trial = _trial()
-    simulation, frames = _frames(trial)
-    interface = RobotInterface.of(trial)
+    traffic = LoadTraffic()
+    interface = RobotInterface.of(traffic.trial)
     transport: Any = open_transport(f"{connection.partition('-')[0]}:0")
     transport.start(interface, Inbox(interface))
     try:
         with _viewer(connection, transport) as viewer:
-            steps = StepMessages(trial, {}, simulation)
-            _send(transport, steps, frames, trial.step, WARM)
-            begin, spent = time.perf_counter(), time.process_time()
-            _send(transport, steps, frames, trial.step, seconds)
-            took, spent = time.perf_counter() - begin, time.process_time() - spent
+            share, took = traffic.measure(transport, seconds)
             told = json.loads(viewer.communicate("\n", timeout=PATIENCE)[0].splitlines()[-1])
     finally:
         transport.stop()
-    return BridgeLoad(spent / took, told["messages"], told["bytes"], took)
+    return BridgeLoad(share, told["messages"], told["bytes"], took)
+
+
+class LoadTraffic:
+    """Steps with a scan of 1080 beams and an image of 640 x 480 pixels at 10 Hz, odometry and transforms at 20 Hz.
+
+    They are simulated before, so sending them costs what the bridge costs.
+    """
+
+    def __init__(self) -> None:
+        self.trial = _trial()
+        simulation, self._frames = _frames(self.trial)
+        self._steps = StepMessages(self.trial, {}, simulation)
+
+    def measure(self, transport: Transport, seconds: float) -> tuple[float, float]:
+        """Return the processor time of this process over real time while a transport sends, and the real time [s]."""
+        self.send(transport, WARM)
+        begin, spent = time.perf_counter(), time.process_time()
+        self.send(transport, seconds)
+        took = time.perf_counter() - begin
+        return (time.process_time() - spent) / took, took
+
+    def send(self, transport: Transport, seconds: float) -> None:
+        """Send steps in real time, each with a time of its own, for some seconds."""
+        begin = time.perf_counter()
+        for k in range(round(seconds / self.trial.step)):
+            time.sleep(max(0.0, begin + k * self.trial.step - time.perf_counter()))
+            frame = self._frames[k % len(self._frames)]
+            transport.publish(list(self._steps.messages(frame, lambda topic: topic in LOAD_TOPICS or _is_part(topic))))
+            transport.poll()
 
 
 def _trial() -> Trial:
@@ -113,31 +138,21 @@ def _frames(trial: Trial) -> tuple[Simulation, list[StepRecord]]:
     ]
 
 
-def _send(transport: Transport, steps: StepMessages, frames: list[StepRecord], step: float, seconds: float) -> None:
-    """Send the records in real time, each with a time of its own."""
-    begin = time.perf_counter()
-    for k in range(round(seconds / step)):
-        time.sleep(max(0.0, begin + k * step - time.perf_counter()))
-        messages = list(steps.messages(frames[k % len(frames)], lambda topic: topic in TOPICS or _is_part(topic)))
-        transport.publish(messages)
-        transport.poll()
-
-
 def _is_part(topic: str) -> bool:
-    return topic.endswith("/") and any(one == topic[:-1] or one.startswith(topic) for one in TOPICS)
+    return topic.endswith("/") and any(one == topic[:-1] or one.startswith(topic) for one in LOAD_TOPICS)
 
 
 @contextlib.contextmanager
 def _viewer(connection: str, transport: Any) -> Iterator[subprocess.Popen[str]]:
     """Start the viewer and wait until it receives all topics."""
-    words = [sys.executable, str(Path(__file__).with_name("viewer.py")), connection, str(transport.port), *TOPICS]
+    words = [sys.executable, str(Path(__file__).with_name("viewer.py")), connection, str(transport.port), *LOAD_TOPICS]
     viewer = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # noqa: S603 (own file)
     try:
         assert viewer.stdout is not None
         if viewer.stdout.readline() != "ready\n":
             raise InputError(f"the viewer of {connection} has not connected")
         end = time.monotonic() + PATIENCE
-        while not all(transport.wants(topic) for topic in TOPICS):
+        while not all(transport.wants(topic) for topic in LOAD_TOPICS):
             if time.monotonic() > end:
                 raise InputError(f"the viewer of {connection} has not subscribed")
             transport.poll()

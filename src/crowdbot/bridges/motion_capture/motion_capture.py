@@ -16,6 +16,7 @@ from crowdbot.humans import BodyPose, PoseTrack, RestSkeleton, rest_skeleton
 from crowdbot.simulation import AvatarOrder, Order, RobotPoseOrder
 from crowdbot.trials import Trial, people_appearance
 
+from .foot_lock import FootLock
 from .pose_stream import MotionSample, PoseStream
 from .retargeting import Retargeting
 from .rotations import rotate_about, yaw_of
@@ -75,7 +76,7 @@ class MotionCapture:
         self.stream, self.bindings = stream, tuple(bindings)
         self.refused, self.reason = 0, ""
         """Number of samples that are no pose of a person, and why the last one is not."""
-        self._fits: dict[str, tuple[SourceSkeleton, Retargeting]] = {}
+        self._fits: dict[str, tuple[SourceSkeleton, FootLock]] = {}
         self._bodies: dict[str, RestSkeleton] = {}
         self._ready = False
 
@@ -96,7 +97,8 @@ class MotionCapture:
 
     def check(self, trial: Trial) -> None:
         """Raise :class:`InputError` if a target is not an external avatar or mirrored robot of the trial."""
-        robots = [robot.name for robot in trial.robots if robot.pose is not None and robot.pose.source == "external"]
+        mirrors = [(one.name, one.mirror) for one in trial.robots]
+        robots = [name for name, mirror in mirrors if mirror is not None and mirror.source == "external"]
         avatars = [avatar.name for avatar in trial.avatars if avatar.source == "external"]
         known = [*avatars, *robots]
         for name in self.unbound(known):
@@ -156,15 +158,15 @@ class MotionCapture:
         position = sample.position @ turn.T + np.array([binding.x, binding.y, 0.0])
         rotation = turn @ sample.rotation
         if sample.skeleton is not None and binding.target in self._bodies:
-            return self._fit(binding.target, sample.skeleton).pose(position, rotation)
+            return self._fit(binding.target, sample.skeleton).pose(sample.number, sample.time, position, rotation)
         k = 0 if sample.skeleton is None else sample.skeleton.roles["pelvis"]
         x, y = (round(float(one), 6) for one in position[k, :2])
         return BodyPose(x, y, round(wrap_angle(yaw_of(rotation[k])), 6))
 
-    def _fit(self, target: str, skeleton: SourceSkeleton) -> Retargeting:
+    def _fit(self, target: str, skeleton: SourceSkeleton) -> FootLock:
         known = self._fits.get(target)
         if known is None or known[0] is not skeleton:
-            known = self._fits[target] = (skeleton, Retargeting(skeleton, self._bodies[target]))
+            known = self._fits[target] = (skeleton, FootLock(Retargeting(skeleton, self._bodies[target])))
         return known[1]
 
 

@@ -6,8 +6,7 @@ import ipaddress
 import select
 import socket
 import struct
-import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from types import TracebackType
 
 import numpy as np
@@ -18,24 +17,22 @@ from crowdbot.core import InputError
 from . import natnet_packets as packets
 from .csv_take import FROM_Y_UP
 from .natnet_packets import Body, BoneDescription, Frame, ServerInfo
-from .pose_receiver import BadDatagram, PoseReceiver, bind_socket
+from .pose_receiver import BadDatagram, bind_socket
 from .pose_stream import MotionSample
-from .rotations import normalize, to_matrices
+from .rotations import to_matrices
+from .server_stream import AGAIN, ServerStream, checked_pose
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["PORT", "NatNetStream"]
+__all__ = ["NatNetStream"]
 
 Floats = NDArray[np.float64]
 PORT, DATA_PORT = 1510, 1511
 """Default ports of the server for commands and for multicast frames."""
-FARTHEST = 1e4
-AGAIN = 0.5
-"""Time [s] between two requests, and between two signs of life."""
 LOCAL_OFFSET = 0.003
 """Largest difference [m] between positions and offsets of bones if they are relative to their parents."""
 
 
-class NatNetStream(PoseReceiver):
+class NatNetStream(ServerStream):
     """Receives rigid bodies and skeletons from Motive 2 or newer (NatNet 3.0 to 4.x), by unicast or multicast.
 
     Subjects are called as in Motive. The server says which axis is up; without an answer, it is y, as by default. The
@@ -43,7 +40,7 @@ class NatNetStream(PoseReceiver):
 
     Args:
         server: address of the computer that runs Motive.
-        port: command port of the server.
+        port: command port of the server; None: 1510.
         monotonic: local clock [s].
         timeout: longest time [s] to wait for the server.
 
@@ -51,15 +48,10 @@ class NatNetStream(PoseReceiver):
         InputError: (when opened) the server does not answer, or is too old.
     """
 
-    def __init__(
-        self,
-        server: str = "127.0.0.1",
-        port: int = PORT,
-        monotonic: Callable[[], float] = time.monotonic,
-        timeout: float = 5.0,
-    ) -> None:
-        super().__init__(monotonic)
-        self.server, self.port, self.timeout = server, port, timeout
+    default_port = PORT
+
+    def prepare(self) -> None:
+        """Set what is known before a server has answered."""
         self.info: ServerInfo | None = None
         self.axes = FROM_Y_UP
         self._names: dict[int, str] = {}
@@ -228,9 +220,8 @@ class NatNetStream(PoseReceiver):
     def _poses(self, bodies: list[Body]) -> tuple[Floats, Floats]:
         """Return positions [m] and rotation matrices with x forward, y left, z up."""
         position = np.array([body.position for body in bodies])
-        quaternion = normalize(np.array([[body.rotation[3], *body.rotation[:3]] for body in bodies]))
-        if quaternion is None or not np.all(np.abs(position) <= FARTHEST):
-            raise BadDatagram("a frame has values that are not finite or out of range")
+        quaternion = np.array([[body.rotation[3], *body.rotation[:3]] for body in bodies])
+        position, quaternion = checked_pose(position, quaternion)
         return position @ self.axes.T, self.axes @ to_matrices(quaternion) @ self.axes.T
 
 

@@ -51,15 +51,26 @@ class Retargeting:
             position: positions of the joints of the actor ``[J, 3]`` [m]; z is up, the floor at 0.
             rotation: rotations of the segments relative to the rest pose ``[J, 3, 3]``.
         """
+        whole, pelvis = self.place(position, rotation)
+        return self.whole_pose(whole, pelvis, yaw_of(rotation[self.source.roles["pelvis"]]))
+
+    def place(self, position: Floats, rotation: Floats) -> tuple[Floats, Floats]:
+        """Return the rotations of all bones ``[28, 3, 3]`` and the place of the pelvis joint [m]."""
         whole = rotation[self._joint] @ self._offset
-        heading = yaw_of(rotation[self.source.roles["pelvis"]])
+        hips = position[self._hips].mean(axis=0)
+        hips[2] = self._ankle + self.scale * (hips[2] - self._soles)
+        return whole, hips - whole[0] @ self._hip_offset
+
+    def foot_height(self, position: Floats, side: str) -> float:
+        """Return the height [m] of an ankle of the actor above its place in standing."""
+        return float(position[self.source.roles[f"foot_{side}"], 2]) - self._soles
+
+    def whole_pose(self, whole: Floats, pelvis: Floats, heading: float) -> BodyPose:
+        """Return the pose with given rotations of all bones, place of the pelvis joint [m] and heading [rad]."""
         parents = np.array(self.body.parents)
         above = whole[np.maximum(parents, 0)]
         above[0] = rotate_about([0.0, 0.0, 1.0], heading)
         bones = to_quaternions(np.swapaxes(above, -1, -2) @ whole)
-        hips = position[self._hips].mean(axis=0)
-        hips[2] = self._ankle + self.scale * (hips[2] - self._soles)
-        pelvis = hips - whole[0] @ self._hip_offset
         x, y, z = (round(float(one), DIGITS) for one in pelvis)
         numbers = [x, y, z, *(round(one, DIGITS) for one in bones.ravel().tolist())]
         return BodyPose(x, y, round(heading, DIGITS), skeleton=tuple(numbers))

@@ -13,14 +13,16 @@ from .bvh import read_bvh
 from .csv_take import read_csv
 from .motion_capture import MotionBinding, MotionCapture
 from .mvnx import read_mvnx
-from .natnet import PORT as NATNET_PORT
 from .natnet import NatNetStream
 from .pose_stream import PoseStream
+from .server_stream import ServerStream
+from .vrpn import VrpnStream
 from .xsens import PORT as XSENS_PORT
 from .xsens import XsensStream
 
-__all__ = ["open_stream", "parse_captures"]
+__all__ = ["open_stream", "parse_binding", "parse_captures"]
 
+SERVERS: dict[str, type[ServerStream]] = {"natnet": NatNetStream, "vrpn": VrpnStream}
 FILES = {".bvh": read_bvh, ".csv": read_csv, ".mvnx": read_mvnx}
 FORM = "SOURCE[#SUBJECT]=NAME[@X,Y,HEADING]"
 EXAMPLES = "xsens:9763=guide, natnet:192.168.0.5#Cart=twin or walk.bvh=guide@4,0,3.14"
@@ -31,7 +33,7 @@ def open_stream(address: str) -> PoseStream:
 
     Args:
         address: ``xsens:PORT`` or ``xsens:HOST:PORT`` (the address to listen on), ``natnet:SERVER`` or
-            ``natnet:SERVER:PORT``, or the path of a .bvh, .csv or .mvnx file.
+            ``natnet:SERVER:PORT``, ``vrpn:SERVER`` or ``vrpn:SERVER:PORT``, or the path of a .bvh, .csv or .mvnx file.
 
     Raises:
         InputError: the address or file is not valid.
@@ -43,14 +45,16 @@ def open_stream(address: str) -> PoseStream:
     if kind == "xsens":
         host, port = _host_port(rest, "127.0.0.1", XSENS_PORT, address)
         return XsensStream(host, port)
-    if kind == "natnet":
+    if kind in SERVERS:
         server, _, port_text = rest.partition(":")
-        return NatNetStream(server or "127.0.0.1", _port(port_text, NATNET_PORT, address))
+        stream = SERVERS[kind]
+        return stream(server or "127.0.0.1", _port(port_text, stream.default_port, address))
     path = Path(address)
     reader = FILES.get(path.suffix.lower())
     if reader is None:
         raise InputError(
-            f"motion capture {address!r} must be xsens:PORT, natnet:SERVER or a file that ends in {', '.join(FILES)}"
+            f"motion capture {address!r} must be xsens:PORT, natnet:SERVER, vrpn:SERVER or a file that ends in"
+            f" {', '.join(FILES)}"
         )
     return reader(read_bytes(path), str(path))
 
@@ -90,7 +94,7 @@ def parse_captures(texts: Sequence[str], trial: Trial) -> list[MotionCapture]:
     """
     found: dict[str, list[MotionBinding]] = {}
     for text in texts:
-        address, binding = _parse_binding(text)
+        address, binding = parse_binding(text)
         found.setdefault(address, []).append(binding)
     targets = [one.target for bindings in found.values() for one in bindings]
     for name in targets:
@@ -108,7 +112,15 @@ def parse_captures(texts: Sequence[str], trial: Trial) -> list[MotionCapture]:
     return captures
 
 
-def _parse_binding(text: str) -> tuple[str, MotionBinding]:
+def parse_binding(text: str) -> tuple[str, MotionBinding]:
+    """Return the address of a stream and the binding that a text such as ``xsens:9763=guide`` describes.
+
+    Raises:
+        InputError: the text has another form.
+
+    >>> parse_binding("walk.bvh=guide@1,2")[1].y
+    2.0
+    """
     match = re.fullmatch(r"(?P<source>[^#=]+)(#(?P<subject>[^=]+))?=(?P<name>[^@=]+)(@(?P<origin>.*))?", text)
     if match is None:
         raise InputError(f"motion capture {text!r} must have the form {FORM}, such as {EXAMPLES}")

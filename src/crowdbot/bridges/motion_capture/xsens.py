@@ -15,7 +15,8 @@ from crowdbot.core import InputError
 
 from .pose_receiver import BadDatagram, PoseReceiver, bind_socket
 from .pose_stream import MotionSample
-from .rotations import normalize, to_matrices
+from .rotations import to_matrices
+from .server_stream import FARTHEST, checked_pose
 from .source_skeleton import SourceSkeleton
 from .xsens_segments import SEGMENTS, xsens_skeleton
 
@@ -26,7 +27,6 @@ PORT = 9763
 """Default port of the network streamer."""
 HEADER = struct.Struct(">6sIBBIBBBBHH")
 ITEM = np.dtype([("id", ">i4"), ("position", ">f4", 3), ("rotation", ">f4", 4)])
-FARTHEST = 1e4
 """Largest coordinate [m]."""
 MOST_NAME = 100
 CENTIMETERS = 2.0
@@ -173,10 +173,7 @@ def _body(data: bytes) -> tuple[Floats, Floats]:
         raise BadDatagram(f"a pose has {len(rows)} body segments instead of {len(SEGMENTS)}")
     position, quaternion = np.empty((len(SEGMENTS), 3)), np.empty((len(SEGMENTS), 4))
     position[order], quaternion[order] = rows["position"], rows["rotation"]
-    unit = normalize(quaternion)
-    if unit is None or not np.all(np.abs(position) <= FARTHEST):
-        raise BadDatagram("a pose has values that are not finite or out of range")
-    return position, unit
+    return checked_pose(position, quaternion)
 
 
 def _read_name(payload: bytes) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import subprocess
 import sys
 import threading
@@ -17,6 +18,7 @@ from crowdbot.core import InputError, import_optional
 from crowdbot.recording import StepMessage
 
 from .memory_keys import SENSORS, memory_values
+from .odometry_follower import OdometryFollower
 
 __all__ = ["NaoqiBridge"]
 
@@ -29,7 +31,7 @@ class NaoqiBridge:
     """Overwrites the sensor values in the memory of a Pepper with those of the first virtual robot.
 
     Programs on the robot, and its own collision avoidance where it reads the memory, then see virtual people. The
-    velocity of the robot, which its motion service tells, moves the virtual robot. Nothing is ever commanded to the
+    virtual robot follows the odometry of the real one, which its motion service tells. Nothing is ever commanded to the
     robot.
 
     The robot rewrites its memory in each cycle, so that some reads still see the real values; :attr:`share` tells how
@@ -57,7 +59,8 @@ class NaoqiBridge:
         """Real time [s] between two rewrites of the robot, 0 if there were none."""
         self.connections = 0
         """Number of connections until now."""
-        self._robot, self._topics = "", dict[str, str]()
+        self._robot, self._truth, self._topics = "", "", dict[str, str]()
+        self._follower: OdometryFollower | None = None
         self._inbox: Inbox | None = None
         self._process: subprocess.Popen[str] | None = None
         self._thread: threading.Thread | None = None
@@ -93,7 +96,8 @@ class NaoqiBridge:
             topics = {f"/{robot.name}/{sensor}": sensor for sensor in SENSORS}
             self._topics = {topic: one for topic, one in topics.items() if known.get(topic) == SENSORS[one][0]}
             if self._topics:
-                self._robot = robot.name
+                self._robot, self._truth = robot.name, f"/{robot.name}/ground_truth/odom"
+                self._follower = OdometryFollower(robot.x, robot.y, robot.heading)
                 break
         else:
             raise InputError(f'naoqi needs a robot with sensors such as {", ".join(SENSORS)}: <robot type="pepper">')
@@ -125,13 +129,15 @@ class NaoqiBridge:
             self._take(json.loads(line))
 
     def _take(self, fields: dict[str, Any]) -> None:
-        if "velocity" in fields and self._inbox is not None:
-            forward, left, turn = fields["velocity"]
+        if "velocity" in fields and self._inbox is not None and self._follower is not None:
+            forward, left, turn = self._follower.command(fields["velocity"], fields["pose"])
             twist = {"linear": {"x": forward, "y": left}, "angular": {"z": turn}}
             with contextlib.suppress(InputError):  # the robot is not driven from outside
                 self._inbox.receive(f"/{self._robot}/cmd_vel", twist, self.name)
         elif "connected" in fields:
             self.connections += 1
+            if self._follower is not None:
+                self._follower.align()
             self._connected.set()
         elif "lost" in fields:
             self._problem = fields["lost"]
@@ -142,7 +148,10 @@ class NaoqiBridge:
         """Write the readings of a step into the memory."""
         values: dict[str, float] = {}
         for one in messages:
-            if one.topic in self._topics:
+            if one.topic == self._truth and self._follower is not None:
+                place, turn = one.message.pose.pose.position, one.message.pose.pose.orientation
+                self._follower.note_virtual(place.x, place.y, 2.0 * math.atan2(turn.z, turn.w))
+            elif one.topic in self._topics:
                 values |= memory_values(self._topics[one.topic], one.message)
         if values:
             self._send(values)
@@ -165,10 +174,11 @@ class NaoqiBridge:
         """Do nothing: the memory of a robot has no place for remarks."""
 
     def wants(self, topic: str) -> bool:
-        """Return whether a topic is written into the memory."""
+        """Return whether a topic is written into the memory, or tells where the virtual robot is."""
+        needed = (*self._topics, self._truth)
         if not topic.endswith("/"):
-            return topic in self._topics
-        return any(one == topic[:-1] or one.startswith(topic) for one in self._topics)
+            return topic in needed
+        return any(one == topic[:-1] or one.startswith(topic) for one in needed)
 
     def stop(self) -> None:
         """Disconnect; the robot rewrites all values within a cycle."""

@@ -6,7 +6,8 @@ standard library only. Lines of JSON come in, and go out:
     in   {"values": {KEY: VALUE}}          virtual values, which replace those of the same keys
     out  {"connected": true}               the memory can be written
     out  {"lost": TEXT}                    the robot does not answer; it tries again each second
-    out  {"velocity": [X, Y, TURN]}        velocity of the robot, forward and left [m/s], turn [rad/s]
+    out  {"velocity": [X, Y, TURN], "pose": [X, Y, HEADING]}   of the robot: forward, left [m/s], turn [rad/s]; its
+                                           odometry [m], [rad]; at each change, and 20 times a second
     out  {"reads": N, "virtual": N, "cycle": SECONDS}   reads at random moments, those with virtual values; the cycle
 
 The process ends when its input ends. The robot then rewrites all values within a cycle.
@@ -35,7 +36,9 @@ SHORTEST, LONGEST = 0.004, 0.05
 TOLERANCE = 1e-5
 """Difference of a value that the robot has stored with 32 bits."""
 POLL, TOLD = 0.05, 0.5
-"""Mean time [s] between two reads that are counted, and two looks at the velocity; time between two counts."""
+"""Mean time [s] between two reads that are counted, and time between two lines with their numbers."""
+MOTION, REPEAT = 0.01, 0.05
+"""Time [s] between two looks at the motion, and longest time between two lines with it."""
 
 
 class Output:
@@ -90,6 +93,7 @@ class RobotLink:
         self._news = threading.Event()
         self._cycle, self._probe, self._writes = RewriteCycle(), 0, 0
         self._reads = self._virtual = 0
+        self._velocity, self._told = list[float](), 0.0
 
     def take(self, values: dict[str, float]) -> None:
         """Take values for the memory."""
@@ -157,10 +161,13 @@ class RobotLink:
             session = _session(self.url)
             memory = session.service("ALMemory")
             motion = session.service("ALMotion") if _has_motion(session) else None
-            told = 0.0
-            while not lost.wait(random.uniform(0.2, 1.8) * POLL):  # noqa: S311, moments without a pattern
+            told = due = 0.0
+            while not lost.wait(max(0.0, min(MOTION, due - time.monotonic()))):
                 if motion is not None:
-                    self._tell({"velocity": [float(one) for one in motion.getRobotVelocity()]})
+                    self._tell_motion(motion)
+                if time.monotonic() < due:
+                    continue
+                due = time.monotonic() + random.uniform(0.2, 1.8) * POLL  # noqa: S311, moments without a pattern
                 if values := self._values:
                     self._count(memory, values)
                 if time.monotonic() - told > TOLD:
@@ -169,6 +176,14 @@ class RobotLink:
             session.close()
         except Exception:  # the writer tells it
             lost.set()
+
+    def _tell_motion(self, motion: Any) -> None:
+        """Tell the motion of the robot if its velocity has changed, or a moment has passed."""
+        velocity, now = [float(one) for one in motion.getRobotVelocity()], time.monotonic()
+        if velocity == self._velocity and now - self._told < REPEAT:
+            return
+        self._velocity, self._told = velocity, now
+        self._tell({"velocity": velocity, "pose": [float(one) for one in motion.getRobotPosition(True)]})
 
     def _count(self, memory: Any, values: dict[str, float]) -> None:
         found = memory.getListData(list(values))

@@ -10,8 +10,8 @@ from crowdbot.core import InputError
 
 __all__ = ["MOST_TEXT", "FrameReader", "field"]
 
-MOST_TEXT = 1 << 20
-"""Largest size of a frame, and of all waiting fragments of a client [characters]."""
+MOST_TEXT = 4 << 20
+"""Largest size of a frame, and of all waiting fragments of a client [characters]: a camera image fits."""
 DEEPEST = 40
 """Largest depth of a frame."""
 MOST_PARTS, MOST_MESSAGES = 10_000, 16

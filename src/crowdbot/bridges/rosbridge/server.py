@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from aiohttp import WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, web
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
@@ -32,6 +32,9 @@ MOST_CLIENTS, MOST_STEPS = 64, 200
 HEARTBEAT = 10.0
 """Real time [s] between two pings; a client that does not answer in half of it is disconnected."""
 STARTUP = 10.0
+MOST_FRAME = 2 * MOST_TEXT
+"""Largest frame [bytes] that is read whole, so that its sender is told the limit; a larger one cuts the connection."""
+TOO_LARGE = f"a frame may have at most {MOST_TEXT >> 20} MiB".encode()
 BATCH = 64
 """Largest number of frames after which other clients have their turn."""
 
@@ -191,7 +194,7 @@ class RosbridgeServer:
             return web.Response(status=403, text=problem)
         if len(self._sockets) >= MOST_CLIENTS:
             return web.Response(status=503, text=f"{MOST_CLIENTS} clients are connected")
-        socket = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=MOST_TEXT, compress=False, timeout=1.0)
+        socket = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=MOST_FRAME, compress=False, timeout=1.0)
         await socket.prepare(request)
         news = asyncio.Event()
         session = ClientSession(self._graph, news.set)
@@ -199,7 +202,9 @@ class RosbridgeServer:
         sender = asyncio.create_task(_send(socket, session, news))
         try:
             async for message in socket:
-                if message.type == WSMsgType.TEXT:
+                if message.type == WSMsgType.TEXT and len(message.data) > MOST_TEXT:
+                    await socket.close(code=WSCloseCode.MESSAGE_TOO_BIG, message=TOO_LARGE)
+                elif message.type == WSMsgType.TEXT:
                     session.handle(message.data)
                     await asyncio.sleep(0)
                 elif message.type == WSMsgType.BINARY:

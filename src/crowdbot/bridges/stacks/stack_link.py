@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.bridges.instant_repeat import InstantRepeat
 from crowdbot.bridges.ros2.domain_lock import lock_domain
 from crowdbot.bridges.transport import Transport
 from crowdbot.bridges.transports import open_transport
 from crowdbot.core import InputError
 from crowdbot.navigation import Ros2Navigator, RosbridgeNavigator
-from crowdbot.simulation import Order, RobotControl, Simulation
+from crowdbot.simulation import Order, RobotControl, Simulation, VelocityOrder
 
 from .stack_port import StackPort
 from .stack_program import StackProgram
@@ -28,8 +29,6 @@ LOOK = 0.02
 """Longest real time [s] between two looks at the program."""
 ENDING = 1.0
 """Real time [s] in which a program that has disconnected may end; then its exit status is told."""
-REPEAT, SETTLED = 0.5, 0.3
-"""Real time [s] after which the first instant is sent again, and without commands before the first step is taken."""
 
 
 class StackLink:
@@ -55,6 +54,7 @@ class StackLink:
         self._transport, places, environment = self._open_transport()
         self._port = StackPort(simulation.trial, [self._transport], robots, navigator.truth)
         self._begun = self._closed = False
+        self._held = ""
         try:
             self._port.start()
             if isinstance(navigator, RosbridgeNavigator):
@@ -101,7 +101,20 @@ class StackLink:
             self._port.publish(simulation)
             self._wait(simulation, due)
         found = [*kept, *self._port.take_orders(simulation)]
-        return [one for one in found if not self._is_dropped(one, due, simulation)]
+        found = [one for one in found if not self._is_dropped(one, due, simulation)]
+        if not self._held:
+            return found
+        stops = [VelocityOrder(robot=one.robot.name, source=self._transport.name) for one in controls]
+        return [*(one for one in found if not isinstance(one, VelocityOrder)), *stops]
+
+    def hold(self, stop: bool, reason: str) -> str:
+        """Replace the velocities of the program by 0, or use them again; it goes on deciding meanwhile."""
+        self._held = reason if stop else ""
+        return ""
+
+    def problems(self) -> list[str]:
+        """Return nothing: the run fails with the program."""
+        return []
 
     def _is_dropped(self, order: Order, due: Sequence[RobotControl], simulation: Simulation) -> bool:
         """Return whether a velocity command comes between two decisions, or after the deadline."""
@@ -112,20 +125,17 @@ class StackLink:
 
     def _wait_for_start(self, simulation: Simulation, names: set[str]) -> None:
         """Wait for the first commands; programs that connect later get the first instant again."""
-        inbox, begin = self._port.inbox, time.perf_counter()
-        sent, latest, count = begin, begin, inbox.count.received
-        while names - inbox.commanded or time.perf_counter() - latest < SETTLED:
-            now = time.perf_counter()
+        inbox, begin, repeat = self._port.inbox, time.perf_counter(), InstantRepeat()
+        repeat.begin(self._port.is_heard, inbox.count.velocities, len(names), unasked=True)
+        while names - inbox.commanded or not repeat.is_settled(inbox.count.velocities):
             self._check(began=False)
-            if now - begin > self.navigator.start:
-                raise InputError(self._failure(f"did not send a command within {self.navigator.start:g} s"))
-            if names - inbox.commanded and now - sent > REPEAT:
-                self._port.publish(simulation)
-                sent = now
+            if names - inbox.commanded:
+                if time.perf_counter() - begin > self.navigator.start:
+                    raise InputError(self._failure(f"did not send a command within {self.navigator.start:g} s"))
+                if repeat.must_send(self._port.is_heard):
+                    self._port.publish(simulation)
             self._port.serve(simulation)
             inbox.wait(LOOK)
-            if inbox.count.received != count:
-                count, latest = inbox.count.received, time.perf_counter()
         self.seconds.append(math.nan)  # it connects and loads its parts
 
     def _wait(self, simulation: Simulation, due: Sequence[RobotControl]) -> None:

@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Mapping
 from typing import IO
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, check_programs
 
 __all__ = ["StackProgram"]
 
@@ -40,6 +40,7 @@ class StackProgram:
     """
 
     def __init__(self, command: str, places: Mapping[str, object], environment: Mapping[str, str]) -> None:
+        check_programs(f"{command[:80]!r}")
         words = shlex.split(command)
         for name, value in places.items():
             words = [word.replace(f"{{{name}}}", str(value)) for word in words]

@@ -7,16 +7,20 @@ number of the reply, and payload. The text ``stop`` ends the simulation.
 
 from __future__ import annotations
 
+import base64
+import io
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from crowdbot.core import InputError
 
-__all__ = ["ChallengeRequest", "format_reply", "read_request"]
+__all__ = ["NO_PICTURE", "ChallengeRequest", "encode_picture", "format_reply", "read_request"]
 
 LONGEST = 4096
 """Largest size of a request [bytes]."""
+NO_PICTURE, QUALITY = "JPG", 80
+"""Payload of the camera while there is no picture, and quality of pictures."""
 CONTROLS = "inprfls"
 """Letters of ``sim_control``: idle, next, previous, reset, first, last, stop."""
 
@@ -79,6 +83,16 @@ def _numbers(key: str, value: str, count: int) -> list[float]:
     if len(found) != count or not all(map(math.isfinite, found)):
         raise InputError(f"{key}={value[:40]!r} must have {count} finite numbers")
     return found
+
+
+def encode_picture(image: Any) -> str:
+    """Return a ``sensor_msgs/Image`` of colours as a JPEG file in base64."""
+    from PIL import Image  # slow to import, and needed for robots with cameras only
+
+    size = (int(image.width), int(image.height))
+    stream = io.BytesIO()
+    Image.frombytes("RGB", size, bytes(image.data)).save(stream, "JPEG", quality=QUALITY)
+    return base64.b64encode(stream.getvalue()).decode()
 
 
 def format_reply(number: int, payloads: Mapping[str, str]) -> bytes:

@@ -14,7 +14,7 @@ from crowdbot.bridges.interface import RobotInterface
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-from .challenge_protocol import LONGEST, ChallengeRequest, format_reply, read_request
+from .challenge_protocol import LONGEST, NO_PICTURE, ChallengeRequest, encode_picture, format_reply, read_request
 
 __all__ = ["ChallengeServer"]
 
@@ -31,8 +31,9 @@ class ChallengeServer:
     """A server for one client that drives in lock step: with ``--clock follow``, each request moves the time.
 
     The reply has the topics ``clock``, ``crowd`` (people: number x y), ``odom`` of the first robot (x y theta and their
-    velocities in the same frame, in m and degrees) and ``report`` (contacts). Lidar and camera are not sent. The list
-    of scenarios is the one trial, so that next, previous, first, last and reset all begin it again.
+    velocities in the same frame, in m and degrees), ``report`` (contacts) and ``camera`` (the latest picture of the
+    first colour camera of this robot). The laser is not sent. The list of scenarios is the one trial, so that next,
+    previous, first, last and reset all begin it again.
 
     Args:
         port: TCP port; 0: any free one, see :attr:`port` after :meth:`start`.
@@ -58,6 +59,8 @@ class ChallengeServer:
         self._now, self._step, self._number, self._contacts = -1, 1, 0, list[str]()
         self._interface: RobotInterface | None = None
         self._inbox: Inbox | None = None
+        self._camera = ""
+        self._picture: Any = None
 
     @classmethod
     def of(cls, address: str) -> ChallengeServer:
@@ -80,6 +83,7 @@ class ChallengeServer:
             raise InputError(f"the bridge tcp needs a robot, and trial {interface.trial.name!r} has none")
         with self._state:
             self._interface, self._inbox, self._payloads, self._now = interface, inbox, {}, -1
+            self._camera, self._picture = _colour_image(interface), None
             self._step = round(interface.trial.step * 1e9)
         if self._listener is not None:
             return
@@ -93,8 +97,11 @@ class ChallengeServer:
         self._thread.start()
 
     def wants(self, topic: str) -> bool:
-        """Return whether a topic is part of the replies."""
-        return topic in ("/clock", "/people", self._odometry, "/crowdbot/contacts")
+        """Return whether a topic is part of the replies, or with a final slash one that starts with it."""
+        sent = ("/clock", "/people", self._odometry, self._camera, "/crowdbot/contacts")
+        if not topic.endswith("/"):
+            return topic in sent
+        return any(one == topic[:-1] or one.startswith(topic) for one in sent)
 
     @property
     def _robot(self) -> str:
@@ -109,7 +116,9 @@ class ChallengeServer:
         """Keep what the next reply says."""
         with self._state:
             for one in messages:
-                if one.topic in ("/people", self._odometry, "/crowdbot/contacts"):
+                if one.topic == self._camera:
+                    self._picture = one.message
+                elif one.topic in ("/people", self._odometry, "/crowdbot/contacts"):
                     self._keep(one)
             if messages and messages[0].topic != "/map":
                 self._now = messages[-1].nanoseconds
@@ -215,7 +224,16 @@ class ChallengeServer:
         with self._state:
             self._number += 1
             report, self._contacts = "|".join(self._contacts), []
-            return format_reply(self._number, {"clock": "0", **self._payloads, "report": report})
+            picture = NO_PICTURE if self._picture is None else encode_picture(self._picture)
+            payloads = {"clock": "0", **self._payloads, "report": report, "camera": picture}
+            return format_reply(self._number, payloads)
+
+
+def _colour_image(interface: RobotInterface) -> str:
+    """Return the topic of the first colour camera of the first robot, empty without one."""
+    robot = interface.trial.robots[0].name
+    found = [one.name for one in interface.outputs if one.robot == robot and one.about == "RGBCamera"]
+    return next((name for name in found if name.endswith("/image")), "")
 
 
 def _planar(message: Any) -> tuple[float, ...]:

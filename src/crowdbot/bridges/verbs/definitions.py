@@ -1,4 +1,4 @@
-"""Types of the services of ``simulation_interfaces`` 2.1, the ROS 2 standard for the control of simulators."""
+"""Types of the services of ``simulation_interfaces`` 2.1.0, the ROS 2 standard for the control of simulators."""
 
 from __future__ import annotations
 
@@ -31,8 +31,11 @@ MESSAGES = {
         "string filter\nsimulation_interfaces/EntityCategory[] categories\nsimulation_interfaces/TagsFilter tags\n"
         "simulation_interfaces/Bounds bounds\n"
     ),
-    "Spawnable": ("string uri\nstring description\nsimulation_interfaces/Bounds spawn_bounds\n"),
-    "SpawnEntityRequest": (
+    "Spawnable": (
+        "simulation_interfaces/Resource entity_resource\nstring description\n"
+        "simulation_interfaces/Bounds spawn_bounds\n"
+    ),
+    "SpawnEntity": (
         "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\n"
         "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n"
     ),
@@ -60,7 +63,7 @@ class ServiceDefinition:
 RESULT = "simulation_interfaces/Result result\n"
 FILTERS = "simulation_interfaces/EntityFilters filters\n"
 STATE = "simulation_interfaces/EntityState state\n"
-SPAWN = MESSAGES["SpawnEntityRequest"]
+SPAWN = MESSAGES["SpawnEntity"]
 
 SERVICES = {
     "get_simulator_features": ServiceDefinition(
@@ -77,7 +80,7 @@ SERVICES = {
     "spawn_entity": ServiceDefinition("SpawnEntity", SPAWN, RESULT + "string entity_name\n", "add an entity"),
     "spawn_entities": ServiceDefinition(
         "SpawnEntities",
-        "simulation_interfaces/SpawnEntityRequest[] spawn_requests\n",
+        "simulation_interfaces/SpawnEntity[] spawn_requests\n",
         RESULT + "simulation_interfaces/SpawnResult[] results\n",
         "add entities",
     ),
@@ -93,7 +96,10 @@ SERVICES = {
         "GetEntityState", "string entity\n", RESULT + STATE, "pose and velocity of an entity"
     ),
     "set_entity_state": ServiceDefinition(
-        "SetEntityState", "string entity\n" + STATE, RESULT, "move a person or robot"
+        "SetEntityState",
+        "string entity\n" + STATE + "bool set_pose\nbool set_twist\nbool set_acceleration\n",
+        RESULT,
+        "move a person or robot",
     ),
     "get_entity_info": ServiceDefinition(
         "GetEntityInfo", "string entity\n", RESULT + "simulation_interfaces/EntityInfo info\n", "category of an entity"

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from crowdbot.bridges.commands import read_number
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Simulation
 
@@ -18,8 +19,8 @@ __all__ = ["HUMAN", "ROBOT", "Entity", "entities", "entity_of", "filter_entities
 
 ROBOT, HUMAN = 2, 3
 """Categories of ``simulation_interfaces/EntityCategory``."""
-SPHERE = 2
-"""The only type of bounds that is supported, besides none."""
+BOX, SPHERE = 1, 3
+"""Types of ``simulation_interfaces/Bounds`` that are supported, besides none."""
 LONGEST, MOST_REPEATS = 200, 4
 """Largest length of a name filter, and of the number of its repetitions, which bounds the time of a search."""
 
@@ -73,15 +74,15 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
     """Return the entities that match ``simulation_interfaces/EntityFilters``.
 
     Raises:
-        UnsupportedFeature: the filter has tags, or bounds that are no sphere.
+        UnsupportedFeature: the filter has tags, or bounds that are neither a box nor a sphere.
         InputError: the name filter or a value is not allowed.
     """
     tags, bounds = filters.get("tags") or {}, filters.get("bounds") or {}
     if tags.get("tags"):
         raise UnsupportedFeature("entities have no tags")
     points = bounds.get("points") or []
-    if points and (bounds.get("type") != SPHERE or len(points) != 2):
-        raise UnsupportedFeature("bounds must be a sphere: its centre, and its radius as x of the second point")
+    if points and (bounds.get("type") not in (BOX, SPHERE) or len(points) != 2):
+        raise UnsupportedFeature("bounds must be a box (1) or a sphere (3) with two points")
     found = entities(simulation)
     if filters.get("filter"):
         wanted = _compile(filters["filter"])
@@ -90,11 +91,22 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
         kinds = {one.get("category") if isinstance(one, Mapping) else one for one in filters["categories"]}
         found = [one for one in found if one.category in kinds]
     if points:
-        x, y, radius = float(points[0]["x"]), float(points[0]["y"]), float(points[1]["x"])
-        places = simulation.world.scene.position[0]
-        own = simulation.world.scene.radius[0]
-        found = [one for one in found if math.dist(places[one.slot].tolist(), (x, y)) <= radius + own[one.slot]]
+        found = [one for one in found if _distance(simulation, one, bounds["type"], points) <= 0.0]
     return found
+
+
+def _distance(simulation: Simulation, entity: Entity, kind: int, points: Any) -> float:
+    """Return the distance of an entity from a box or sphere in the plane [m], not above 0 if they overlap."""
+    x, y = simulation.world.scene.position[0, entity.slot].tolist()
+    first, second = ((read_number(one, "x"), read_number(one, "y")) for one in points)
+    if kind == SPHERE:
+        gap = math.dist((x, y), first) - second[0]
+    else:
+        edges = [sorted(pair) for pair in zip(first, second, strict=True)]
+        gap = math.hypot(
+            *(max(low - value, 0.0, value - high) for value, (low, high) in zip((x, y), edges, strict=True))
+        )
+    return gap - float(simulation.world.scene.radius[0, entity.slot])
 
 
 def _compile(text: Any) -> re.Pattern[str]:

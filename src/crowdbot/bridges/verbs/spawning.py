@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import urllib.parse
 from collections.abc import Mapping
 from typing import Any
@@ -14,11 +15,12 @@ from crowdbot.simulation import AddElementOrder, AddPersonOrder, Order, Simulati
 from crowdbot.world import builtin_robots, next_person
 
 from .entities import entities
-from .results import FAILED, OK, result
+from .results import FAILED, NOT_FOUND, OK, result
 
 __all__ = ["SPAWNABLES", "spawn_order", "spawnables"]
 
-NAME_NOT_UNIQUE, NO_RESOURCE, INVALID_POSE = 101, 104, 109
+NAME_NOT_UNIQUE, NAME_INVALID, NO_RESOURCE, NAMESPACE_INVALID, PARSE_ERROR, INVALID_POSE = 101, 102, 104, 105, 106, 109
+"""Results of ``simulation_interfaces/SpawnResult``."""
 PROPS = ("cube", "table", "tree")
 SPAWNABLES = {
     "person": "a person who walks 10 m ahead; person?goal_x=5&goal_y=3&speed=1.2 sets the goal [m] and the speed [m/s]",
@@ -33,7 +35,10 @@ AHEAD = 10.0
 
 def spawnables() -> dict[str, Any]:
     """Return the response of ``GetSpawnables``."""
-    rows = [{"uri": uri, "description": about, "spawn_bounds": {}} for uri, about in SPAWNABLES.items()]
+    rows = [
+        {"entity_resource": {"uri": uri, "resource_string": ""}, "description": about, "spawn_bounds": {}}
+        for uri, about in SPAWNABLES.items()
+    ]
     return result(spawnables=rows)
 
 
@@ -47,29 +52,67 @@ def spawn_order(
         simulation: the simulation.
         waiting: number of people and robots whose orders wait.
     """
-    resource = request.get("entity_resource") or request
-    uri, text = str(resource.get("uri") or ""), str(resource.get("resource_string") or "")
-    pose = request.get("initial_pose") or {}
-    frame = (pose.get("header") or {}).get("frame_id") or "map"
-    if not uri and not text:
-        return None, result(NO_RESOURCE, "give a uri or a resource_string", entity_name="")
-    if frame not in ("map", "world"):
-        return None, result(INVALID_POSE, f"the pose must be in the frame map, not {frame[:40]}", entity_name="")
-    name = str(request.get("name") or "")
-    taken = {one.name for one in entities(simulation)}
-    if name in taken and not request.get("allow_renaming"):
-        return None, result(NAME_NOT_UNIQUE, f"there is an entity {name[:80]!r}", entity_name="")
     try:
-        (x, y), heading = read_point(pose, "pose", "position"), read_heading(pose, "pose", "orientation")
-        if text:
-            order: Order = AddElementOrder(xml=text, source=SOURCE)
-            name = name or "element"
-        else:
-            order, name = _order(uri, name, (x, y, heading), simulation, waiting, taken)
-        order.check(simulation)
+        return _checked_order(request, simulation, waiting)
+    except SpawnError as error:
+        return None, result(error.code, str(error), entity_name="")
     except InputError as error:
         return None, result(FAILED, str(error), entity_name="")
-    return order, result(OK, entity_name=name)
+
+
+class SpawnError(InputError):
+    """An entity cannot be added, for a reason that the standard has a code for."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+def _checked_order(
+    request: Mapping[str, Any], simulation: Simulation, waiting: int
+) -> tuple[Order | None, dict[str, Any]]:
+    resource = request.get("entity_resource") or request
+    uri, text = str(resource.get("uri") or ""), str(resource.get("resource_string") or "")
+    if not uri and not text:
+        raise SpawnError(NO_RESOURCE, "give a uri or a resource_string")
+    name, space = str(request.get("name") or ""), str(request.get("entity_namespace") or "").strip("/")
+    taken = {one.name for one in entities(simulation)}
+    renames = bool(request.get("allow_renaming"))
+    if name in taken and not renames:
+        raise SpawnError(NAME_NOT_UNIQUE, f"there is an entity {name[:80]!r}")
+    pose = _read_pose(request.get("initial_pose") or {})
+    if uri:
+        order, chosen = _order(uri, name, pose, simulation, waiting, taken)
+    else:
+        order, chosen = _element_order(text, simulation)
+    if name and chosen != name and not renames:
+        raise SpawnError(NAME_INVALID, f"the entity will be {chosen!r}: leave the name empty, or allow renaming")
+    if space not in ("", chosen):
+        raise SpawnError(NAMESPACE_INVALID, f"the topics of an entity are under its name, {chosen!r}")
+    order.check(simulation)
+    return order, result(OK, entity_name=chosen)
+
+
+def _read_pose(pose: Mapping[str, Any]) -> tuple[float, float, float]:
+    frame = (pose.get("header") or {}).get("frame_id") or "map"
+    if frame not in ("map", "world"):
+        raise SpawnError(INVALID_POSE, f"the pose must be in the frame map, not {frame[:40]}")
+    try:
+        return *read_point(pose, "pose", "position"), read_heading(pose, "pose", "orientation")
+    except InputError as error:
+        raise SpawnError(INVALID_POSE, str(error)) from None
+
+
+def _element_order(text: str, simulation: Simulation) -> tuple[Order, str]:
+    """Return the order of an element, and its name, or the kind of element that it is."""
+    order = AddElementOrder(xml=text, source=SOURCE)
+    try:
+        order.check(simulation)
+    except InputError as error:
+        raise SpawnError(PARSE_ERROR, str(error)) from None
+    head = re.search(r"<([A-Za-z][\w-]*)[^>]*", text)  # behind a declaration or comment
+    name = re.search(r"""\bname\s*=\s*(["'])(.*?)\1""", head[0]) if head else None
+    return order, name[2] if name else head[1] if head else "element"
 
 
 def _order(
@@ -97,7 +140,7 @@ def _order(
             f" heading='{heading!r}'><goal x='{x!r}' y='{y!r}' tolerance='0.1'/><navigator type='external'/></robot>"
         )
         return AddElementOrder(xml=xml, source=SOURCE), name
-    raise InputError(f"{uri[:80]!r} is not known; get_spawnables lists what can be added")
+    raise SpawnError(NOT_FOUND, f"{uri[:80]!r} is not known; get_spawnables lists what can be added")
 
 
 def _check_bodies(simulation: Simulation) -> None:

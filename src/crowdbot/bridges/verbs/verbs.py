@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from crowdbot.bridges.commands import read_heading, read_point
+from crowdbot.bridges.commands import read_heading, read_number, read_point
 from crowdbot.bridges.inbox import Inbox, ServiceCall
 from crowdbot.bridges.run_control import PAUSED, PLAYING, QUITTING, STOPPED, RunControl
 from crowdbot.core import InputError
@@ -20,17 +20,20 @@ from crowdbot.simulation import (
     Simulation,
 )
 
-from .entities import ROBOT, Entity, entity_of, filter_entities, state_of_entity
+from .entities import ROBOT, Entity, entities, entity_of, filter_entities, state_of_entity
 from .results import FAILED, INCORRECT_STATE, NOT_FOUND, OK, UNSUPPORTED, UnsupportedFeature, result
 from .spawning import SOURCE, spawn_order, spawnables
 from .worlds import available_worlds, current_world, load_world
 
 __all__ = ["FEATURES", "Verbs", "answer_call"]
 
-FEATURES = (0, 1, 8, 9, 10, 11, 12, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 40, 41, 43, 44)
-"""Supported features of ``simulation_interfaces/SimulatorFeatures``: all but named poses, bounds of entities, tags,
-setting the description of an entity, the action of steps, and unloading a world."""
+FEATURES = (0, 1, 6, 8, 9, 10, 11, 12, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 40, 41, 44, 45, 50)
+"""Supported features of ``simulation_interfaces/SimulatorFeatures``: all but named poses, bounds of entities, convex
+bounds, tags, setting the description of an entity, the action of steps, and unloading a world."""
 TIME, STATE, SPAWNED, ALL = 1, 2, 4, 255
+INVALID_POSE, SPAWN_FAILED = 101, 150
+"""Results of ``SetEntityState`` and ``SpawnEntities``."""
+SETS = ("set_pose", "set_twist", "set_acceleration")
 MOST_STEPS = 10_000_000
 ENDED = "the run has ended before the last step"
 
@@ -118,8 +121,9 @@ class Verbs:
         """Begin the trial again, as another episode; or remove what was added."""
         scope = request.get("scope", 0) or ALL
         if scope == SPAWNED:
-            for name in list(self.control.spawned):
-                self._delete(entity_of(self.simulation, name))
+            for entity in entities(self.simulation):  # others have left or were removed
+                if entity.name in self.control.spawned:
+                    self._delete(entity)
             self.control.spawned.clear()
             return result()
         if scope in (ALL, TIME | STATE | SPAWNED):
@@ -132,7 +136,7 @@ class Verbs:
         order, response = spawn_order(request, self.simulation, sum(waiting))
         if order is not None:
             self._add(order)
-            if isinstance(order, AddPersonOrder) or getattr(order, "xml", "").startswith("<robot"):
+            if isinstance(order, AddPersonOrder) or "<robot" in getattr(order, "xml", ""):
                 self.control.spawned.append(response["entity_name"])
         return response
 
@@ -140,7 +144,7 @@ class Verbs:
         """Add several entities; some can fail."""
         rows = [self.spawn_entity(one) or {} for one in request["spawn_requests"]]
         failed = any(row["result"]["result"] != OK for row in rows)
-        return result(120 if failed else OK, "not all were added" if failed else "", results=rows)
+        return result(SPAWN_FAILED if failed else OK, "not all were added" if failed else "", results=rows)
 
     def delete_entity(self, request: Fields) -> Response:
         """Remove a person or robot."""
@@ -171,14 +175,27 @@ class Verbs:
         return result(info={"category": {"category": entity.category}, "description": about, "tags": []})
 
     def set_entity_state(self, request: Fields) -> Response:
-        """Move a robot or person to another pose, at rest."""
+        """Move a robot or person to another pose, at rest, or let it rest where it is.
+
+        A request without the flags of version 2.1 sets the pose. Accelerations are ignored, as the standard allows.
+        """
         entity, state = self._entity(request), request["state"]
+        pose, twist, _ = (bool(request.get(name, name == SETS[0])) for name in SETS)
         frame = (state.get("header") or {}).get("frame_id") or "map"
         if frame not in ("map", "world"):
             return result(UNSUPPORTED, f"the pose must be in the frame map, not {str(frame)[:40]}")
-        x, y = read_point(state, "pose", "position")
-        heading = read_heading(state, "pose", "orientation")
-        self._add(MoveOrder(person=entity.number, x=x, y=y, heading=heading, source=SOURCE))
+        parts = [("twist", kind, axis) for kind in ("linear", "angular") for axis in "xyz"]
+        if twist and any(read_number(state, *part) for part in parts):
+            return result(UNSUPPORTED, "a robot or person can be set to rest, to no other velocity")
+        if not (pose or twist):
+            return result(FAILED, "nothing is set: set_pose and set_twist are false")
+        try:
+            now = state_of_entity(self.simulation, entity)
+            x, y = read_point(state if pose else now, "pose", "position")
+            heading = read_heading(state if pose else now, "pose", "orientation")
+            self._add(MoveOrder(person=entity.number, x=x, y=y, heading=heading, source=SOURCE))
+        except InputError as error:
+            return result(INVALID_POSE, str(error))
         return result()
 
     def get_spawnables(self, request: Fields) -> Response:

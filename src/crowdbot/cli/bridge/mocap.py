@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from crowdbot.cli.output import note
 
 if TYPE_CHECKING:
-    from crowdbot.bridges import MotionCapture
+    from crowdbot.bridges import CaptureSet, MotionCapture
     from crowdbot.trials import Trial
 
-__all__ = ["add_mocap", "open_captures", "print_captures"]
+__all__ = ["add_mocap", "open_capture_set", "open_captures", "print_captures"]
 
 
 def add_mocap(parser: argparse.ArgumentParser) -> None:
@@ -23,8 +23,8 @@ def add_mocap(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="SOURCE=NAME",
-        help="motion capture that moves an avatar or mirrored robot: xsens:9763=guide, natnet:HOST#Cart=twin or"
-        " walk.bvh=guide@X,Y,HEADING; repeatable",
+        help="motion capture that moves an avatar or mirrored robot: xsens:9763=guide, natnet:HOST#Cart=twin,"
+        " vrpn:HOST#Cart=twin or walk.bvh=guide@X,Y,HEADING; repeatable",
     )
 
 
@@ -48,6 +48,25 @@ def open_captures(trial: Trial, options: argparse.Namespace, stack: contextlib.E
             raise InputError(f"--clock {options.clock} does not fit live motion capture, which needs real time")
         options.pace = 1.0
     return [stack.enter_context(one) for one in captures]
+
+
+def open_capture_set(options: argparse.Namespace, stack: contextlib.ExitStack) -> CaptureSet:
+    """Return the motion capture of the session of an experiment, open; live streams set the rate to real time.
+
+    Raises:
+        InputError: a source cannot be opened, or the options do not fit.
+    """
+    from crowdbot.bridges import CaptureSet
+    from crowdbot.core import InputError
+
+    if options.mocap and options.rehearse:
+        raise InputError("--mocap moves the avatars; leave out --rehearse, which moves them too")
+    found = stack.enter_context(CaptureSet(options.mocap))
+    if found.live:
+        if options.rate not in (None, 1.0):
+            raise InputError(f"--rate {options.rate:g} does not fit live motion capture, which needs real time")
+        options.rate = 1.0
+    return found
 
 
 def print_captures(captures: Sequence[MotionCapture]) -> None:

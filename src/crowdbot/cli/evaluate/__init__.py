@@ -68,10 +68,10 @@ def main(options: argparse.Namespace) -> int:
     if options.worst < 0:
         raise InputError(f"--worst {options.worst} must be at least 0")
     requirements = [parse_requirement(text) for text in options.require]
-    if options.logs or options.real:
+    if options.logs or options.real or options.participants:
         return present_recordings(options)
     if not options.trials:
-        raise InputError("evaluate needs a trial, or recordings with --logs or --real")
+        raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)
     plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()

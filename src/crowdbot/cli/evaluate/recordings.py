@@ -24,6 +24,13 @@ def add_recording_options(parser: argparse.ArgumentParser) -> None:
     add = group.add_argument
     add("--logs", nargs="+", default=[], metavar="LOG", help="recordings to measure, instead of trials")
     add("--real", metavar="LOG", help="recording to simulate with all seeds, instead of trials; says where it lies")
+    add(
+        "--participants",
+        type=Path,
+        metavar="DIR",
+        help="sessions of an experiment: compare its conditions, such as navigators, within participants, instead of"
+        " trials",
+    )
     add("--robot-file", metavar="FILE", help="recording of the robot, if it is not in the recording of people")
     add("--robot-id", type=int, metavar="ID", help="id of the robot (default: the only robot)")
     add("--robot-radius", type=float, default=0.3, metavar="METRES", help="radius of the robot (default: 0.3)")
@@ -39,11 +46,13 @@ def present_recordings(options: argparse.Namespace) -> int:
     """Measure recordings, or simulate one."""
     from crowdbot.core import InputError
 
-    given = [name for name in ("trials", "logs", "real") if getattr(options, name)]
+    given = [name for name in ("trials", "logs", "real", "participants") if getattr(options, name)]
     if len(given) > 1:
-        raise InputError(f"{' and '.join(given)} are given; evaluate takes trials, --logs, or --real")
+        raise InputError(f"{' and '.join(given)} are given; evaluate takes trials, --logs, --real, or --participants")
     if options.sweep or options.require or options.disturbance:
         raise InputError("--sweep, --require and --disturbance need trials, not recordings")
+    if options.participants:
+        return _compare_participants(options)
     if options.real:
         return _simulate(options)
     values = {log: _load(log, options).metrics() for log in options.logs}
@@ -52,6 +61,19 @@ def present_recordings(options: argparse.Namespace) -> int:
         return 0
     _print_metrics(values, options.metrics)
     return 0
+
+
+def _compare_participants(options: argparse.Namespace) -> int:
+    """Compare the conditions of an experiment, as ``crowdbot experiment analyse`` does."""
+    from crowdbot.cli.experiment.study import analyse
+    from crowdbot.experiments import SETTLING
+
+    report = None if options.out is None else options.out / "report.html"
+    return analyse(
+        argparse.Namespace(
+            folder=options.participants, out=report, analysis="", bound=[], settling=SETTLING, json=options.json
+        )
+    )
 
 
 def _load(log: str, options: argparse.Namespace) -> RobotRecording:

@@ -12,12 +12,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.cli.bridge.mocap import add_mocap, open_capture_set
 from crowdbot.cli.output import add_json, note, number, print_json, print_table, print_warnings
 
 from .streams import add_streams, open_outlets, record_streams
 from .study import add_analyse, add_withdraw, analyse, withdraw_participant
 
 if TYPE_CHECKING:
+    from crowdbot.bridges import CaptureSet
     from crowdbot.experiments import Experiment, Respondent, SessionRunner
     from crowdbot.simulation import OrderSource
     from crowdbot.trials import Trial
@@ -105,6 +107,7 @@ def _run_arguments(parser: argparse.ArgumentParser) -> None:
         "--rate", type=float, metavar="R", help="speed of the trials, 1 for real time (default: as fast as possible)"
     )
     add_streams(parser)
+    add_mocap(parser)
     add_json(parser)
 
 
@@ -123,7 +126,8 @@ def _run(options: argparse.Namespace) -> int:
         stream.flush()
 
     with contextlib.ExitStack() as stack:
-        respondent, walkers = _respondent(options, experiment, write), _walkers(options, experiment)
+        captures = open_capture_set(options, stack)
+        respondent, walkers = _respondent(options, experiment, write), _walkers(options, experiment, captures)
         runner = SessionRunner(
             experiment,
             options.participant,
@@ -158,15 +162,17 @@ def _respondent(options: argparse.Namespace, experiment: Experiment, write: Call
     return ConsoleRespondent(sys.stdin, write, patient=sys.stdin.isatty())
 
 
-def _walkers(options: argparse.Namespace, experiment: Experiment) -> Callable[[Trial], list[OrderSource]]:
-    """Return what moves the avatars of a trial."""
+def _walkers(
+    options: argparse.Namespace, experiment: Experiment, captures: CaptureSet
+) -> Callable[[Trial], list[OrderSource]]:
+    """Return what moves the avatars and mirrored robots of a trial."""
     from crowdbot.experiments import emulated_participant
 
     person = emulated_participant(experiment, options.participant)
 
     def walkers(trial: Trial) -> list[OrderSource]:
         driven = options.rehearse and any(avatar.source == "external" for avatar in trial.avatars)
-        return [person.source(trial)] if driven else []
+        return [*([person.source(trial)] if driven else []), *captures.captures_of(trial)]
 
     return walkers
 

@@ -27,7 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         " sick-tim571, front=realsense-d435 (default: none)")  # fmt: skip
     add("--noise", action="store_true", help="add the noise of the products to sensor presets")
     add("--format", default="npz", metavar="NAME", help="npz, parquet, webdataset or mcap (default: npz)")
-    add("--coco", action="store_true", help="write colour images as PNG with boxes and masks in coco.json")
+    add("--coco", action="store_true", help="write colour images as PNG with boxes, masks and keypoints in coco.json")
+    add("--kitti", action="store_true", help="write images, boxes and point clouds in the folders of KITTI")
     add("--compress", action="store_true", help="compress the files: smaller and slower")
     add("--shard-size", type=float, default=400.0, metavar="MB", help="approximate size of a shard (default: 400)")
     add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
@@ -94,6 +95,7 @@ def make_plan(options: argparse.Namespace) -> GenerationPlan:
         int(1e6 * options.shard_size),
         options.noise,
         options.trust,
+        options.kitti,
     )
 
 

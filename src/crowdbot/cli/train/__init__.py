@@ -11,6 +11,8 @@ from crowdbot.cli.output import add_json, note, number, print_json, print_table,
 from crowdbot.cli.recordings import add_recordings, print_notes, recordings
 from crowdbot.cli.schemes import assignments
 
+from .detector import DETECTOR, train_detector
+from .learned_scene import RUNS, SCAN_PREDICTOR, train_scan_predictor
 from .navigator import NAVIGATOR, add_navigator, check_options, train_policy
 
 if TYPE_CHECKING:
@@ -24,7 +26,8 @@ EPOCHS = 100
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    names = f"predictor: {', '.join(LEARNERS)}; or {NAVIGATOR}"
+    names = f"predictor: {', '.join(LEARNERS)}; navigator: {NAVIGATOR}; detector: {DETECTOR};"
+    names += f" scan predictor: {SCAN_PREDICTOR}"
     parser.add_argument("what", metavar="NAME", help=names)
     add_recordings(parser, required=False)
     add_navigator(parser)
@@ -44,6 +47,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--out", type=Path, required=True, metavar="DIR", help="folder for weights, log and training state")
     add("--resume", action="store_true", help="resume the training in DIR")
+    add(
+        "--from", metavar="WEIGHTS",
+        help="start from other weights: a file, open (anchor-net) or a place such as zara1 (default: random weights)",
+    )  # fmt: skip
     add("--epochs", type=int, metavar="N", help=f"number of epochs (default: {EPOCHS})")
     add("--updates", type=int, metavar="N", help="number of updates, instead of --epochs")
     add("--check-every", type=int, default=200, metavar="N", help="updates between validations (default: 200)")
@@ -53,6 +60,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="validations without improvement before early stopping (default: none)",
     )
+    add("--scans", type=int, default=3000, metavar="N", help=f"generated scans of {DETECTOR} (default: 3000)")
+    add("--runs", type=int, default=RUNS, metavar="N", help=f"runs of each trial of {SCAN_PREDICTOR} (default: {RUNS})")
     add("--settings", metavar="NAME", help="preset (social-ways: report, variety or modes; default: report)")
     add(
         "--set",
@@ -76,13 +85,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Train and print the path of the weights."""
-    from crowdbot.core import InputError, UnknownName, explain_write_errors
-
+    if options.what == DETECTOR:
+        return train_detector(options)
+    if options.what == SCAN_PREDICTOR:
+        return train_scan_predictor(options)
     check_options(options)
     if options.what == NAVIGATOR:
         return train_policy(options)
+    return _train_predictor(options)
+
+
+def _train_predictor(options: argparse.Namespace) -> int:
+    """Train a predictor on recordings and print the path of the weights."""
+    from crowdbot.core import InputError, UnknownName, explain_write_errors
+
     if options.what not in LEARNERS:
-        raise UnknownName("learned predictor", options.what, (*LEARNERS, NAVIGATOR))
+        raise UnknownName("learned predictor", options.what, (*LEARNERS, NAVIGATOR, DETECTOR, SCAN_PREDICTOR))
     from crowdbot.prediction import (
         BEST,
         LAST,
@@ -104,20 +122,19 @@ def main(options: argparse.Namespace) -> int:
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
-    training_set, data, excluded = _samples(options)
+    training_set, (samples, check), excluded = _samples(options)
+    start = str(getattr(options, "from") or "")
+    model = make_learner(
+        options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device,
+        start,
+    )  # fmt: skip
     if not options.json:
         print_notes(training_set)
         for sentence in short_recordings(training_set):
             note(f"warning: {sentence}")
-    samples, check = data
-    model = make_learner(
-        options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device
-    )
-    if not options.json:
-        note(
-            f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(training_set)}"
-            " recordings"
-        )
+        size = f"{samples.people} futures in {len(samples)} windows, {len(training_set)} recordings"
+        note(f"training {options.what} on {size}")
+    before = dict(model.check()) if start else None
     with (
         torch_threads(options.threads),
         explain_write_errors(options.out),
@@ -132,7 +149,7 @@ def main(options: argparse.Namespace) -> int:
             _log_callback(options.json, events),
             lambda update, total: report(f"train {options.what}", update / total),
         )
-    _print_result(options, done, options.out / BEST, excluded)
+    _print_result(options, done, options.out / BEST, excluded, before)
     return 0
 
 
@@ -196,15 +213,19 @@ def _log_callback(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
     return log
 
 
-def _print_result(options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str]) -> None:
+def _print_result(
+    options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str], before: LogRow | None
+) -> None:
     best = done.rows[done.best] if done.best is not None else {}
     if options.json:
         print_json(
             {"checkpoint": str(file), "updates": done.updates, "stopped_early": done.stopped,
-             "seconds": done.seconds, "best": dict(best), "log": [dict(row) for row in done.rows], "left_out": left}
+             "seconds": done.seconds, "start": before, "best": dict(best), "log": [dict(row) for row in done.rows],
+             "left_out": left}
         )  # fmt: skip
         return
-    rows = [
+    rows = [] if before is None else [("start", "0", *(number(before.get(name)) for name in ("ade", "fde")))]
+    rows += [
         ("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))),
     ]
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
@@ -213,6 +234,8 @@ def _print_result(options: argparse.Namespace, done: TrainingResult, file: Path,
     print_table(
         f"{options.what}, best of 20 on the validation data", ("", "update", "ADE [m]", "FDE [m]"), rows, caption
     )
+    if before and best and best["ade"] + best["fde"] >= before["ade"] + before["fde"]:
+        note("warning: the validation errors are not below those of the start; use the start, or more recordings")
     from crowdbot.prediction import WEIGHTS_FIELDS
 
     data = " ".join(left) or "PATH"

@@ -18,7 +18,7 @@ NAVIGATOR = "navigator"
 ENVIRONMENTS = 1024
 """Default number of environments."""
 ONLY_HERE = ("trials", "rounds", "environments")
-ONLY_PREDICTORS = ("data", "check", "leave_out", "epochs", "updates", "patience", "settings", "tensorboard")
+ONLY_PREDICTORS = ("data", "check", "leave_out", "epochs", "updates", "patience", "settings", "tensorboard", "from")
 
 
 def add_navigator(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,6 @@
-"""Program that reads an HDF5 recording in a process of its own: ``python hdf5_program.py FILE SECONDS ROWS``.
+"""Program that reads an HDF5 file in a process of its own: ``python hdf5_program.py FILE SECONDS MOST [NAME ...]``.
+
+Without names it reads the table ``trajectory``, otherwise the arrays of numbers with these names at the root.
 
 The HDF5 library can loop without end in a damaged file. A loop in C cannot be interrupted from Python, so the process
 has a limit of its CPU time. It imports only h5py and numpy, and writes an ``.npz`` to standard output.
@@ -12,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["COLUMNS", "limit_cpu_time", "read_table"]
+__all__ = ["COLUMNS", "limit_cpu_time", "read_arrays", "read_table"]
 
 COLUMNS = ("id", "frame", "x", "y")
 
@@ -47,13 +49,27 @@ def read_table(path: str, max_rows: int) -> tuple[dict[str, Any], dict[str, np.n
         return about, {name: np.asarray(table[name]) for name in COLUMNS}
 
 
+def read_arrays(path: str, max_values: int, names: list[str]) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
+    """Return what the file holds, and its arrays of numbers with some names if all are there and not too large."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        known = {name: file.get(name) for name in names}
+        found = {k: one for k, one in known.items() if isinstance(one, h5py.Dataset) and one.dtype.kind in "fiu"}
+        sizes = {name: int(one.size) for name, one in found.items()}
+        about = {"held": sorted(file)[:20], "values": sizes}
+        if len(found) < len(names) or sum(sizes.values()) > max_values:
+            return about, {}
+        return about, {name: np.asarray(one[()]) for name, one in found.items()}
+
+
 def main() -> None:
     """Read the file of the command line; an exception is part of the answer."""
-    path, seconds, max_rows = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    path, seconds, most, names = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:]
     limit_cpu_time(seconds)
     columns: dict[str, Any] = {}
     try:
-        about, columns = read_table(path, max_rows)
+        about, columns = read_arrays(path, most, names) if names else read_table(path, most)
     except Exception as error:  # h5py raises many kinds for damaged files
         about = {"error": " ".join(str(error).split()) or type(error).__name__}
     np.savez(sys.stdout.buffer, about=np.array(json.dumps(about)), **columns)

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import io
-import json
-import os
 import re
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -18,17 +13,13 @@ from crowdbot.core import DataError
 from crowdbot.data.source import MAX_ROWS, Source, parse_errors
 from crowdbot.data.trajectories import Trajectories
 
-from . import hdf5_program
 from .assemble import assemble
+from .hdf5_arrays import run_hdf5_program
 from .hdf5_program import COLUMNS
 from .reader import Reader, ReadOptions
 
 __all__ = ["HDF5", "SQLITE"]
 
-PROGRAM = hdf5_program.__file__
-SECONDS = 8
-"""CPU time for reading an HDF5 file [s], and more for a large one:"""
-BYTES_PER_SECOND = 20_000_000
 UNIT = re.compile(r"\[\s*(mm|cm|m)\s*\]")
 
 
@@ -57,22 +48,8 @@ def read_hdf5(source: Source, options: ReadOptions) -> Trajectories:
 
 def _read_hdf5_table(source: Source) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return content and columns of the file, read in a process of its own; see :mod:`.hdf5_program`."""
-    seconds = SECONDS + source.path.stat().st_size // BYTES_PER_SECOND
-    command = [sys.executable, "-P", PROGRAM, os.path.abspath(source.path), str(seconds), str(MAX_ROWS)]
     with parse_errors(source, "HDF5"):
-        try:
-            done = subprocess.run(command, capture_output=True, check=False, timeout=10.0 * seconds)  # noqa: S603
-        except subprocess.TimeoutExpired:
-            done = None
-        if done is None or done.returncode < 0:
-            raise DataError(f"{source.name} is damaged: the HDF5 library does not finish reading it")
-        if done.returncode:
-            raise DataError(f"{source.name}: {done.stderr.decode(errors='replace').strip().splitlines()[-1]}")
-        with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
-            about = json.loads(str(arrays["about"]))
-            if "error" in about:
-                raise OSError(about["error"])
-            return about, {name: arrays[name] for name in COLUMNS if name in arrays}
+        return run_hdf5_program(source.path, MAX_ROWS)
 
 
 def read_sqlite(source: Source, options: ReadOptions) -> Trajectories:

@@ -191,7 +191,14 @@ def _first_fitting(trial: Trial, detector: Detector) -> str:
     )
 
 
-READINGS = {"Lidar2D": "Scan", "Lidar3D": "PointCloud"}
+READINGS = {
+    "Lidar2D": "Scan",
+    "PulsedLidar2D": "Scan",
+    "Lidar3D": "PointCloud",
+    "DepthCamera": "DepthImage",
+    "RGBCamera": "RgbImage",
+    "ExposedCamera": "RgbImage",
+}
 """Readings of the sensors that detectors understand."""
 
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
 
 from crowdbot.core import InputError
 
@@ -75,6 +74,8 @@ def paired_test(first: ArrayLike, second: ArrayLike, bound: float, *, binary: bo
     spread = float(gap.std(ddof=1)) if count > 2 else 0.0
     if spread == 0.0:
         return PairedTest(count, mean, math.nan, math.nan, math.nan, math.nan, bound, math.nan)
+    from scipy import stats  # takes longer to import than the app to start
+
     error, law = spread / math.sqrt(count), stats.t(count - 1)
     half = float(law.ppf(0.975)) * error
     p_value = _sign_test(gap) if binary else 2.0 * float(law.sf(abs(mean) / error))
@@ -84,5 +85,7 @@ def paired_test(first: ArrayLike, second: ArrayLike, bound: float, *, binary: bo
 
 def _sign_test(gap: NDArray[np.float64]) -> float:
     """Return the two-sided p-value of the exact sign test; pairs without a difference do not count."""
+    from scipy import stats
+
     up, down = int((gap > 0.0).sum()), int((gap < 0.0).sum())
     return float(stats.binomtest(up, up + down, 0.5).pvalue) if up + down else 1.0

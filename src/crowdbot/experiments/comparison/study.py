@@ -35,11 +35,13 @@ class Measure:
         bound: default largest difference that counts as equivalent. The bounds are choices, not findings: about the
             smallest difference that an observer of the two would notice.
         binary: whether a trial has the value 0 or 1, such as a collision; the means are then shares of the trials.
+        compared: whether the conditions are tested against each other; not so for what describes the apparatus.
     """
 
     title: str
     bound: float
     binary: bool = False
+    compared: bool = True
 
 
 class RecordedTrial(NamedTuple):

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import CrowdbotError, EpisodeError, InputError
+from crowdbot.experiments.emulation import participant_agent
 from crowdbot.experiments.experiment import Experiment
 from crowdbot.experiments.parser import parse_experiment
 from crowdbot.experiments.question import Scale
@@ -23,6 +24,7 @@ from crowdbot.trials import parse_trial, read_trial_bytes
 
 from .paired_test import PairedTest, paired_test
 from .study import Measure, RecordedTrial, Study, TrialMeasures
+from .trial_latency import LATENCY_FILE, read_trial_latency
 from .view_track import looking_shares
 
 __all__ = ["LOOKING", "SETTLING", "ConditionTest", "StudyAnalysis", "analyse_study", "experiment_of", "rating_measures"]
@@ -34,6 +36,11 @@ LOOKING: Mapping[str, Measure] = {
     "looking_visible": Measure("share of time looking at the robot, not hidden [1]", 0.1),
 }
 """Measures of all studies, from the recorded directions of head or gaze."""
+LATENCY: Mapping[str, Measure] = {
+    "motion_latency": Measure("age of the participant's pose in the simulation, median [s]", 0.01, compared=False),
+    "picture_latency": Measure("age of the state in the headset, median [s]", 0.01, compared=False),
+}
+"""Measured latencies of the headset, with all added delays."""
 RATING_BOUND = 0.1
 """Bound of equivalence of a rating, as a part of the range of its scale."""
 
@@ -111,8 +118,8 @@ def analyse_study(
     """
     everything = summary(folder)
     ratings = rating_measures(experiment_of(folder))
-    measures = {**study.measures, **LOOKING, **ratings}
-    limits = _checked({name: measure.bound for name, measure in measures.items()}, bounds or {})
+    measures = {**study.measures, **LOOKING, **ratings, **LATENCY}
+    limits = _checked({name: measure.bound for name, measure in measures.items() if measure.compared}, bounds or {})
     rows = [row for row in everything if row["outcome"] != "not run"]
     trials = tuple(_measured(Path(folder), row, study, settling, ratings) for row in rows)
     found = StudyAnalysis(study, measures, trials)
@@ -171,10 +178,22 @@ def _measured(
         recorded = RecordedTrial(parse_trial(episode.xml, place=str(episode.path)), episode, home, settling)
         values, labels, curves = study.evaluate(recorded)
         shares, view = looking_shares(recorded)
+        latencies = _latencies(recorded)
     except CrowdbotError as error:
         return TrialMeasures(who, condition, {}, str(error))
     given = {name: float(row[name]) for name in ratings if isinstance(row.get(name), int | float)}
-    return TrialMeasures(who, condition, {**values, **shares, **given}, "", {**labels, "view": view}, curves)
+    return TrialMeasures(
+        who, condition, {**values, **shares, **given, **latencies}, "", {**labels, "view": view}, curves
+    )
+
+
+def _latencies(recorded: RecordedTrial) -> dict[str, float]:
+    """Return the measured latencies of the headset; none without one."""
+    if not (recorded.folder / LATENCY_FILE).is_file():
+        return {}
+    found = read_trial_latency(recorded.folder, participant_agent(recorded.trial)[0])
+    known = {"motion_latency": found.motion, "picture_latency": found.picture}
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def _tests(analysis: StudyAnalysis, limits: Mapping[str, float]) -> tuple[ConditionTest, ...]:

@@ -9,11 +9,19 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.experiments.comparison import COLORS, EmulatedPerson, Measure, RecordedTrial, Study, TrialMeasures
+from crowdbot.experiments.comparison import (
+    COLORS,
+    EmulatedPerson,
+    Measure,
+    RecordedTrial,
+    Study,
+    TrialMeasures,
+    read_trial_latency,
+)
 from crowdbot.metrics import coordination
 
 from .emulated_participant import EmulatedParticipant
-from .leading import roles_of
+from .leading import Roles, roles_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,6 +33,9 @@ Floats = NDArray[np.float64]
 
 class LeaderFollowerStudy(Study):
     """A robot or the participant leads, the other one keeps the distance.
+
+    In virtual reality a participant sees the robot as late as the latency of the picture, and is seen as late as that
+    of the motion. ``own_lag`` is the lag without the medians of both.
 
     >>> LeaderFollowerStudy().measures["lag"].title
     'lag of the follower [s]'
@@ -38,6 +49,7 @@ class LeaderFollowerStudy(Study):
             "distance": Measure("mean distance [m]", 0.1),
             "distance_sd": Measure("standard deviation of the distance [m]", 0.05),
             "lag": Measure("lag of the follower [s]", 0.1),
+            "own_lag": Measure("lag of a following participant without latency of motion and picture [s]", 0.1),
             "gain": Measure("gain at the frequency of the leader [1]", 0.1),
             "phase": Measure("phase at the frequency of the leader [rad]", 0.1),
         }
@@ -56,11 +68,12 @@ class LeaderFollowerStudy(Study):
         times = episode.times[late]
         leader, follower = (robot, person) if roles.robot_leads else (person, robot)
         found = coordination(times, leader, times, follower)
+        values = {k: float(v) for k, v in found._asdict().items()} | _own_lag(recorded, roles, found.lag)
         axis = follower.mean(axis=0) - leader.mean(axis=0)
         axis /= max(float(np.hypot(*axis)), 1e-9)
         leading, following = ((track - track.mean(axis=0)) @ axis for track in (leader, follower))
         curves = {"times": times, "leading": leading, "following": following}
-        return {k: float(v) for k, v in found._asdict().items()}, {"leader": roles.leader}, curves
+        return values, {"leader": roles.leader}, curves
 
     def draw(self, trials: Sequence[TrialMeasures]) -> Figure:
         """Return the motion of leader and follower in the first trial of each condition."""
@@ -83,3 +96,11 @@ class LeaderFollowerStudy(Study):
     def participant(self, number: int) -> EmulatedPerson:
         """Return the emulated participant of a number."""
         return EmulatedParticipant.draw(number)
+
+
+def _own_lag(recorded: RecordedTrial, roles: Roles, lag: float) -> dict[str, float]:
+    """Return the lag without measured latencies, if the participant follows and they are known."""
+    latency = read_trial_latency(recorded.folder, roles.participant)
+    if not roles.robot_leads or latency.motion is None or latency.picture is None:
+        return {}
+    return {"own_lag": lag - latency.motion - latency.picture}

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.humans import KEYPOINT_EDGES, KEYPOINTS
+
 __all__ = ["encode_mask", "join_annotations", "write_images"]
 
 Table = Mapping[str, NDArray[Any]]
@@ -62,8 +64,22 @@ def _annotations(table: Table, row: int, image: int, before: int) -> list[dict[s
                 "segmentation": encode_mask(mask),
                 "iscrowd": 0,
                 "occluded": None if np.isnan(hidden) else hidden,
+                **_space_labels(table, row, column),
             }
         )
+    return found
+
+
+def _space_labels(table: Table, row: int, column: int) -> dict[str, Any]:
+    """Return keypoints, and the box in the world: centre, length, width, height [m], and heading [rad]."""
+    if "keypoints" not in table:
+        return {}
+    points, solid = table["keypoints"][row, column].astype(float), table["solid_boxes"][row, column].astype(float)
+    flat = [round(value, 2) if k % 3 < 2 else int(value) for k, value in enumerate(points.ravel().tolist())]
+    found: dict[str, Any] = {"keypoints": flat, "num_keypoints": int(np.count_nonzero(points[:, 2]))}
+    if not np.isnan(solid[0]):
+        center, size, heading = solid[:3].tolist(), solid[3:6].tolist(), float(solid[6])
+        found["box_3d"] = {"center": center, "size": size, "heading": heading}
     return found
 
 
@@ -97,5 +113,6 @@ def join_annotations(files: Iterable[Path], info: Mapping[str, Any], categories:
         annotations += [
             one | {"id": one["id"] + before, "image_id": one["image_id"] + shift} for one in part["annotations"]
         ]
-    names = [{"id": k + 1, "name": name} for k, name in enumerate(categories)]
+    bones = {"keypoints": list(KEYPOINTS), "skeleton": [list(edge) for edge in KEYPOINT_EDGES]}
+    names = [{"id": k + 1, "name": name, **(bones if name == "person" else {})} for k, name in enumerate(categories)]
     return {"info": dict(info), "images": images, "annotations": annotations, "categories": names}

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate, optimize
 
 from crowdbot.core import InputError
 
@@ -159,6 +158,8 @@ def _sine(time: Floats, value: Floats, frequency: float) -> tuple[complex, Float
 
 def _fitted_frequency(time: Floats, value: Floats) -> float:
     """Return the frequency [Hz] with the smallest residual: the best of a grid, refined."""
+    from scipy import optimize  # takes longer to import than the rest
+
     span = float(time[-1] - time[0])
     highest = min(0.5 / float(np.median(np.diff(time))), HIGHEST_FREQUENCY)
     grid = np.arange(0.75, highest * span, 0.25) / span
@@ -202,6 +203,8 @@ def _lag(time: Floats, leader: Floats, other_time: Floats, follower: Floats, per
 
 def _correlation(time: Floats, leader: Floats, other_time: Floats, follower: Floats, lag: float, gap: float) -> float:
     """Return the correlation of the follower with the leader ``lag`` seconds before; both oscillate about 0."""
+    from scipy import interpolate  # takes longer to import than the rest
+
     known = _known(other_time - lag, time, gap)
     if known.sum() < 8:
         return math.nan

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from .track_comparison import TrackComparison
 
@@ -44,6 +43,8 @@ def hota(table: TrackComparison, zero: float = 1.0) -> Hota:
     >>> round(found.detection, 6), round(found.association, 6), round(found.hota, 3)
     (1.0, 0.5, 0.707)
     """
+    from scipy.optimize import linear_sum_assignment
+
     seen = table.visible_only(zero)
     similarity = np.nan_to_num(np.maximum(0.0, 1.0 - seen.distances() / zero))
     people, tracks = (~np.isnan(one[..., 0]) for one in (seen.truth, seen.estimate))

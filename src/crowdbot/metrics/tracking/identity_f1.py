@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from .track_comparison import TrackComparison
 
@@ -27,6 +26,8 @@ def identity_f1(table: TrackComparison, reach: float = 0.5) -> float:
     >>> identity_f1(table)
     0.75
     """
+    from scipy.optimize import linear_sum_assignment
+
     seen = table.visible_only(reach)
     together = (seen.distances() <= reach).sum(axis=0)
     people, tracks = linear_sum_assignment(-together)

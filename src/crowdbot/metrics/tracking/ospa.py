@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from .track_comparison import TrackComparison
 
@@ -31,6 +30,8 @@ def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Flo
     >>> ospa(table).round(4).tolist()
     [0.8246]
     """
+    from scipy.optimize import linear_sum_assignment
+
     seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
@@ -57,6 +58,8 @@ def gospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Fl
     >>> gospa(table).round(4).tolist() == [round(math.sqrt(0.36 + 0.5), 4)]
     True
     """
+    from scipy.optimize import linear_sum_assignment
+
     seen = table.visible_only(cutoff)
     found = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):

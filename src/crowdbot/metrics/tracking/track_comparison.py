@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from crowdbot.core import InputError
 
@@ -95,6 +94,30 @@ class TrackComparison:
         truth[self.hidden] = np.nan
         return TrackComparison(truth, estimate)
 
+    def subset(self, people: Bools, tracks: Bools, reach: float) -> TrackComparison:
+        """Return the table of some people and of their tracks.
+
+        Tracks within ``reach`` of a person belong to the person; the others are kept where ``tracks`` is true.
+
+        Args:
+            people: ``[T, A]`` the people who count.
+            tracks: ``[T, B]`` tracks of nobody that count.
+            reach: largest distance of a person and a track [m].
+
+        >>> table = TrackComparison.of([{0: (0, 0), 1: (5, 0)}], [{3: (0, 0), 4: (5, 0), 5: (9, 9)}])
+        >>> part = table.subset(np.array([[True, False]]), np.array([[True, True, True]]), 0.5)
+        >>> np.isnan(part.truth[0, :, 0]).tolist(), np.isnan(part.estimate[0, :, 0]).tolist()
+        ([False, True], [False, True, False])
+        """
+        truth, estimate = self.truth.copy(), self.estimate.copy()
+        for t, distance in enumerate(self.distances()):
+            chosen = tracks[t].copy()
+            who, which = match_nearest(distance, reach)
+            chosen[which] = people[t, who]
+            estimate[t, ~chosen] = np.nan
+        truth[~people] = np.nan
+        return TrackComparison(truth, estimate, self.hidden)
+
 
 def match_nearest(distance: Floats, reach: float) -> tuple[Ints, Ints]:
     """Return the pairs of people and tracks with the smallest sum of distances, as many pairs within reach as possible.
@@ -106,6 +129,8 @@ def match_nearest(distance: Floats, reach: float) -> tuple[Ints, Ints]:
     >>> [one.tolist() for one in match_nearest(np.array([[0.2, 0.1], [0.3, 9.0]]), 0.5)]
     [[0, 1], [1, 0]]
     """
+    from scipy.optimize import linear_sum_assignment
+
     fits = distance <= reach  # False for NaN
     people, tracks = linear_sum_assignment(np.where(fits, distance, FORBIDDEN))
     kept = fits[people, tracks]

@@ -9,6 +9,7 @@ from .clear_mot import clear_mot
 from .hota import hota
 from .identity_f1 import identity_f1
 from .latency import track_latency
+from .occlusions import count_occlusions
 from .ospa import gospa, ospa
 from .track_comparison import TrackComparison
 
@@ -25,9 +26,11 @@ TRACKING_SCORES = {
     "misses": "",
     "false_tracks": "",
     "latency": "s",
+    "kept_through_occlusion": "",
 }
 """Names of the scores and their units. Misses and false tracks are shares of the people over all instants; switches are
-numbers by 100 instants of people; latency is the median of people."""
+numbers by 100 instants of people; latency is the median of people; the last one is the share of occlusions of at least
+0.3 s after which a person has the same track."""
 
 
 def tracking_scores(
@@ -50,6 +53,7 @@ def tracking_scores(
     late = track_latency(table, times, reach)
     late = late[~np.isnan(late)]
     count = max(1, clear.people)
+    occlusions = count_occlusions(table, times, reach)
     return {
         "mota": clear.mota,
         "motp": clear.motp,
@@ -61,4 +65,5 @@ def tracking_scores(
         "misses": clear.misses / count,
         "false_tracks": clear.false_tracks / count,
         "latency": float(np.median(late)) if len(late) else float("nan"),
+        "kept_through_occlusion": occlusions.kept / occlusions.total if occlusions.total else float("nan"),
     }

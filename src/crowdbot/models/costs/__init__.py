@@ -1,6 +1,7 @@
 """Cost terms over velocities, to compose crowd models."""
 
 from .cost_terms import (
+    CollisionDistance,
     Effort,
     FreeWay,
     GoalForce,
@@ -17,6 +18,7 @@ from .neighbor_view import NeighborView
 from .velocity_cost import Force, Sum, VelocityCost
 
 __all__ = [
+    "CollisionDistance",
     "Effort",
     "Force",
     "FreeWay",

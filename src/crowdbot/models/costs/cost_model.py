@@ -13,7 +13,6 @@ from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, para
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     neighbors_of,
     rows,
     speed_limit,
@@ -105,7 +104,6 @@ class CostModel(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
         if not isinstance(self.costs, VelocityCost):
             raise InputError(f"CostModel: costs = {self.costs!r} must be a VelocityCost or a sum of them")
         for name, known in (("optimiser", OPTIMISERS), ("samples", SAMPLES)):

@@ -17,6 +17,7 @@ from .neighbor_view import NeighborView
 from .velocity_cost import Force, VelocityCost, length
 
 __all__ = [
+    "CollisionDistance",
     "Effort",
     "FreeWay",
     "GoalForce",
@@ -34,6 +35,8 @@ Floats = NDArray[np.float64]
 
 EDGE = 1e-9
 """Tolerance [m/s] outside of a half plane."""
+SLOWEST = 1e-9
+"""Least desired speed [m/s] in a quotient."""
 FAR = 1e3
 """Distance of the goal, in planning times, if only a desired velocity is given."""
 
@@ -353,3 +356,33 @@ class FreeWay(VelocityCost):
         best = np.minimum(wanted, free / world.each(self.relaxation_time, "relaxation_time")[:, None])
         off = np.where(best > 0.0, (best - speed) / np.where(best > 0.0, best, 1.0), np.inf)
         return np.asarray((distance2 + 1.0) * (1.0 + off**2))
+
+
+@dataclass(frozen=True)
+class CollisionDistance(VelocityCost):
+    """Free path that is missing to the sight distance, and deviations from desired and current velocity.
+
+    Args:
+        sight_distance: range of vision [m].
+
+    Source: van Toll et al. 2020, doi:10.1145/3384382.3384532, the example cost of UMANS.
+    """
+
+    sight_distance: PerAgent = parameter(8.0, unit="m", low=2.0, high=15.0, source="UMANS, from its steps")
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        """Return ``(d - f) + angle(v', p) + ||v'| - |p|| / |p| + angle(v', v)``, f the free path, at most d."""
+        sight = world.each(self.sight_distance, "sight_distance")[:, None]
+        speed, wanted = length(candidates), length(world.wish)[:, None]
+        time = world.first_contact(candidates)
+        soon = np.isfinite(time)
+        free = np.minimum(sight, np.where(soon, speed * np.where(soon, time, 0.0), np.inf))
+        turn = _angle(candidates, world.wish) + _angle(candidates, world.velocity)
+        return np.asarray(sight - free + turn + np.abs(speed - wanted) / np.maximum(wanted, SLOWEST))
+
+
+def _angle(candidates: Floats, other: Floats) -> Floats:
+    """Return the angles ``[N, C]`` [rad] between velocities ``[N, C, 2]`` and vectors [N, 2]; 0 if one of them is 0."""
+    both = length(candidates) * length(other)[:, None]
+    cos = np.sum(candidates * other[:, None], axis=-1) / np.where(both > 0.0, both, 1.0)
+    return np.where(both > 0.0, np.arccos(np.clip(cos, -1.0, 1.0)), 0.0)

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import (
     CHUNK,
-    InputError,
     Neighbors,
     Paper,
     PerAgent,
     Scene,
-    did_you_mean,
     kernel,
     parameter,
     per_agent,
@@ -27,13 +25,13 @@ from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
+    check_variant,
     launch,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import limit_length, parameter_rows
 
-from .parameter_rows import limit_length, parameter_rows
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["Boids"]
@@ -308,10 +306,7 @@ class Boids(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
-        if self.variant not in VARIANTS:
-            near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"Boids: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
+        check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""

@@ -18,7 +18,6 @@ from crowdbot.core import (
     PerAgent,
     Scene,
     check_number,
-    did_you_mean,
     kernel,
     parameter,
     prange,
@@ -27,13 +26,13 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
+    check_variant,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import limit_length, parameter_rows
 
-from .parameter_rows import limit_length, parameter_rows
 from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["EscapePanic"]
@@ -264,11 +263,8 @@ class EscapePanic(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
         check_number("EscapePanic", "longest_step", self.longest_step, "s", min=1e-6)
-        if self.variant not in VARIANTS:
-            near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"EscapePanic: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+        check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the mean velocities ``[E, A, 2]`` [m/s] over the next ``dt`` [s]; ``rng`` is not used."""

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import (
     CHUNK,
-    InputError,
     Neighbors,
     Paper,
     PerAgent,
     Scene,
-    did_you_mean,
     kernel,
     parameter,
     per_agent,
@@ -26,14 +24,14 @@ from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
+    check_variant,
     launch,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import limit_length, parameter_rows
 
 from .group_cohesion import Groups, group_acceleration, groups_of, pysocialforce_group_acceleration
-from .parameter_rows import limit_length, parameter_rows
 from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["GroupForce"]
@@ -294,10 +292,7 @@ class GroupForce(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
-        if self.variant not in VARIANTS:
-            near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"GroupForce: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+        check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""

@@ -13,14 +13,13 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     launch,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import limit_length, parameter_rows
 
-from .parameter_rows import limit_length, parameter_rows
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["PowerLaw"]
@@ -210,10 +209,6 @@ class PowerLaw(CrowdModel):
         20.0, unit="m/s^2", low=1.0, high=20.0, source="Karamouzas et al. 2014, not verified"
     )
     max_speed: PerAgent | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""

@@ -4,34 +4,32 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import (
     CHUNK,
-    InputError,
     Neighbors,
     Paper,
     PerAgent,
     Scene,
-    did_you_mean,
     kernel,
     parameter,
-    per_agent,
     prange,
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
+    check_variant,
     launch,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import limit_length, parameter_rows
 
 __all__ = ["SocialForce"]
 
@@ -42,21 +40,12 @@ UMANS_LOOK_AHEAD = 0.5
 """Factor of ``look_ahead`` in the 2018 library: 1 s for a parameter of 2 s (fitted to its output)."""
 UMANS_CONTACT = 62.5
 """Contact acceleration per overlap in the 2018 library [1/s^2]: 5000 N/m for 80 kg (fitted to its output)."""
-
-
-class _Law(NamedTuple):
-    """Parameters of the force, each one number for all agents or one per row ``e * A + a``."""
-
-    strength: Floats
-    distance: Floats
-    look_ahead: Floats
-    wall_strength: Floats
-    wall_distance: Floats
-    relaxation_time: Floats
-    view_angle: Floats
-    behind: Floats
-    neighbor_distance: Floats
-    max_acceleration: Floats
+LAW = (
+    "strength", "distance", "look_ahead", "wall_strength", "wall_distance", "relaxation_time", "view_angle", "behind",
+    "neighbor_distance", "max_acceleration",
+)  # fmt: skip
+"""Parameters in the order of the kernel; for the angle, its cosine."""
+VIEW = LAW.index("view_angle")
 
 
 class _Crowd(NamedTuple):
@@ -69,7 +58,7 @@ class _Crowd(NamedTuple):
     max_speed: Floats
     walking: NDArray[np.bool_]
     law: Floats
-    """``[E * A, 10]`` in the order of :class:`_Law`, or ``[1, 10]`` for all."""
+    """``[E * A, 10]`` in the order of :data:`LAW`, or ``[1, 10]`` for all."""
 
 
 @kernel
@@ -166,15 +155,6 @@ def _wall_force(x: float, y: float, ex: float, ey: float, law: Floats, segments:
     return ax, ay
 
 
-@kernel
-def _limit_length(x: float, y: float, most: float) -> tuple[float, float]:
-    """Return a vector limited to the length ``most``."""
-    length = math.sqrt(x * x + y * y)
-    if length <= most:
-        return x, y
-    return x * (most / length), y * (most / length)
-
-
 @kernel(parallel=True)
 def _choose(crowd: _Crowd, near: Neighbors, segments: Floats, umans: bool, dt: float, out: Floats) -> None:
     """Choose the next velocity of every agent, row by row."""
@@ -207,8 +187,8 @@ def _choose_part(
         ax, ay = ax + wx + (px - vx) / law[5], ay + wy + (py - vy) / law[5]
         if umans and still:  # the library stops agents at their goal
             ax, ay = -vx / dt, -vy / dt
-        ax, ay = _limit_length(ax, ay, law[9])
-        vx, vy = _limit_length(vx + ax * dt, vy + ay * dt, top[row])
+        ax, ay = limit_length(ax, ay, law[9])
+        vx, vy = limit_length(vx + ax * dt, vy + ay * dt, top[row])
         out[row, 0] = vx + UMANS_CONTACT * push_x * dt
         out[row, 1] = vy + UMANS_CONTACT * push_y * dt
 
@@ -277,12 +257,7 @@ class SocialForce(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
-        if self.variant not in VARIANTS:
-            raise InputError(
-                f"SocialForce: variant {self.variant!r} is unknown{did_you_mean(self.variant, VARIANTS)};"
-                f" choose {' or '.join(VARIANTS)}"
-            )
+        check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
@@ -305,8 +280,6 @@ class SocialForce(CrowdModel):
         return out
 
     def _law(self, shape: tuple[int, int]) -> Floats:
-        values: list[Any] = [getattr(self, name) for name in _Law._fields]
-        values[_Law._fields.index("view_angle")] = np.cos(np.minimum(self.view_angle, math.pi))
-        if all(type(value) is float or np.ndim(value) == 0 for value in values):
-            return np.array([values], dtype=np.float64)
-        return np.stack([per_agent(v, shape, n).reshape(-1) for v, n in zip(values, _Law._fields, strict=True)], axis=1)
+        law = parameter_rows(self, LAW, shape)
+        law[:, VIEW] = np.cos(np.minimum(np.ascontiguousarray(law[:, VIEW]), math.pi))
+        return law

@@ -14,12 +14,12 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     launch,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import parameter_columns
 
 from .collision_free_speed import is_hidden, way_to, within
 
@@ -194,8 +194,8 @@ class AnticipationVelocity(CrowdModel):
     With ``rng``, agents slower than 0.01 m/s shuffle forward, backward or not at all, and agents that meet
     exactly head on choose a random side. Without it, agents do not shuffle and pass on the right.
 
-    The default follows the implementation in JuPedSim 1.4.2, including its parameters and its wall buffer. Without
-    ``rng`` the model is deterministic.
+    The default follows the implementation in JuPedSim 1.4.2, including its parameters and its wall buffer. Difference:
+    the ends of a wall deflect, too. Without ``rng`` the model is deterministic.
 
     Source: Xu, Chraibi, Seyfried 2021, doi:10.1016/j.trc.2021.103464, as in JuPedSim 1.4.2.
 
@@ -229,10 +229,6 @@ class AnticipationVelocity(CrowdModel):
     max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]."""
         return self._move(scene, dt, rng)[0]
@@ -244,34 +240,26 @@ class AnticipationVelocity(CrowdModel):
 
     def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
         wish, walking, seen, out = begin_step(scene, dt)
-
-        def value(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
         near = neighbors_of(self, scene, seen, walking)
         side, shuffle = np.full(scene.shape, -1.0), np.full(scene.shape, np.nan)
         if rng is not None:
             side = 2.0 * rng.integers(0, 2, scene.shape) - 1.0
             shuffle = rng.integers(-1, 2, scene.shape).astype(np.float64)
-        crowd = _Crowd(
+        values = (
             rows(scene.position),
             rows(np.where(scene.active[..., None], scene.velocity, 0.0)),
             rows(scene.heading),
             rows(wish),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            rows(value("strength")),
-            rows(value("range")),
-            rows(value("time_gap")),
-            rows(value("anticipation_time")),
-            rows(np.maximum(value("reaction_time"), dt)),
-            rows(value("wall_buffer")),
-            rows(value("pushout")),
-            rows(value("neighbor_distance")),
+            *parameter_columns(self, scene.shape, "strength", "range", "time_gap", "anticipation_time"),
+            rows(np.maximum(per_agent(self.reaction_time, scene.shape, "reaction_time"), dt)),
+            *parameter_columns(self, scene.shape, "wall_buffer", "pushout", "neighbor_distance"),
             rows(side),
             rows(shuffle),
             rows(walking),
         )
+        crowd = _Crowd._make(values)
         heading = scene.heading.copy()
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
         return out, heading

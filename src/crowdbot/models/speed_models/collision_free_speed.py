@@ -4,48 +4,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_limit,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.agent_rows import LIMIT, RADIUS, WISH_X, WISH_Y, X, Y, begin_rows
+from crowdbot.models.model import CrowdModel, launch, rows
+from crowdbot.models.parameter_rows import parameter_rows
 
-__all__ = ["CollisionFreeSpeed", "is_hidden", "way_to", "within"]
+__all__ = ["CollisionFreeSpeed", "is_hidden", "nearest_on_segment", "push_by_walls", "way_to", "within"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 STEEPEST = 100.0
 """Upper limit of exponents, against overflow; only the direction of a strong repulsion matters."""
+LAW = ("strength", "range", "wall_strength", "wall_range", "time_gap", "neighbor_distance")
 APART = 1e-9
 """Assumed distance of agents at the same position [m], along x, the first of them on the right."""
-
-
-class _Crowd(NamedTuple):
-    """Data of every agent for the kernel, by row ``e * A + a``."""
-
-    position: Floats
-    heading: Floats
-    desired: Floats
-    radius: Floats
-    max_speed: Floats
-    strength: Floats
-    range: Floats
-    wall_strength: Floats
-    wall_range: Floats
-    time_gap: Floats
-    reach: Floats
-    walking: NDArray[np.bool_]
 
 
 @kernel
@@ -83,61 +62,101 @@ def way_to(dx: float, dy: float, ex: float, ey: float, reach: float) -> float:
     return math.sqrt(dx * dx + dy * dy) - reach
 
 
+@kernel
+def push_by_walls(
+    walls: Floats, found: NDArray[np.int64], count: int, x: float, y: float, radius: float, strength: float,
+    scale: float, ux: float, uy: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the unit vector along u with the repulsion by the found walls, or zeros if the sum is 0."""
+    for n in range(count):
+        m = found[n]
+        nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
+        distance = math.sqrt((x - nx) ** 2 + (y - ny) ** 2)
+        if distance > 0.0:
+            push = strength * math.exp(min((radius - distance) / scale, STEEPEST))
+            ux += push * (x - nx) / distance
+            uy += push * (y - ny) / distance
+    length = math.sqrt(ux * ux + uy * uy)
+    return (ux / length, uy / length) if length > 0.0 else (0.0, 0.0)
+
+
 @kernel(parallel=True)
-def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, out: Floats) -> None:
+def _choose(
+    agents: Floats, walking: Bools, heading: Floats, laws: Floats, near: Neighbors, walls: Floats, out: Floats
+) -> None:
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, out)
+        end = min((part + 1) * CHUNK, len(out))
+        _choose_part(part * CHUNK, end, agents, walking, heading, laws, near, walls, out)
 
 
 @kernel
-def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, out: Floats) -> None:
+def _choose_part(
+    begin: int, end: int, agents: Floats, walking: Bools, heading: Floats, laws: Floats, near: Neighbors,
+    walls: Floats, out: Floats,
+) -> None:  # fmt: skip
     # unpack the tuples outside of the loop: each access counts references
-    place, heading, desired, radius, top, strength, scale, wall_strength, wall_scale, gap, reach, walking = crowd
     agent, number, order = near
     A = agent.shape[1]
     found = np.empty(len(walls), dtype=np.int64)
-    seen = np.empty((agent.shape[2], 3))  # relative position of each visible neighbour, and sum of the radii
+    # of each visible neighbour: relative position, sum of the radii, distance, repulsion and its components
+    aside, along, contact = np.empty(agent.shape[2]), np.empty(agent.shape[2]), np.empty(agent.shape[2])
+    distance, push, push_x, push_y = (
+        np.empty(agent.shape[2]), np.empty(agent.shape[2]), np.empty(agent.shape[2]), np.empty(agent.shape[2])
+    )  # fmt: skip
     for k in range(begin, end):
         row = order[k]
-        wish = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
+        wish = math.sqrt(agents[row, WISH_X] ** 2 + agents[row, WISH_Y] ** 2)
         if not walking[row] or wish == 0.0:
             continue
-        e, a = row // A, row % A
-        x, y = place[row, 0], place[row, 1]
-        ux, uy = desired[row, 0] / wish, desired[row, 1] / wish
-        count = within(walls, x, y, reach[row], found)
-        held = 0
+        e, a, law = row // A, row % A, row if len(laws) > 1 else 0
+        shared = e % len(agent)  # copies of an environment have the same neighbours
+        x, y, radius = agents[row, X], agents[row, Y], agents[row, RADIUS]
+        ux, uy = agents[row, WISH_X] / wish, agents[row, WISH_Y] / wish
+        count = within(walls, x, y, laws[law, 5], found)
+        held = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         for n in range(number[e, a]):
-            other = row - a + agent[e, a, n]
-            dx, dy = place[other, 0] - x, place[other, 1] - y
-            if is_hidden(walls, found, count, x, y, dx, dy):
+            other = row - a + agent[shared, a, n]
+            dx, dy = agents[other, X] - x, agents[other, Y] - y
+            if count > 0 and is_hidden(walls, found, count, x, y, dx, dy):
                 continue
             if dx == 0.0 and dy == 0.0:
                 dx = -APART if row < other else APART
-            distance, contact = math.sqrt(dx * dx + dy * dy), radius[row] + radius[other]
-            push = strength[row] * math.exp(min((contact - distance) / scale[row], STEEPEST))
-            ux -= push * dx / distance
-            uy -= push * dy / distance
-            seen[held, 0], seen[held, 1], seen[held, 2] = dx, dy, contact
+            aside[held], along[held], contact[held] = dx, dy, radius + agents[other, RADIUS]
             held += 1
-        for n in range(count):
-            m = found[n]
-            nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
-            distance = math.sqrt((x - nx) ** 2 + (y - ny) ** 2)
-            if distance > 0.0:
-                push = wall_strength[row] * math.exp(min((radius[row] - distance) / wall_scale[row], STEEPEST))
-                ux += push * (x - nx) / distance
-                uy += push * (y - ny) / distance
-        length = math.sqrt(ux * ux + uy * uy)
-        if length > 0.0:
-            ux, uy = ux / length, uy / length
-        else:
+        _repel(aside, along, contact, held, laws[law, 0], laws[law, 1], distance, push, push_x, push_y)
+        for n in range(held):  # one after the other: the order of a sum decides on its last bits
+            ux, uy = ux - push_x[n], uy - push_y[n]
+        ux, uy = push_by_walls(walls, found, count, x, y, radius, laws[law, 2], laws[law, 3], ux, uy)
+        if ux == 0.0 and uy == 0.0:
             ux, uy = math.cos(heading[row]), math.sin(heading[row])
-        speed = min(wish, top[row])
-        for n in range(held if gap[row] > 0.0 else 0):
-            speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
+        speed, gap = min(wish, agents[row, LIMIT]), laws[law, 4]
+        if gap > 0.0:
+            free = math.inf
+            for n in range(held):
+                # no branch: none could foresee it
+                ahead = (ux * aside[n] + uy * along[n] >= 0.0) & (abs(ux * along[n] - uy * aside[n]) <= contact[n])
+                free = min(free, distance[n] - contact[n] if ahead else math.inf)
+            speed = min(speed, max(0.0, free) / gap)
         out[row, 0], out[row, 1] = speed * ux, speed * uy
+
+
+@kernel(inline=True)
+def _repel(
+    aside: Floats, along: Floats, contact: Floats, held: int, strength: float, scale: float, distance: Floats,
+    push: Floats, push_x: Floats, push_y: Floats,
+) -> None:  # fmt: skip
+    """Write distance, repulsion and its components for each neighbour, in loops that the compiler vectorizes."""
+    for n in range(held):
+        distance[n] = math.sqrt(aside[n] * aside[n] + along[n] * along[n])
+    for n in range(held):
+        push[n] = min((contact[n] - distance[n]) / scale, STEEPEST)
+    for n in range(held):
+        push[n] = strength * math.exp(push[n])
+    for n in range(held):
+        push_x[n] = push[n] * aside[n] / distance[n]
+    for n in range(held):
+        push_y[n] = push[n] * along[n] / distance[n]
 
 
 @dataclass(frozen=True)
@@ -187,31 +206,11 @@ class CollisionFreeSpeed(CrowdModel):
     max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking, seen, out = begin_step(scene, dt)
-
-        def value(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
-        near = neighbors_of(self, scene, seen, walking)
-        crowd = _Crowd(
-            rows(scene.position),
-            rows(scene.heading),
-            rows(wish),
-            rows(scene.radius),
-            rows(speed_limit(self.max_speed, scene)),
-            rows(value("strength")),
-            rows(value("range")),
-            rows(value("wall_strength")),
-            rows(value("wall_range")),
-            rows(value("time_gap")),
-            rows(value("neighbor_distance")),
-            rows(walking),
-        )
-        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments())
-        return out
+        start = begin_rows(scene, dt, self.max_speed)
+        near = start.neighbors(self.neighbor_distance, self.max_neighbors)
+        laws, heading = parameter_rows(self, LAW, scene.shape), rows(scene.heading)
+        values = start.agents, start.walking, heading, laws, near, scene.walls.segments()
+        launch(_choose, _choose_part, start.out, *values)
+        return start.velocity

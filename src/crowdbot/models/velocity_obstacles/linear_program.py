@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["best_velocity"]
+__all__ = ["best_velocity", "clip_speed"]
 
 Array = NDArray[np.float64]
 
@@ -29,14 +29,19 @@ def best_velocity(
     If no velocity is on the left of all lines, the largest violation of the lines from ``fixed`` on is minimised; the
     first ``fixed`` lines (walls) are hard constraints. ``spare`` is working memory for as many lines.
     """
-    if wish_x * wish_x + wish_y * wish_y > speed * speed:
-        length = math.sqrt(wish_x * wish_x + wish_y * wish_y)
-        x, y = wish_x / length * speed, wish_y / length * speed
-    else:
-        x, y = wish_x, wish_y
+    x, y = clip_speed(wish_x, wish_y, speed)
     failed, x, y = _solve_plane(lines, count, speed, wish_x, wish_y, False, x, y)
     if failed < count:
         x, y = _minimize_violation(lines, fixed, count, failed, speed, x, y, spare)
+    return x, y
+
+
+@kernel
+def clip_speed(x: float, y: float, speed: float) -> tuple[float, float]:
+    """Return a desired velocity, shortened to at most ``speed``."""
+    if x * x + y * y > speed * speed:
+        length = math.sqrt(x * x + y * y)
+        return x / length * speed, y / length * speed
     return x, y
 
 
@@ -52,21 +57,17 @@ def _solve_on_line(
         return False, 0.0, 0.0
     middle = -(x * ux + y * uy)
     half = math.sqrt(half2)
-    low, high = middle - half, middle + half
-    for i in range(k):
+    low, high, failed = middle - half, middle + half, False
+    for i in range(k):  # no branch: none could foresee it
         vx, vy = lines[i, 2], lines[i, 3]
         turn = ux * vy - uy * vx
         side = vx * (y - lines[i, 1]) - vy * (x - lines[i, 0])
-        if abs(turn) <= PARALLEL:
-            if side < 0.0:
-                return False, 0.0, 0.0
-            continue
-        if turn > 0.0:
-            high = min(high, side / turn)
-        else:
-            low = max(low, side / turn)
-        if low > high:
-            return False, 0.0, 0.0
+        t = side / turn
+        failed |= (side < 0.0) & (abs(turn) <= PARALLEL)
+        high = t if (turn > PARALLEL) & (t < high) else high
+        low = t if (turn < -PARALLEL) & (t > low) else low
+    if low > high or failed:
+        return False, 0.0, 0.0
     if along:
         t = high if wish_x * ux + wish_y * uy > 0.0 else low
     else:

@@ -2,88 +2,110 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_limit,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
+from crowdbot.models.agent_rows import LIMIT, RADIUS, VX, VY, WISH_X, WISH_Y, X, Y, begin_rows
+from crowdbot.models.model import CrowdModel, launch
+from crowdbot.models.parameter_rows import parameter_rows
 
-from .linear_program import best_velocity
-from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
+from .linear_program import best_velocity, clip_speed
+from .orca_lines import (
+    BLOCK,
+    BLOCK_ROWS,
+    LINE,
+    SHARE,
+    Edges,
+    avoid_agent,
+    avoid_agents,
+    avoid_edge,
+    edges_in_reach,
+    edges_of,
+)
 
 __all__ = ["ORCA"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 SHORTEST = 1e-3
 """Minimum time horizon [s]; a horizon of 0 has no line."""
 
 
-class _Crowd(NamedTuple):
-    """Data of every agent for the kernel, by row ``e * A + a``."""
-
-    position: Floats
-    velocity: Floats
-    desired: Floats
-    radius: Floats
-    max_speed: Floats
-    horizon: Floats
-    wall_horizon: Floats
-    external: NDArray[np.bool_]
-    walking: NDArray[np.bool_]
+HORIZONS = ("time_horizon", "time_horizon_walls")
 
 
 @kernel(parallel=True)
-def _choose(crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+def _choose(
+    agents: Floats, walking: Bools, external: Bools, horizons: Floats, near: Neighbors, edges: Edges, dt: float,
+    out: Floats,
+) -> None:  # fmt: skip
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, edges, dt, out)
+        _choose_part(
+            part * CHUNK, min((part + 1) * CHUNK, len(out)), agents, walking, external, horizons, near, edges, dt, out
+        )
 
 
 @kernel
-def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+def _choose_part(
+    begin: int, end: int, agents: Floats, walking: Bools, external: Bools, horizons: Floats, near: Neighbors,
+    edges: Edges, dt: float, out: Floats,
+) -> None:  # fmt: skip
     # unpack the tuples outside of the loop: each access counts references
-    place, velocity, desired, radius, top, horizon, wall_horizon, external, walking = crowd
     agent, number, order = near
     corner, direction, previous, following, convex = edges
     A = agent.shape[1]
     found = np.empty(len(corner), dtype=np.int64)
     gap2 = np.empty(len(corner))
     lines = np.empty((len(corner) + agent.shape[2], 4))
-    spare = np.empty_like(lines)
+    spare, block = np.empty_like(lines), np.empty((BLOCK_ROWS, BLOCK))
     for k in range(begin, end):
         row = order[k]
         if not walking[row]:
             continue
         e, a = row // A, row % A
-        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
-        reach = wall_horizon[row] * top[row] + radius[row]
+        shared = e % len(agent)  # copies of an environment have the same neighbours
+        x, y, vx, vy = agents[row, X], agents[row, Y], agents[row, VX], agents[row, VY]
+        radius, top = agents[row, RADIUS], agents[row, LIMIT]
+        own = row if len(horizons) > 1 else 0
+        horizon, wall_horizon = horizons[own, 0], horizons[own, 1]
+        reach = wall_horizon * top + radius
         fixed = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
             fixed += avoid_edge(
                 lines, fixed, found[n], corner, direction, previous, following, convex,
-                x, y, vx, vy, radius[row], wall_horizon[row],
+                x, y, vx, vy, radius, wall_horizon,
             )  # fmt: skip
         count = fixed
-        for n in range(number[e, a]):
-            other = row - a + agent[e, a, n]
-            share = 1.0 if external[other] else 0.5
-            avoid_agent(
-                lines, count, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
-                radius[row] + radius[other], horizon[row], dt, share, 1.0 if row < other else -1.0,
-            )  # fmt: skip
-            count += 1
-        out[row, 0], out[row, 1] = best_velocity(lines, fixed, count, top[row], desired[row, 0], desired[row, 1], spare)
+        best_x, best_y = clip_speed(agents[row, WISH_X], agents[row, WISH_Y], top)
+        for first in range(0, number[e, a], BLOCK):
+            held = min(BLOCK, number[e, a] - first)
+            for n in range(held):
+                other = row - a + agent[shared, a, first + n]
+                block[X, n], block[Y, n] = agents[other, X] - x, agents[other, Y] - y
+                block[VX, n], block[VY, n] = agents[other, VX], agents[other, VY]
+                block[RADIUS, n], block[SHARE, n] = radius + agents[other, RADIUS], 1.0 if external[other] else 0.5
+            violated = avoid_agents(block, held, vx, vy, horizon, dt, best_x, best_y)
+            if violated == 0 and fixed == 0 and number[e, a] <= BLOCK:
+                break
+            for n in range(held):
+                for c in range(4):
+                    lines[count, c] = block[LINE + c, n]
+                if math.isnan(block[LINE + 2, n]):
+                    side = 1.0 if a < agent[shared, a, first + n] else -1.0
+                    avoid_agent(
+                        lines, count, block[X, n], block[Y, n], vx, vy, block[VX, n], block[VY, n], block[RADIUS, n],
+                        horizon, dt, block[SHARE, n], side,
+                    )  # fmt: skip
+                count += 1
+        if count > 0:
+            best_x, best_y = best_velocity(lines, fixed, count, top, agents[row, WISH_X], agents[row, WISH_Y], spare)
+        out[row, 0], out[row, 1] = best_x, best_y
 
 
 @dataclass(frozen=True)
@@ -134,24 +156,12 @@ class ORCA(CrowdModel):
     max_speed: PerAgent | None = None
     reciprocal: bool = False
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking, seen, out = begin_step(scene, dt)
-        near = neighbors_of(self, scene, seen, walking)
-        crowd = _Crowd(
-            rows(scene.position),
-            rows(scene.velocity),
-            rows(wish),
-            rows(scene.radius),
-            rows(speed_limit(self.max_speed, scene)),
-            rows(per_agent(self.time_horizon, scene.shape, "time_horizon")),
-            rows(per_agent(self.time_horizon_walls, scene.shape, "time_horizon_walls")),
-            rows(np.zeros_like(scene.external) if self.reciprocal else scene.external),
-            rows(walking),
-        )
-        launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
-        return out
+        start = begin_rows(scene, dt, self.max_speed)
+        near = start.neighbors(self.neighbor_distance, self.max_neighbors)
+        external = np.zeros_like(start.external) if self.reciprocal else start.external
+        horizons = parameter_rows(self, HORIZONS, scene.shape)
+        values = start.agents, start.walking, external, horizons, near, edges_of(scene.walls), float(dt)
+        launch(_choose, _choose_part, start.out, *values)
+        return start.velocity

@@ -13,13 +13,32 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Walls, kernel
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.models.agent_rows import RADIUS, VX, VY, X, Y
 
-__all__ = ["Edges", "avoid_agent", "avoid_edge", "edges_in_reach", "edges_of"]
+__all__ = [
+    "BLOCK",
+    "BLOCK_ROWS",
+    "LINE",
+    "SHARE",
+    "Edges",
+    "avoid_agent",
+    "avoid_agents",
+    "avoid_edge",
+    "edges_in_reach",
+    "edges_of",
+]
 
 Array = NDArray[np.float64]
 
 COVERED = 1e-5
 """An edge is skipped if earlier lines cover it up to this tolerance [m/s]."""
+BLOCK = 32
+"""Number of neighbours whose lines are computed together."""
+LANES = 4
+"""Number of values in a vector register; blocks are filled up to a multiple."""
+SHARE, LINE, BLOCK_ROWS = 5, 6, 10
+"""Rows of a block: relative position, velocity and sum of the radii as in :mod:`crowdbot.models.agent_rows`, share of
+the agent, and 4 rows of the line."""
 
 
 class Edges(NamedTuple):
@@ -99,6 +118,58 @@ def avoid_agent(
         px, py = along * ux - wx, along * uy - wy
     lines[at, 0], lines[at, 1] = vx + share * px, vy + share * py
     lines[at, 2], lines[at, 3] = ux, uy
+
+
+@kernel(inline=True)
+def avoid_agents(
+    block: Array, held: int, vx: float, vy: float, horizon: float, dt: float, best_x: float, best_y: float
+) -> int:
+    """Write the lines of neighbours to the last rows of a block: the results of :func:`avoid_agent`.
+
+    The loop has no branches, so that the compiler vectorizes it. A line without a direction is NaN. Return how many
+    lines do not permit a velocity.
+
+    Args:
+        block: ``[BLOCK_ROWS, BLOCK]``, see its rows.
+        held: number of neighbours.
+        vx, vy: velocity of the agent [m/s].
+        horizon, dt: as in :func:`avoid_agent`.
+        best_x, best_y: the velocity that is tested [m/s].
+    """
+    violated = int(np.int64(0))  # a literal 0 has its own type
+    quads = (held + LANES - 1) // LANES
+    for n in range(held, LANES * quads):
+        block[X, n] = block[Y, n] = block[VX, n] = block[VY, n] = block[RADIUS, n] = block[SHARE, n] = 1.0
+    far, near = 1.0 / horizon, 1.0 / dt
+    for n in range(LANES * quads):
+        x, y, reach = block[X, n], block[Y, n], block[RADIUS, n]
+        wx, wy = vx - block[VX, n], vy - block[VY, n]
+        distance2, reach2 = x * x + y * y, reach * reach
+        apart = distance2 > reach2
+        inverse = far if apart else near
+        cx, cy = wx - inverse * x, wy - inverse * y
+        inward, size2 = cx * x + cy * y, cx * cx + cy * cy
+        rounds = (not apart) | ((inward < 0.0) & (inward * inward > reach2 * size2))
+        size = math.sqrt(size2)
+        nx, ny = cx / size, cy / size
+        change = reach * inverse - size
+        turn = 1.0 if x * cy - y * cx > 0.0 else -1.0
+        gap2 = distance2 - reach2
+        leg = math.sqrt(gap2 if gap2 > 0.0 else 0.0)
+        tx = turn * ((x * leg - turn * y * reach) / distance2)
+        ty = turn * ((turn * x * reach + y * leg) / distance2)
+        along = wx * tx + wy * ty
+        px, py = change * nx if rounds else along * tx - wx, change * ny if rounds else along * ty - wy
+        lx, ly, ux, uy = (
+            vx + block[SHARE, n] * px,
+            vy + block[SHARE, n] * py,
+            ny if rounds else tx,
+            -nx if rounds else ty,
+        )
+        block[LINE, n], block[LINE + 1, n], block[LINE + 2, n], block[LINE + 3, n] = lx, ly, ux, uy
+        allowed = ux * (ly - best_y) - uy * (lx - best_x) <= 0.0  # False for NaN, too
+        violated += 0 if (n >= held) | allowed else 1
+    return violated
 
 
 @kernel

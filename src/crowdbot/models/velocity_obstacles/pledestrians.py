@@ -9,16 +9,16 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     launch,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import parameter_columns
 
 from .linear_program import best_velocity
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
@@ -175,10 +175,6 @@ class PLEdestrians(CrowdModel):
     )
     max_speed: PerAgent | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
@@ -188,18 +184,17 @@ class PLEdestrians(CrowdModel):
             distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
         else:
             distance = np.full(scene.shape, np.inf)
-        crowd = _Crowd(
+        values = (
             rows(scene.position),
             rows(scene.velocity),
             rows(wish),
             rows(distance),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            rows(per_agent(self.planning_time, scene.shape, "planning_time")),
-            rows(per_agent(self.time_horizon, scene.shape, "time_horizon")),
-            rows(per_agent(self.time_horizon_walls, scene.shape, "time_horizon_walls")),
+            *parameter_columns(self, scene.shape, "planning_time", "time_horizon", "time_horizon_walls"),
             rows(scene.external),
             rows(walking),
         )
+        crowd = _Crowd._make(values)
         launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
         return out

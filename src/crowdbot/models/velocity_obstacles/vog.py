@@ -14,12 +14,12 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     movable,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import parameter_columns
 
 from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
 from .vog_fellows import MOST_FELLOWS, pick_fellows, unit, walking_direction
@@ -235,10 +235,6 @@ class VOG(CrowdModel):
     closeness: PerAgent = parameter(1.0, unit="1", low=0.1, high=1.0, source="CrowdBot simulator")
     max_speed: PerAgent | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         return self._choose_velocity(scene, dt)[..., :2]
@@ -256,12 +252,8 @@ class VOG(CrowdModel):
 
     def _choose_velocity(self, scene: Scene, dt: float) -> Floats:
         wish, walking, seen, velocity = begin_step(scene, dt)
-
-        def each(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
         near = neighbors_of(self, scene, seen, walking)
-        crowd = _Crowd(
+        values = (
             rows(scene.position),
             rows(scene.velocity),
             rows(wish),
@@ -270,17 +262,13 @@ class VOG(CrowdModel):
             rows(per_agent(scene.memory.get(MEMORY, CALM), scene.shape, MEMORY)),
             rows(scene.external),
             rows(walking),
-            rows(each("time_horizon")),
-            rows(each("wall_horizon")),
-            rows(each("preference_weight")),
-            rows(each("group_weight")),
-            rows(np.rint(each("group_neighbors")).astype(np.int64)),
-            rows(each("group_radius")),
-            rows(each("group_distance")),
-            rows(each("group_horizon")),
-            rows(each("formation")),
-            rows(each("closeness")),
+            *parameter_columns(self, scene.shape, "time_horizon", "wall_horizon", "preference_weight", "group_weight"),
+            rows(np.rint(per_agent(self.group_neighbors, scene.shape, "group_neighbors")).astype(np.int64)),
+            *parameter_columns(
+                self, scene.shape, "group_radius", "group_distance", "group_horizon", "formation", "closeness"
+            ),
         )
+        crowd = _Crowd._make(values)
         out = np.zeros((*scene.shape, 3))
         out[..., :2] = velocity
         _choose(crowd, near, _groups(scene.group, seen), scene.walls.segments(), rows(out))

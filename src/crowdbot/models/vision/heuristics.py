@@ -14,12 +14,12 @@ from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segm
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     launch,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import parameter_columns
 
 __all__ = ["Heuristics"]
 
@@ -255,27 +255,23 @@ class Heuristics(CrowdModel):
     max_neighbors: PerAgent = parameter(20.0, unit="1", low=1.0, high=40.0, source="chosen here")
     max_speed: PerAgent | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
-
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
         near = neighbors_of(self, scene, seen, walking)
         relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)
         stiffness = np.minimum(per_agent(self.contact_stiffness, scene.shape, "contact_stiffness"), 1.0 / dt**2)
-        crowd = _Crowd(
+        values = (
             rows(scene.position),
             rows(scene.velocity),
             rows(wish),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            rows(per_agent(self.field_of_view, scene.shape, "field_of_view")),
-            rows(per_agent(self.sight_distance, scene.shape, "sight_distance")),
+            *parameter_columns(self, scene.shape, "field_of_view", "sight_distance"),
             rows(relaxation),
             rows(stiffness),
             rows(walking),
         )
+        crowd = _Crowd._make(values)
         launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
         return out

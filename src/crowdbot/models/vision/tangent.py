@@ -13,7 +13,6 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
     neighbors_of,
     rows,
     speed_limit,
@@ -182,10 +181,6 @@ class Tangent(CrowdModel):
     neighbor_distance: PerAgent = parameter(15.0, unit="m", low=3.0, high=15.0, source="CrowdBot simulator")
     max_neighbors: PerAgent = parameter(15.0, unit="1", low=1.0, high=20.0, source="CrowdBot simulator")
     max_speed: PerAgent | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limit(self, self.max_speed)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""

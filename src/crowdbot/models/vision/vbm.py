@@ -16,21 +16,20 @@ from crowdbot.core import (
     Paper,
     PerAgent,
     Scene,
-    did_you_mean,
     kernel,
     parameter,
-    per_agent,
     prange,
 )
 from crowdbot.models.model import (
     CrowdModel,
     begin_step,
-    check_limit,
+    check_variant,
     movable,
     neighbors_of,
     rows,
     speed_limit,
 )
+from crowdbot.models.parameter_rows import parameter_columns
 
 from .vbm_slopes import FAN, FIELD, STEEP, STILL, desire_slopes, look_at_walls, mean_slopes, sum_slopes
 
@@ -42,6 +41,11 @@ VARIANTS = ("agents", "crowdbot")
 MOST_RAYS = 4096
 FAST = 1e6
 """Upper limit of the turn in a step [rad]."""
+LAW = (
+    "time_scale", "distance_scale", "speed_scale", "angle_scale", "wall_distance", "max_acceleration",
+    "max_turn", "ridge", "gain",
+)  # fmt: skip
+"""Parameters in the order of the kernel."""
 
 
 class _Crowd(NamedTuple):
@@ -190,10 +194,7 @@ class VBM(CrowdModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_limit(self, self.max_speed)
-        if self.variant not in VARIANTS:
-            near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"VBM: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
+        check_variant(self, self.variant, VARIANTS)
         if isinstance(self.rays, bool) or not isinstance(self.rays, int) or not 2 <= self.rays <= MOST_RAYS:
             raise InputError(f"VBM: rays = {self.rays!r} is not allowed, it must be a whole number, 2 to {MOST_RAYS}")
 
@@ -210,12 +211,8 @@ class VBM(CrowdModel):
 
     def _choose_velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> Floats:
         wish, walking, visible, velocity = begin_step(scene, dt)
-
-        def each(name: str) -> Floats:
-            return rows(per_agent(getattr(self, name), scene.shape, name))
-
         seen = neighbors_of(self, scene, visible, walking)
-        crowd = _Crowd(
+        values = (
             rows(scene.position),
             rows(scene.velocity),
             rows(scene.heading),
@@ -223,16 +220,9 @@ class VBM(CrowdModel):
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
             rows(walking),
-            each("time_scale"),
-            each("distance_scale"),
-            each("speed_scale"),
-            each("angle_scale"),
-            each("wall_distance"),
-            each("max_acceleration"),
-            each("max_turn"),
-            each("ridge"),
-            each("gain"),
+            *parameter_columns(self, scene.shape, *LAW),
         )
+        crowd = _Crowd._make(values)
         field = self.variant == "crowdbot"
         angle = np.linspace(-0.5 * FIELD, 0.5 * FIELD, self.rays if field else FAN)
         luck = np.full(scene.shape, 0.5) if rng is None else rng.random(scene.shape)

@@ -14,7 +14,8 @@ from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
 
 from .clearance import wall_gaps
-from .rollout import PlanMotions, roll_out
+from .plan_costs import contact_probability, progress_cost, space_lack
+from .rollout import roll_out
 
 __all__ = ["MPCNavigator"]
 
@@ -24,8 +25,6 @@ STEP = 0.2
 """Time step of plans [s]."""
 WALKING = 0.5
 """Speed [m/s] from which the uncertainty of a person grows fully."""
-LOGISTIC = 1.702
-"""Factor with which the logistic function is within 0.01 of the normal distribution."""
 WALL = 100.0
 """Cost of a full radius in a wall [s]."""
 
@@ -97,16 +96,10 @@ class MPCNavigator(Navigator):
         """Return the first twist of the cheapest plan."""
         steps = max(2, round(self.horizon / STEP))
         rollout = roll_out(observation, self.speed, steps, STEP)
-        cost = self._progress(observation, rollout)
+        cost = progress_cost(rollout, min(self.speed, observation.limits.max_speed), self.smoothness)
         cost += self._people(observation, rollout.position)
         cost += self._walls(observation, rollout.position)
         return Twist(*rollout.first[int(np.argmin(cost))].tolist())
-
-    def _progress(self, observation: Observation, rollout: PlanMotions) -> Floats:
-        """Return the cost ``[C]`` of the remaining path and of a change of the twist."""
-        top = min(self.speed, observation.limits.max_speed)
-        late = (rollout.remaining.mean(axis=1) + rollout.remaining[:, -1]) / top
-        return np.asarray(late + self.smoothness * rollout.change)
 
     def _people(self, observation: Observation, position: Floats) -> Floats:
         """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``."""
@@ -116,9 +109,8 @@ class MPCNavigator(Navigator):
         for future, share in zip(places, weight.tolist(), strict=True):
             away = position[:, :, None] - future
             gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - radius - observation.radius
-            steep = np.clip(LOGISTIC * (gap - self.margin) / sigma, -50.0, 50.0)
-            meets = 1.0 / (1.0 + np.exp(steep.min(axis=1)))
-            lack = np.maximum(1.0 - np.maximum(gap, 0.0) / self.space, 0.0).max(axis=2, initial=0.0)
+            meets = contact_probability(gap, self.margin, sigma)
+            lack = space_lack(gap, self.space).max(axis=2, initial=0.0)
             total += share * (self.risk * meets.sum(axis=1) + self.comfort * lack.mean(axis=1))
         return total
 

@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, check_programs
 
 from .messages import LONGEST_LINE
 
@@ -39,6 +39,7 @@ class ChildProcess:
     """
 
     def __init__(self, words: Sequence[str], name: str) -> None:
+        check_programs(f"navigator {name}")
         self.name, self._lock, self._buffer = name, threading.Lock(), b""
         self.scratch = Path(tempfile.mkdtemp(prefix="crowdbot-process-"))
         self._log = (self.scratch / "stderr").open("w+b")

@@ -30,6 +30,7 @@ __all__ = [
     "agent_histories",
     "heading_vectors",
     "interpolate_gaps",
+    "planned_positions",
     "rotate",
     "speed_class",
 ]  # fmt: skip
@@ -212,7 +213,7 @@ def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], N
     later = place[:, :, None] + pace[:, :, None] * moment
     known: Bools = np.zeros(who.shape, dtype=np.bool_)
     if past.plan is not None:
-        planned = np.stack([_plan_at(past, k)[where, who] for k in LOOKAHEAD_ROWS], axis=2)
+        planned = np.stack([planned_positions(past, k)[where, who] for k in LOOKAHEAD_ROWS], axis=2)
         known = np.asarray(~np.isnan(planned).any(axis=(2, 3)))
         later = np.where(known[..., None, None], planned - now[:, None, None], later)
     zero = there[..., None]
@@ -223,7 +224,7 @@ def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], N
     return people, window, slot
 
 
-def _plan_at(past: Windows, step: int) -> Floats:
+def planned_positions(past: Windows, step: int) -> Floats:
     """Return planned positions ``[W, A, 2]`` [m] after ``step`` steps of 0.4 s."""
     rows = step * STEP / past.dt
     low = int(np.floor(rows + 1e-9))

@@ -15,8 +15,8 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import SampledConstantVelocity
 from crowdbot.prediction.predictor import Predictor
 from crowdbot.prediction.pretrained_weights import (
-    ALL,
     AUTO,
+    OPEN,
     STEP,
     check_fold,
     fold_of,
@@ -49,7 +49,8 @@ class Anchors(Predictor):
 
     Fields:
         fold: shipped set: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with ``all``
-            places, or ``auto``: without the place of the recording, by its name, else ``all``.
+            places, ``open``: with UCY and simulated crowds only, or ``auto``: without the place of the recording, by
+            its name, else ``open``.
         shapes: ``[K, 12, 2]`` [m] own residuals at steps of 0.4 s, see :meth:`fit`; None means the shipped set.
         share: ``[K]`` relative cluster sizes.
 
@@ -108,8 +109,8 @@ class Anchors(Predictor):
         why = incompatibility(past)
         if why:
             return f"anchors: {why}; a baseline is used instead"
-        if self.shapes is None and self.fold == AUTO and fold_of(past.source) == ALL:
-            return f"anchors: {past.source} is not named after a training place; using the anchors of all places"
+        if self.shapes is None and self.fold == AUTO and fold_of(past.source) == OPEN:
+            return f"anchors: {past.source} is not named after a training place; using those of UCY and simulations"
         return ""
 
     @classmethod

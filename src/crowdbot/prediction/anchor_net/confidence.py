@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core import stream
 
 from .agent_frame import PREDICTED_ROWS, SPEED_CLASSES, speed_class
-from .predictor import feature_limit, network_output
+from .forward_pass import feature_limit, network_output
 from .training_data import NO_AUGMENTATION, TrainingSet, make_batch
 
 __all__ = ["calibrate_confidence"]

@@ -6,29 +6,26 @@ import dataclasses
 import math
 import warnings
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import DataError, InputError, Paper, did_you_mean
+from crowdbot.core import InputError, Paper, did_you_mean
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
 from crowdbot.prediction.joint_futures import coordinate_draws, coordinate_modes, separate_people, stop_at_walls
 from crowdbot.prediction.predictor import Predictor, window_streams
 from crowdbot.prediction.pretrained_weights import (
-    ALL,
     AUTO,
+    OPEN,
     STEP,
     Numbers,
     check_fold,
     fold_of,
     incompatibility,
     load_pretrained,
-    read_weights,
 )
-from crowdbot.prediction.training.checkpoint import load_checkpoint
 
 from .agent_frame import (
     HISTORY,
@@ -40,11 +37,14 @@ from .agent_frame import (
     speed_class,
 )
 from .anchors import CHAI, resample_paths, scatter_to_slots
-from .layers import attend, dense
-from .network_shapes import wrong_array
+from .fitted_line import line_coefficients
+from .forward_pass import feature_limit, network_output, reach_of
+from .mixture import future_covariances, total_covariances
 from .out_of_distribution import out_of_distribution
+from .own_weights import load_own_weights, load_reaction
+from .plan_reaction import PlanReaction, Walks, reaction_displacements
 
-__all__ = ["AnchorNet", "Modes", "feature_limit", "network_output", "reach_of"]
+__all__ = ["AnchorNet", "Modes"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -54,6 +54,8 @@ MOST_AT_ONCE = 2048
 """Number of people per network evaluation."""
 WALL = 0.02
 """Factor on the probability of a future that crosses a wall."""
+SLOW = 0.5
+"""Distance walked in 2.8 s [m] below which the futures of a person are combined by probability, not by anchor."""
 DRAWS = 20
 """Draws are combined into joint futures in blocks of this size; the first draws do not depend on K."""
 
@@ -78,7 +80,7 @@ class _Bends(NamedTuple):
     """``[N, K, 6]``."""
     probability: Floats
     single: Floats
-    """``[N, 6]``."""
+    """``[N, 6]``; with a share of the least-squares line, see :mod:`.fitted_line`."""
     spread: Floats
     """``[N, K, 6]`` standard deviation around each future."""
     heading: Floats
@@ -87,6 +89,10 @@ class _Bends(NamedTuple):
     slot: Integers
     foreign: Floats
     """``[N]`` out-of-distribution score."""
+    anchor: Integers
+    """``[N, K]`` anchor of each future."""
+    slow: NDArray[np.bool_]
+    """``[N]``, whether a person walked less than :data:`SLOW`."""
 
 
 @dataclass(frozen=True)
@@ -109,11 +115,17 @@ class AnchorNet(Predictor):
 
     Fields:
         fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
-            ``all`` places, or ``auto``: without the place of the recording, by its name, else ``all``.
+            ``all`` places, ``open``: with UCY and simulated crowds only, or ``auto``: without the place of the
+            recording, by its name, else ``open``.
         sample: ``set``: the weighted futures, at most 20, and the single trajectory for K = 1; ``draws``: any number
             of independent random draws.
         file: own weights from ``crowdbot train anchor-net``, instead of the shipped ones.
-        contact: minimum distance between people of a joint future [m]; 0 disables joint futures.
+        reaction: how people react to a robot whose plan is known: ``open``, the shipped coefficients (see
+            :class:`.PlanReaction`), ``none``, or a file of own ones.
+        contact: minimum distance between the centres of people of a joint future, also between rows [m], where the
+            windows have no radii; 0 disables joint futures.
+
+    The forecast has the covariance of the mixture of futures around the single trajectory, widened for other places.
 
     Forecasts are equivariant to translations and rotations, except for people who never moved. Other time steps up to
     0.7 s are interpolated; with longer ones, or in pixels, a baseline is used, with a warning. Beyond 4.8 s the
@@ -126,6 +138,7 @@ class AnchorNet(Predictor):
     sample: str = "set"
     file: str = ""
     contact: float = 0.25
+    reaction: str = OPEN
 
     paper: ClassVar[Paper] = CHAI
     history: ClassVar[float] = HISTORY
@@ -154,21 +167,21 @@ class AnchorNet(Predictor):
         if samples == 1:
             path = _path(numbers, bends, bends.single[:, None], past, steps)[0]
             place = scatter_to_slots(past, path, bends.window, bends.slot)
-            return self._scored(past, separate_people(past, place, self.contact), bends)
-        path = _path(numbers, bends, bends.mode, past, steps)[0]
+            return _with_uncertainty(
+                self.forecast(past, separate_people(past, place, self.contact)), past, numbers, bends
+            )
+        pairing = _pairing(bends, samples)
+        path = _path(numbers, bends, np.take_along_axis(bends.mode, pairing[..., None], axis=1), past, steps)[0]
         place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
-        share[bends.window, bends.slot] = bends.probability
-        place, weight = coordinate_modes(past, place, share, self.contact)
+        share[bends.window, bends.slot] = np.take_along_axis(bends.probability, pairing, axis=1)
+        place, weight, own = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
-        forecast = self._scored(past, separate_people(past, place[:, :samples], self.contact), bends)
-        return dataclasses.replace(forecast, weight=weight)
-
-    def _scored(self, past: Windows, place: Floats, bends: _Bends) -> Forecast:
-        """Return the forecast with the out-of-distribution score of each person."""
-        foreign = np.zeros((len(past), past.present.shape[2]))
-        foreign[bends.window, bends.slot] = bends.foreign
-        return dataclasses.replace(self.forecast(past, place), out_of_distribution=foreign)
+        forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
+        forecast = _with_uncertainty(forecast, past, numbers, bends)
+        total = own[:, :samples].sum(axis=1, keepdims=True)
+        own = own[:, :samples] / np.where(total > 0.0, total, 1.0)
+        return dataclasses.replace(forecast, weight=weight, person_weight=own)
 
     def modes(self, past: Windows, steps: int = PREDICTED_ROWS) -> Modes:
         """Return the individual futures and probabilities of all agents present at the last row.
@@ -191,10 +204,10 @@ class AnchorNet(Predictor):
         why = incompatibility(past)
         if why:
             return f"anchor-net: {why}; a baseline is used instead"
-        if not self.file and self.fold == AUTO and fold_of(past.source) == ALL:
+        if not self.file and self.fold == AUTO and fold_of(past.source) == OPEN:
             return (
-                f"anchor-net: {past.source} is not named after a training place; using the weights trained on all"
-                " places; set fold if the recording is from one of them"
+                f"anchor-net: {past.source} is not named after a training place; using the weights trained on UCY and"
+                " simulated crowds; set fold if the recording is from one of them"
             ) + self._foreign_note(past)
         return self._foreign_note(past).removeprefix("; ")
 
@@ -211,9 +224,11 @@ class AnchorNet(Predictor):
         )
 
     def _numbers(self, past: Windows) -> Numbers:
-        if not self.file:
-            return load_pretrained("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
-        return _own(self.file, Path(self.file).stat().st_mtime_ns if Path(self.file).is_file() else 0)
+        if self.file:
+            numbers = load_own_weights(self.file)
+        else:
+            numbers = load_pretrained("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
+        return numbers if past.plan is None else numbers | load_reaction(self.reaction)
 
     def _draws(
         self, past: Windows, steps: int, samples: int, rng: np.random.Generator | None, numbers: Numbers, bends: _Bends
@@ -241,61 +256,8 @@ class AnchorNet(Predictor):
             bend = np.where(through[..., None], middle, bend)
         path, _ = _path(numbers, bends, bend, past, steps)
         place = coordinate_draws(past, scatter_to_slots(past, path, bends.window, bends.slot), self.contact, DRAWS)
-        return self._scored(past, separate_people(past, place[:, :samples], self.contact), bends)
-
-
-def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
-    """Return the network output ``[N, O]``: residuals of all futures, scores, single residual, spreads."""
-
-    def layer(x: Floats, name: str, rectify: bool = True) -> Floats:
-        return np.asarray(dense(np.ascontiguousarray(x), numbers[f"{name}_weight"], numbers[f"{name}_bias"], rectify))
-
-    N, M, _ = company.shape
-    hidden = layer(layer(own, "own_1"), "own_2")
-    near = layer(layer(company.reshape(N * M, -1), "near_1"), "near_2").reshape(N, M, -1)
-    query = layer(hidden, "query", rectify=False)
-    seen = attend(query, near, np.ascontiguousarray(there), numbers["nobody"], numbers["alone"])
-    both = layer(np.concatenate([hidden, seen], axis=1), "both_1")
-    return layer(layer(both, "both_2"), "out", rectify=False)
-
-
-def reach_of(numbers: Numbers) -> float:
-    """Return the largest distance of a neighbor that is read [m]; infinite for weights without the array ``reach``."""
-    return float(numbers["reach"]) if "reach" in numbers else math.inf
-
-
-def feature_limit(numbers: Numbers) -> float:
-    """Return the bound of the features [m]; infinite for weights that learned from unbounded ones."""
-    return math.inf if "unbounded" in numbers else reach_of(numbers)
-
-
-def _own(file: str, changed: int) -> Numbers:
-    known = _OWN.get(file)
-    if known is None or known[0] != changed:
-        numbers = read_weights(Path(file))
-        if "content" in numbers:  # a checkpoint of crowdbot train
-            numbers = _checkpoint_weights(file)
-        wrong = wrong_array(numbers)
-        if wrong:
-            raise DataError(f"{file} is not a file of AnchorNet weights: {wrong}")
-        _OWN[file] = known = changed, numbers
-    return known[1]
-
-
-_OWN: dict[str, tuple[int, Numbers]] = {}
-
-
-def _checkpoint_weights(file: str) -> Numbers:
-    """Return the weights in a checkpoint."""
-    try:
-        weights = load_checkpoint(file, "anchor-net")["weights"]
-        numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
-    except (KeyError, TypeError, ValueError, AttributeError):
-        raise DataError(f"{file} has no AnchorNet weights; train again") from None
-    bad = next((name for name, values in numbers.items() if not np.all(np.isfinite(values))), None)
-    if bad is not None:
-        raise DataError(f"{file}: {bad} has values that are not finite; the file is damaged")
-    return numbers
+        forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
+        return _with_uncertainty(forecast, past, numbers, bends)
 
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
@@ -323,17 +285,50 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     order = np.argsort(-probability, axis=1, kind="stable")
     row = np.arange(len(order))[:, None]
     walked = (people.seen.sum(axis=1) > 1)[:, None]
+    single = own * out[:, K * D + K : K * D + K + D] * numbers["spread"]
+    if "line_share" in numbers:
+        line = own * line_coefficients(people.past, heading, numbers["basis"])
+        single = single + numbers["line_share"] * (line - single)
     return _Bends(
         np.where(walked[..., None], mode[row, order], 0.0),
         probability[row, order],
-        np.where(walked, own * out[:, K * D + K : K * D + K + D] * numbers["spread"], 0.0),
+        np.where(walked, single, 0.0),
         np.where(walked[..., None], spread[row, order], 0.0),
         heading,
         people.past[:, -1] - people.past[:, -2],
         window,
         slot,
         foreign,
+        order,
+        np.hypot(*people.past[:, 0].T) < SLOW,
     )
+
+
+def _pairing(bends: _Bends, samples: int) -> Integers:
+    """Return the order ``[N, K]`` in which the futures of people are combined into joint futures.
+
+    People in a window often deviate in the same way: they walk in groups, or the recording has a wrong time base. If
+    all futures are asked for, the same anchors of people who walk are combined; else the most probable ones.
+    """
+    N, K = bends.probability.shape
+    rank = np.broadcast_to(np.arange(K), (N, K))
+    if samples < K:
+        return rank
+    return np.where(bends.slow[:, None], rank, np.argsort(bends.anchor, axis=1))
+
+
+def _with_uncertainty(forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends) -> Forecast:
+    """Return the forecast with the covariance and the out-of-distribution score of each person."""
+    foreign = np.zeros((len(past), past.present.shape[2]))
+    foreign[bends.window, bends.slot] = bends.foreign
+    steps = forecast.steps
+    middle = _path(numbers, bends, bends.single[:, None], past, steps)[0]
+    away = _path(numbers, bends, bends.mode, past, steps)[0] - middle
+    own = future_covariances(
+        numbers["basis"], bends.probability, bends.spread, away, bends.heading, steps, past.dt
+    )  # fmt: skip
+    covariance = total_covariances(past, own, bends.window, bends.slot)
+    return dataclasses.replace(forecast, covariance=covariance, out_of_distribution=foreign)
 
 
 def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
@@ -349,8 +344,9 @@ def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
     _, lone = _path(numbers, bends, bends.single[:, None], past)
     single = np.where(lone & ~hit.all(axis=1, keepdims=True), mode[:, 0], bends.single)
     return bends._replace(
-        mode=mode, probability=probability[row, order], spread=bends.spread[row, order], single=single
-    )
+        mode=mode, probability=probability[row, order], spread=bends.spread[row, order], single=single,
+        anchor=bends.anchor[row, order],
+    )  # fmt: skip
 
 
 def _path(
@@ -366,6 +362,12 @@ def _path(
     for d in range(len(basis)):  # summation order independent of the batch
         away += bend[..., d, None] * basis[d]
     local = away.reshape(*bend.shape[:2], PREDICTED_ROWS, 2)
-    time = (steps, past.dt) if steps else (PREDICTED_ROWS, STEP)
-    path = resample_paths(rotate(local, bends.heading, back=True), bends.step, *time)
+    local = rotate(local, bends.heading, back=True)
+    count, dt = (steps, past.dt) if steps else (PREDICTED_ROWS, STEP)
+    path = resample_paths(local, bends.step, count, dt)
+    reaction = None if past.plan is None else PlanReaction.of(numbers)
+    if reaction is not None:
+        shown, time = resample_paths(local, bends.step, PREDICTED_ROWS, STEP), dt * np.arange(1.0, count + 1.0)
+        walks = Walks(bends.window, bends.slot, bends.heading, bends.step, shown)
+        path = path + reaction_displacements(reaction, past, walks, time)
     return stop_at_walls(past, path, bends.window, bends.slot)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
@@ -20,8 +21,10 @@ from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, REACH, heading_vectors, rotate
 from .anchors import cluster_centers
 from .confidence import calibrate_confidence
+from .fitted_line import LINE_SHARE
+from .forward_pass import feature_limit, network_output
 from .out_of_distribution import distribution_of
-from .predictor import network_output
+from .own_weights import load_start_weights
 from .training_data import (
     GENERAL,
     NO_AUGMENTATION,
@@ -42,6 +45,8 @@ UPDATES = 4000
 """Optimizer steps of the shipped weights, which are the averaged weights after the last step."""
 DESCRIBED = 20000
 """Number of augmented people that describe the training data for the out-of-distribution score."""
+ADAPTING = 3e-4
+"""Learning rate of a training that starts from other weights."""
 RANK = 6
 """Number of coefficients of a residual; the reconstruction error is about 2 cm."""
 
@@ -64,6 +69,7 @@ class AnchorTraining:
         variation: data augmentation.
         reach: largest distance of a neighbor [m], which also bounds the features; inf: 12 neighbors at any distance
             and unbounded features.
+        line: share of the least-squares line in the single trajectory, between 0 and 1.
     """
 
     people: int = 256
@@ -81,18 +87,27 @@ class AnchorTraining:
     seed: int = 0
     variation: Augmentation = dataclasses.field(default_factory=Augmentation)
     reach: float = math.inf
+    line: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.reach > 0.0:
             raise InputError(f"anchor-net: reach = {self.reach} m must be above 0")
+        if not 0.0 <= self.line <= 1.0:
+            raise InputError(f"anchor-net: line = {self.line} must be between 0 and 1")
 
 
-PRESETS = {"shipped": AnchorTraining(), "general": AnchorTraining(reach=REACH, variation=GENERAL)}
+PRESETS = {"shipped": AnchorTraining(), "general": AnchorTraining(reach=REACH, line=LINE_SHARE, variation=GENERAL)}
 """Recipes of the leave-one-out weights and of the default weights."""
 
 
 def learner(
-    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+    settings: str | None,
+    values: Mapping[str, str],
+    samples: Samples,
+    watched: Samples,
+    seed: int,
+    device: str,
+    start: str = "",
 ) -> AnchorNetTraining:
     """Return an AnchorNet ready to train, from the options of the command line.
 
@@ -103,6 +118,8 @@ def learner(
         samples, watched: training data and validation data.
         seed: random seed.
         device: ``cpu`` or ``cuda``.
+        start: weights from which the training starts, see :func:`.load_start_weights`; empty: random weights. They
+            determine the sizes, the reach and the line; the learning rate is :data:`ADAPTING` unless it is given.
 
     Raises:
         InputError: a name or value is unknown, or the samples do not have 8 + 12 rows of 0.4 s in metres.
@@ -116,10 +133,20 @@ def learner(
     given = from_attributes(Augmentation, {name: value for name, value in plain.items() if name in varied})
     variation = dataclasses.replace(preset.variation, **_named(given, plain))
     how = from_attributes(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
+    found = load_start_weights(start) if start else None
+    preset = preset if found is None else dataclasses.replace(preset, rate=ADAPTING, **_sizes(found))
     how = dataclasses.replace(preset, **_named(how, plain) | {"seed": seed, "variation": variation})
     return AnchorNetTraining(
-        how, training_set_of(samples), training_set_of(watched, reverse=False), samples.names, device
+        how, training_set_of(samples), training_set_of(watched, reverse=False), samples.names, device, found
     )
+
+
+def _sizes(start: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    """Return the settings that weights determine."""
+    return {
+        "width": start["own_1_bias"].size, "social": start["near_2_bias"].size, "count": len(start["centres"]),
+        "reach": feature_limit(dict(start)), "line": float(start.get("line_share", 0.0)),
+    }  # fmt: skip
 
 
 def _named(settings: Any, names: Mapping[str, str]) -> dict[str, Any]:
@@ -199,23 +226,30 @@ class AnchorNetTraining(Trainable):
         watched: validation data, also used to calibrate the probabilities.
         names: names of the training recordings.
         device: ``cpu`` or ``cuda``.
+        start: weights from which the training starts; None: random ones. Their anchors are kept.
+
+    Raises:
+        InputError: the sizes of the settings are not those of ``start``.
     """
 
     kind: ClassVar[str] = "anchor-net"
 
     def __init__(
         self, config: AnchorTraining, material: TrainingSet, watched: TrainingSet, names: Sequence[str] = (),
-        device: str = "cpu",
+        device: str = "cpu", start: Mapping[str, NDArray[Any]] | None = None,
     ) -> None:  # fmt: skip
         self.device = torch_device(device)
         self.config, self.material, self.watched = config, material, watched
         self.data = f"{material.digest}-{watched.digest}"
         self.facts = {"dt": STEP, "units": "m", "learned": list(names)}
-        self.shapes = shapes_of(material, config.count, config.seed)
+        self.shapes = shapes_of(material, config.count, config.seed) if start is None else _anchors_of(start, config)
         self.fixed = {
             name: torch.tensor(values, dtype=torch.float32, device=self.device) for name, values in self.shapes.items()
         }
         self.layers = network(config).to(self.device)
+        if start is not None:
+            self.data += f"-{_digest(start)}"
+            self.layers.load_state_dict(_tensors_of(start, self.layers.state_dict()))
         self.mean = {name: value.detach().clone() for name, value in self.layers.state_dict().items()}
         self.optimiser = torch.optim.AdamW(self.layers.parameters(), lr=config.rate, weight_decay=config.decay)
 
@@ -263,6 +297,8 @@ class AnchorNetTraining(Trainable):
     def numbers(self) -> Numbers:
         """Return the averaged weights before the calibration."""
         found = self.shapes | _plain(self.mean)
+        if self.config.line > 0.0:
+            found["line_share"] = np.array(self.config.line)
         if not np.isfinite(self.config.reach):
             return found
         rng = stream(self.config.seed, "described")
@@ -286,6 +322,31 @@ class AnchorNetTraining(Trainable):
         self.layers.load_state_dict(kept["layers"])
         self.optimiser.load_state_dict(kept["optimiser"])
         self.mean = kept["mean"]
+
+
+def _anchors_of(start: Mapping[str, NDArray[Any]], how: AnchorTraining) -> Numbers:
+    """Return the anchors of weights."""
+    own = {name: getattr(how, name) for name in _sizes(start)}
+    if own != _sizes(start):
+        raise InputError(f"anchor-net: the settings {own} are not those of the start weights, {_sizes(start)}")
+    share = start.get("share", np.full(how.count, 1.0 / how.count))
+    return {"share": share} | {name: start[name] for name in ("basis", "centres", "spread")}
+
+
+def _tensors_of(start: Mapping[str, NDArray[Any]], layers: Mapping[str, Any]) -> dict[str, Any]:
+    """Return weights as a state of the layers, the inverse of :func:`_plain`."""
+    found = {name: start[name.replace(".", "_")] for name in layers}
+    return {
+        name: torch.tensor(values.T if name.endswith(".weight") else values, dtype=torch.float32)
+        for name, values in found.items()
+    }
+
+
+def _digest(start: Mapping[str, NDArray[Any]]) -> str:
+    found = hashlib.blake2b(digest_size=6)
+    for name in sorted(start):
+        found.update(np.ascontiguousarray(start[name]).tobytes())
+    return found.hexdigest()
 
 
 def _rate_factor(update: int, total: int, how: AnchorTraining) -> float:

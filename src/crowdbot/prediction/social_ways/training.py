@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import hashlib
 import math
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from crowdbot.core import InputError, from_attributes, stream
+from crowdbot.prediction.pretrained_weights import FOLDS, pretrained_file
 from crowdbot.prediction.training.loop import Trainable
 from crowdbot.prediction.training.samples import Samples, Scenes
 from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
@@ -21,6 +23,7 @@ from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 from .config import SocialWaysConfig, preset
 from .inputs import Normalization, scene_input, states_of
 from .network import Discriminator, Generator, SceneInput
+from .predictor import SocialWaysNetwork
 
 __all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
 
@@ -31,7 +34,13 @@ ASIDE = 0.01
 
 
 def learner(
-    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+    settings: str | None,
+    values: Mapping[str, str],
+    samples: Samples,
+    watched: Samples,
+    seed: int,
+    device: str,
+    start: str = "",
 ) -> SocialWaysTraining:
     """Return a Social Ways network ready to train, from the options of the command line.
 
@@ -39,11 +48,19 @@ def learner(
         settings: name of a preset; None means ``report``.
         values: settings that differ from the preset, as text.
         samples, watched, seed, device: see :class:`SocialWaysTraining`.
+        start: checkpoint, or place of shipped weights, from which the generator starts; empty: random weights. Its
+            settings are the preset then, and its normalization is kept; the discriminator starts at random.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
     read = from_attributes(SocialWaysConfig, dict(values))
     changed = {name.replace("-", "_"): getattr(read, name.replace("-", "_")) for name in values}
-    return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
+    if not start:
+        return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
+    if settings is not None:
+        raise InputError(f"social-ways: the settings are those of the start weights; omit --settings {settings}")
+    found = SocialWaysNetwork.load(str(pretrained_file("social-ways", start)) if start in FOLDS else start, device)
+    how = dataclasses.replace(found.config, **rows | changed)
+    return SocialWaysTraining(how, samples, watched, seed, device, found)
 
 
 class _TensorBatch(NamedTuple):
@@ -64,6 +81,7 @@ class SocialWaysTraining(Trainable):
         watched: validation data.
         seed: seed of the initial weights.
         device: ``cpu`` or ``cuda``.
+        start: network whose generator and normalization the training starts with; None: random weights.
 
     Raises:
         InputError: rows of config and samples differ, or the device does not exist.
@@ -72,8 +90,9 @@ class SocialWaysTraining(Trainable):
     kind: ClassVar[str] = "social-ways"
 
     def __init__(
-        self, config: SocialWaysConfig, samples: Samples, watched: Samples, seed: int = 0, device: str = "cpu"
-    ) -> None:
+        self, config: SocialWaysConfig, samples: Samples, watched: Samples, seed: int = 0, device: str = "cpu",
+        start: SocialWaysNetwork | None = None,
+    ) -> None:  # fmt: skip
         for part in (samples, watched):
             if (part.observe, part.predict) != (config.observe, config.predict):
                 raise InputError(
@@ -83,7 +102,7 @@ class SocialWaysTraining(Trainable):
         self.config, self.samples = config, samples
         self.watched = watched.subsample(CHECKED)
         self.data = f"{samples.digest}-{self.watched.digest}"
-        self.scales = Normalization.of(samples, config)
+        self.scales = Normalization.of(samples, config) if start is None else start.scales
         self.facts = {**dataclasses.asdict(self.scales), "units": samples.units, "learned": list(samples.names)}
         self.device = torch_device(device)
         with torch.random.fork_rng(devices=[]):
@@ -91,6 +110,8 @@ class SocialWaysTraining(Trainable):
             sizes = (self.scales.position, self.scales.velocity, self.scales.distance)
             self.generator = Generator(config, samples.dt, sizes)
             self.discriminator = Discriminator(config)
+        if start is not None:
+            self._start_from(start)
         self.generator.to(self.device)
         self.discriminator.to(self.device)
         betas = (config.momentum, 0.999)
@@ -99,6 +120,15 @@ class SocialWaysTraining(Trainable):
             self.discriminator.parameters(), config.discriminator_rate, betas, fused=True
         )
         self.mean = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
+
+    def _start_from(self, start: SocialWaysNetwork) -> None:
+        weights = start.generator.state_dict()
+        try:
+            self.generator.load_state_dict(weights)
+        except RuntimeError:
+            raise InputError("social-ways: the sizes of the settings are not those of the start weights") from None
+        content = b"".join(value.cpu().numpy().tobytes() for value in weights.values())
+        self.data += f"-{hashlib.blake2b(content, digest_size=6).hexdigest()}"
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
         """Return batches of approximately ``config.batch`` people."""

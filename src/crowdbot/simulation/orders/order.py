@@ -97,7 +97,7 @@ class VelocityOrder(Order):
         """Raise :class:`InputError` if there is no such robot."""
         super().check(simulation)
         simulation.agent_of(self.robot)
-        if any(robot.name == self.robot and robot.pose is not None for robot in simulation.trial.robots):
+        if any(robot.name == self.robot and robot.mirror is not None for robot in simulation.trial.robots):
             raise InputError(f"VelocityOrder: robot {self.robot!r} has <pose>; it is where its source says")
 
     def apply(self, simulation: OrderTarget) -> None:

@@ -18,7 +18,7 @@ from crowdbot.world import (
 
 from .order import Order, OrderTarget
 
-__all__ = ["AddPersonOrder", "MoveOrder", "RedirectOrder", "RemoveOrder"]
+__all__ = ["AddPersonOrder", "MoveOrder", "RedirectOrder", "RemoveOrder", "check_person", "is_present"]
 
 FASTEST, WIDEST = 20.0, 5.0
 """Largest preferred speed [m/s] and radius [m] of a person."""
@@ -70,11 +70,11 @@ class RemoveOrder(Order):
     def check(self, simulation: OrderTarget) -> None:
         """Raise :class:`InputError` if the person is not present, or is a robot."""
         super().check(simulation)
-        _check_person(simulation, self.person, self.environment)
+        check_person(simulation, self.person, self.environment)
 
     def apply(self, simulation: OrderTarget) -> None:
         """Remove the person, who may have left in the meantime."""
-        if _is_present(simulation, self.person, self.environment):
+        if is_present(simulation, self.person, self.environment):
             remove_person(simulation.world, self.person, self.environment)
 
 
@@ -102,7 +102,7 @@ class MoveOrder(Order):
 
     def apply(self, simulation: OrderTarget) -> None:
         """Move the person or robot."""
-        if _is_present(simulation, self.person, self.environment):
+        if is_present(simulation, self.person, self.environment):
             heading = None if self.heading is None else float(self.heading)
             move_agent(simulation.world, self.person, float(self.x), float(self.y), heading, self.environment)
 
@@ -123,17 +123,18 @@ class RedirectOrder(Order):
     def check(self, simulation: OrderTarget) -> None:
         """Raise :class:`InputError` if the person is not present, or cannot reach the goal."""
         super().check(simulation)
-        slot = _check_person(simulation, self.person, self.environment)
+        slot = check_person(simulation, self.person, self.environment)
         x, y = simulation.world.scene.position[self.environment, slot].tolist()
         check_goal(simulation.world, (x, y), (self.x, self.y), self.environment)
 
     def apply(self, simulation: OrderTarget) -> None:
         """Give the person the goal."""
-        if _is_present(simulation, self.person, self.environment):
+        if is_present(simulation, self.person, self.environment):
             redirect_person(simulation.world, self.person, float(self.x), float(self.y), self.environment)
 
 
-def _check_person(simulation: OrderTarget, person: int, environment: int) -> int:
+def check_person(simulation: OrderTarget, person: int, environment: int) -> int:
+    """Return the index of a present person, or raise :class:`InputError`: nobody has the id, or a robot or avatar."""
     slot = slot_of(simulation.world, person, environment)
     if slot in simulation.world.twists:
         raise InputError(f"{person} is the id of a robot; give the id of a person")
@@ -145,7 +146,7 @@ def _check_avatar(simulation: OrderTarget, slot: int, person: int) -> None:
     trial, avatars = simulation.trial, simulation.trial.avatars
     if slot in simulation.world.twists:
         robot = next((one for one in trial.robots if simulation.agent_of(one.name) == slot), None)
-        if robot is not None and robot.pose is not None:
+        if robot is not None and robot.mirror is not None:
             raise InputError(f"{person} is the id of robot {robot.name!r}, whose pose comes from its source")
         return
     recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
@@ -154,6 +155,7 @@ def _check_avatar(simulation: OrderTarget, slot: int, person: int) -> None:
         raise InputError(f"{person} is the id of avatar {avatars[k].name!r}, whose pose comes from its source")
 
 
-def _is_present(simulation: OrderTarget, person: int, environment: int) -> bool:
+def is_present(simulation: OrderTarget, person: int, environment: int) -> bool:
+    """Return whether a person or robot with this id is present."""
     world = simulation.world
     return bool((world.scene.active[environment] & (world.ids[environment] == person)).any())

@@ -60,7 +60,7 @@ class RobotPoseOrder(Order):
         super().check(simulation)
         agent = simulation.agent_of(self.robot)
         robot = next(control.robot for control in simulation.robots if control.agent == agent)
-        if robot.pose is None or robot.pose.source != "external":
+        if robot.mirror is None or robot.mirror.source != "external":
             raise InputError(
                 f'RobotPoseOrder: robot {self.robot!r} does not take poses; add <pose source="external"/> to it'
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,17 @@ from crowdbot.simulation.step_record import WALL, RobotContact
 from crowdbot.simulation.termination import may_be_near
 from crowdbot.world import World
 
-__all__ = ["note_arrivals", "robot_contacts"]
+__all__ = ["new_events", "note_arrivals", "robot_contacts"]
+
+
+class _Ended(Protocol):
+    @property
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+
+
+Ended = TypeVar("Ended", bound=_Ended)
 
 
 def robot_contacts(
@@ -42,3 +53,19 @@ def note_arrivals(world: World, robots: Sequence[RobotControl]) -> None:
     for control in robots:
         if not control.arrived.all() and may_be_near(position, control.agent, control.goal, control.tolerance):
             control.arrive(position[:, control.agent])
+
+
+def new_events(events: Sequence[Ended], told: NDArray[np.int64], environment: int, until: float) -> tuple[Ended, ...]:
+    """Return the events of an environment that ended before ``until`` [s] and were not returned before, by end.
+
+    Args:
+        events: all events so far.
+        told: ``[E]`` number of events returned so far; it is updated.
+        environment: index of the environment.
+        until: time [s].
+    """
+    if not events:
+        return ()
+    over = sorted((one for one in events if one.end < until), key=lambda one: (one.end, one.begin))
+    new, told[environment] = over[int(told[environment]) :], len(over)
+    return tuple(new)

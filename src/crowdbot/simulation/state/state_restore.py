@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["restore_state"]
 
-FREE = ("_begin", "_limbs", "led")
+FREE = ("_begin", "_heading", "_limbs", "led")
 """Fields of arrays whose lengths change during a run."""
 
 

@@ -73,7 +73,7 @@ def state_of(simulation: Simulation) -> dict[str, Any]:
 
 def stream_avatars(simulation: Simulation) -> frozenset[str]:
     """Return the names of avatars and robots whose samples come from outside; other sources do not change."""
-    robots = [(f"robot/{one.name}", one.pose) for one in simulation.trial.robots]
+    robots = [(f"robot/{one.name}", one.mirror) for one in simulation.trial.robots]
     named = [(one.name, one) for one in simulation.trial.avatars] + [(name, pose) for name, pose in robots if pose]
     return frozenset(name for name, one in named if one.source == "external")
 

@@ -15,7 +15,9 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-__all__ = ["load_layout"]
+__all__ = ["builtin_stages", "load_layout"]
+
+_STAGES = Path(__file__).parents[2] / "assets" / "stages"
 
 KINDS = ".xml (trial), .yaml (ROS map), .wkt, .txt or .geojson (walkable area)"
 
@@ -27,7 +29,8 @@ def load_layout(path: str | PathLike[str]) -> PlaceLayout:
     an area have none; :class:`crowdbot.models.goals.EnvironmentLayout` then takes the openings of the outermost walls.
 
     Args:
-        path: name of a built-in trial, or a file: ``.xml``, ``.yaml``, ``.yml``, ``.wkt``, ``.txt`` or ``.geojson``,
+        path: name of a built-in trial, or of a stage of :func:`.builtin_stages`; or a file: ``.xml``, ``.yaml``,
+            ``.yml``, ``.wkt``, ``.txt`` or ``.geojson``,
             in the coordinates of the recording [m].
 
     Raises:
@@ -40,7 +43,8 @@ def load_layout(path: str | PathLike[str]) -> PlaceLayout:
     file = Path(path)
     kind = file.suffix.lower()
     if kind in ("", ".xml"):
-        trial = load_trial(str(path))
+        known = builtin_stages()
+        trial = load_trial(str(known.get(str(path), path)))
         return _layout(trial.stage, trial, file.name)
     if kind not in (".yaml", ".yml", ".wkt", ".txt", ".geojson", ".json"):
         raise InputError(f"{path} is not a layout by its name; known are {KINDS}")
@@ -48,6 +52,15 @@ def load_layout(path: str | PathLike[str]) -> PlaceLayout:
     ros = kind in (".yaml", ".yml")
     stage = Stage(area="" if ros else file.name, map=file.name if ros else "", folder=folder, trust=False)
     return _layout(stage, None, file.name)
+
+
+def builtin_stages() -> dict[str, Path]:
+    """Return the stages of published experiments by name: trial files in the coordinates of the recordings.
+
+    >>> sorted(builtin_stages())[:2]
+    ['hermes-bottleneck-070', 'hermes-corridor-180']
+    """
+    return {file.stem: file for file in sorted(_STAGES.glob("*.xml"))}
 
 
 def _layout(stage: Stage, trial: Trial | None, name: str) -> PlaceLayout:

@@ -8,6 +8,7 @@ from pathlib import Path
 from crowdbot.core import TrialError
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
+from .building import import_building, is_building
 from .dxf import import_dxf, is_dxf
 from .hunavsim import import_hunavsim
 from .original import ImportedTrial, import_original
@@ -21,11 +22,12 @@ __all__ = ["import_trial"]
 def import_trial(
     path: str | Path, root: str | Path | None = None, layers: Collection[str] = (), unit: str = ""
 ) -> ImportedTrial:
-    """Read a file of Vadere, UMANS, pedsim_ros, HuNavSim or the CrowdBot simulator of 2021, or a drawing in DXF.
+    """Read a file of Vadere, UMANS, pedsim_ros, HuNavSim or the CrowdBot simulator of 2021, a drawing in DXF, or a
+    building in glTF.
 
     Args:
         path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, an agent file of HuNavSim
-            (YAML), a drawing (ASCII DXF), or as in :func:`import_original`.
+            (YAML), a drawing (ASCII DXF), a building (``.glb``), or as in :func:`import_original`.
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
         layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
@@ -33,6 +35,10 @@ def import_trial(
         TrialError: the file is missing, malformed or of another kind.
     """
     path = Path(path)
+    if is_building(path):
+        if layers or unit:
+            raise TrialError(f"{path}: layers and units belong to drawings in DXF, and this is none")
+        return import_building(path)
     data = read_trial_bytes(path).lstrip(b"\xef\xbb\xbf \t\r\n")
     if is_dxf(data) or path.suffix.lower() == ".dxf":
         return import_dxf(path, layers, unit)

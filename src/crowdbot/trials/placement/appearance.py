@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from crowdbot import humans
-from crowdbot.core import stream
+from crowdbot.core import InputError, stream
 from crowdbot.trials.agent import Agent, Avatar
-from crowdbot.trials.human_kinds import KINDS
+from crowdbot.trials.files.trial_files import resolve_file
+from crowdbot.trials.human_kinds import KINDS, clip_names, own_body_names
 from crowdbot.trials.people import Spawner
 
 from .spawn_placement import InitialPeople
@@ -17,7 +21,16 @@ from .spawn_placement import InitialPeople
 if TYPE_CHECKING:
     from crowdbot.trials.trial import Trial
 
-__all__ = ["PeopleAppearance", "PersonAppearance", "draw_appearances", "people_appearance"]
+__all__ = [
+    "PeopleAppearance",
+    "PersonAppearance",
+    "draw_appearances",
+    "people_appearance",
+    "read_bodies",
+    "read_clips",
+    "trial_bodies",
+    "trial_clips",
+]
 
 OUTFITS = 1000
 
@@ -55,7 +68,61 @@ def body_names(text: str) -> tuple[str, ...]:
     for word in text.split():
         kinds = KINDS.get(word, ())
         found += [name for name in everyone if name == word or name.split("-")[0] in kinds]
+        found += own_body_names([word])
     return tuple(dict.fromkeys(found))
+
+
+def trial_clips(trial: Trial) -> dict[str, Path]:
+    """Return the files of the clips that people of a trial play, by name.
+
+    Raises:
+        InputError: the trial has no folder.
+    """
+    owners = (trial.agents, trial.spawners, trial.sources)
+    names = clip_names(one.activity for group in owners for one in group)
+    return _files_beside(trial, "activity", names)
+
+
+def read_clips(trial: Trial) -> tuple[humans.Clip, ...]:
+    """Return the clips that people of a trial play.
+
+    Raises:
+        InputError: a file is missing or no clip.
+    """
+    found = []
+    for name, path in trial_clips(trial).items():
+        try:
+            found.append(humans.read_clip(path.read_text(encoding="utf-8"), name))
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"cannot read the clip {path}: {error}; crowdbot new clip FILE.bvh writes one") from None
+    return tuple(found)
+
+
+def trial_bodies(trial: Trial) -> dict[str, Path]:
+    """Return the files of the imported bodies of a trial, by name.
+
+    Raises:
+        InputError: the trial has no folder, or a file is missing.
+    """
+    owners = (trial.agents, trial.spawners, trial.sources, trial.avatars)
+    names = own_body_names(one.body for group in owners for one in group)
+    return _files_beside(trial, "body", names)
+
+
+def _files_beside(trial: Trial, word: str, names: Sequence[str]) -> dict[str, Path]:
+    """Return the files of names in a trial; ``word`` is the attribute that holds them."""
+    if names and trial.folder is None:
+        raise InputError(f"{word} {names[0]!r} is a file beside the trial, but {trial.name} has no folder")
+    return {name: resolve_file(name, trial.folder, trust=False) for name in names}
+
+
+def read_bodies(trial: Trial) -> tuple[humans.RiggedBody, ...]:
+    """Return the imported bodies of a trial.
+
+    Raises:
+        InputError: a file is missing or no body.
+    """
+    return tuple(humans.read_body(path) for path in trial_bodies(trial).values())
 
 
 def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]:
@@ -98,12 +165,15 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)
-    whole = humans.People.of(names, outfits)
+    own = read_bodies(trial)
+    whole = humans.People.of(names, outfits, own=own)
     tall = [owner.height if isinstance(owner, Avatar) else None for owner in people.owners]
     if any(tall):
         heights = [tall[k] for k in people.owner.tolist()] + [None] * (len(names) - len(people))
         given = [own if one is None else one for one, own in zip(heights, whole.height.tolist(), strict=True)]
-        whole = humans.People.of(names, outfits, given)
+        whole = humans.People.of(names, outfits, given, own)
+    clips = read_clips(trial)
+    whole = dataclasses.replace(whole, clips=clips) if clips else whole
     return PeopleAppearance(whole, busy_with, tuple(len(people) + k for k in carriers))
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, UnreadableValue, sources_of
+from crowdbot.navigation import ExternalNavigator, Navigator
 from crowdbot.trials.agent import find_pose_source, load_poses
 from crowdbot.trials.fields import FieldProblem, attribute, check, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
@@ -17,7 +18,7 @@ from crowdbot.trials.files.trial_files import resolve_file
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource
 
-__all__ = ["RobotPose", "start_problem"]
+__all__ = ["RobotPose", "mirrored_pose", "start_problem"]
 
 SAME = 0.01
 """Tolerance of a start [m] and [rad]."""
@@ -110,6 +111,13 @@ class RobotPose:
         if self.source == "function":
             return sources_of(find_pose_source(self.function, self.folder, self.trust))
         return ()
+
+
+def mirrored_pose(pose: RobotPose | None, navigator: Navigator) -> RobotPose | None:
+    """Return where a robot is over time if its drive does not move it: what is given, or samples of a real robot."""
+    if pose is None and isinstance(navigator, ExternalNavigator) and navigator.mirrors:
+        return RobotPose(source="external")
+    return pose
 
 
 def start_problem(robot: Any) -> Iterator[tuple[Any, str]]:

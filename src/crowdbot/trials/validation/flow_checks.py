@@ -13,7 +13,7 @@ from crowdbot.core import InputError, did_you_mean, stream, unread_fields
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import quote_value
-from crowdbot.trials.journey import Direction, Exit, Point, Zone
+from crowdbot.trials.journey import Direction, Exit, Point, Portal, Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.partial_element import has_kind, plugin_with_defaults, readable
 from crowdbot.trials.people import SourceSpec, Spawner
@@ -78,6 +78,7 @@ def flows(checked: ValidationContext) -> Iterator[Problems]:
         yield from (_stop(checked, stop) for stop in stops)
     coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
     yield from (_exit_overlap(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_portal_loop(*pair) for pair in itertools.combinations(trial.portals, 2))
     yield from (_first_leg(checked, one) for one in checked.people)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
@@ -86,6 +87,17 @@ def flows(checked: ValidationContext) -> Iterator[Problems]:
 def _routing(checked: ValidationContext) -> Problems:
     if why := checked.no_routing:
         yield checked.trial.routing, f"is impossible on this stage: {why}"
+
+
+def _portal_loop(first: Portal, second: Portal) -> Problems:
+    """Yield a portal into a second one that leads back into the first: people would jump between them in every step."""
+    import shapely.affinity
+
+    there = shapely.affinity.translate(area(first.zone), first.dx, first.dy).intersection(area(second.zone))
+    back = shapely.affinity.translate(there, second.dx, second.dy).intersection(area(first.zone))
+    if back.area > OVERLAP:
+        name = f" {second.name!r}" if second.name else ""
+        yield first, f"leads into the portal{name} that leads back into it; move its exit out of that zone"
 
 
 def _unknown_name(one: Any, word: str, names: DeclaredNames) -> Problems:

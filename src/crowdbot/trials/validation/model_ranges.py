@@ -16,6 +16,7 @@ __all__ = ["MODEL_RANGES", "ModelRange", "model_range", "range_remarks"]
 
 STEP_TOLERANCE = 1e-9
 FREE = "no fundamental diagram: its speed is within 10 % of Weidmann's curve up to 0.7 people/m2 only"
+SLOW = "a one-way crowd of 0.25 people/m2 walks at 0.7 m/s"
 JAMS = "two-way crowds jam or hardly move at higher densities"
 
 
@@ -48,8 +49,10 @@ MODEL_RANGES = (
     ModelRange("anticipation-velocity", 0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM),
     ModelRange("boids", 0.7, FREE, 0.1, PAGE, "CrowdBot simulator"),
     ModelRange("collision-free-speed", 3.0, JAMS, 0.01, PAGE, JUPEDSIM),
+    ModelRange("collision-free-speed-v3", 0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM),
     ModelRange("cost-model", 0.7, FREE, 0.1, PAGE, UMANS),
     ModelRange("escape-panic", 0.7, FREE, 0.1, PAGE, SUBSTEPS),
+    ModelRange("generalized-centrifugal-force", 0.1, SLOW, 0.01, PAGE, JUPEDSIM),
     ModelRange("group-force", 0.7, FREE, 0.1, PAGE, "PySocialForce tests"),
     ModelRange("heuristics", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
     ModelRange("orca", 0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples"),
@@ -60,6 +63,7 @@ MODEL_RANGES = (
     ModelRange("tangent", 0.5, JAMS, 0.1, TWO_WAY, "CrowdBot simulator"),
     ModelRange("vbm", 0.25, JAMS, 0.1, TWO_WAY, "CrowdBot simulator"),
     ModelRange("vog", 0.7, FREE, 0.1, PAGE, "CrowdBot simulator"),
+    ModelRange("warp-driver", 0.7, FREE, 0.01, PAGE, JUPEDSIM),
 )
 """Ranges of the built-in models; a model that is missing has no known range."""
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from crowdbot.core import FreeClock, whole_ticks
+from crowdbot.trials.cameras.camera_remarks import camera_remarks
 from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
@@ -44,7 +45,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
-    Robots that cannot pass uneven ground are told, too.
+    Robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -73,7 +74,7 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return [*found, *ground_remarks(trial)]
+    return [*found, *ground_remarks(trial), *camera_remarks(trial)]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials.agent import Avatar
-from crowdbot.trials.camera import Camera
+from crowdbot.trials.cameras.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points

@@ -2,5 +2,6 @@
 
 from .evaluation_desk import EvaluationDesk
 from .evaluation_request import EvaluationRequest
+from .imported_result import RESULT
 
-__all__ = ["EvaluationDesk", "EvaluationRequest"]
+__all__ = ["RESULT", "EvaluationDesk", "EvaluationRequest"]

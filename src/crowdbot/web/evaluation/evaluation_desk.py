@@ -4,23 +4,36 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 import threading
 from pathlib import Path
 from typing import Any, ClassVar
 
 from crowdbot.core import InputError, builtin_classes
-from crowdbot.evaluation import CellResult, EvaluationResult, PairedComparison, load_evaluation, parse_statistic
-from crowdbot.trials import builtin_trials, trial_titles, trial_xml
+from crowdbot.evaluation import (
+    CellResult,
+    EvaluationResult,
+    PairedComparison,
+    Statistic,
+    load_evaluation,
+    parse_statistic,
+)
+from crowdbot.metrics import metric_table
+from crowdbot.recording import record
+from crowdbot.trials import Trial, builtin_trials, trial_titles, trial_xml
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.jobs import Job, command_work
 
 from .evaluation_request import FILE, EvaluationRequest
+from .imported_result import RESULT, cell_of_result, import_result
 
 __all__ = ["EvaluationDesk"]
 
 METRICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", "min-clearance")
 FOLDER = "evaluations"
+BEFORE = 5.0
+"""Time [s] before the end of a run from which it is watched."""
 
 
 class EvaluationDesk(Desk):
@@ -31,6 +44,8 @@ class EvaluationDesk(Desk):
     """
 
     name: ClassVar[str] = "evaluation"
+    first: ClassVar[str | None] = None
+    """Result of an evaluation that a new session opens."""
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
@@ -40,7 +55,7 @@ class EvaluationDesk(Desk):
 
     def greet(self) -> dict[str, Any]:
         """Return the state for a new window."""
-        return self._state()
+        return {**self._state(), "first": self.first or ""}
 
     @command
     def sources(self) -> dict[str, Any]:
@@ -90,34 +105,45 @@ class EvaluationDesk(Desk):
         return self._tell()
 
     @command
+    def add(self, file: str) -> str:
+        """Take a ``result.json`` of `crowdbot evaluate` into the folder of the session, and return its name."""
+        path = self.session.workspace.readable(file)
+        self.session.workspace.check_space(path.stat().st_size)
+        name = import_result(path, self.session.workspace.folder / FOLDER, METRICS)
+        self._tell()
+        return name
+
+    @command
     def table(self, name: str) -> dict[str, Any]:
         """Return the table of an evaluation and all its runs."""
-        result = load_evaluation(self._folder(name) / "result.json")
-        request = self._request(name)
+        result = load_evaluation(self._folder(name) / RESULT)
+        request, folder = self._request(name), self.session.workspace.folder
         names = request.metrics if request else METRICS
+        made = map(str, result.provenance.get("command", []))
         return {
             "name": name,
-            "command": request.command if request else " ".join(map(str, result.provenance.get("command", []))),
+            "command": request.command(folder) if request else shlex.join(made),
+            "python": request.python(folder) if request else "",
             "statistics": list(names),
+            "titles": [_title(parse_statistic(one, result.metrics)) for one in names],
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
             "comparisons": [_sentence(one) for one in result.compare() if not math.isnan(one.p_value)],
             "report": (self._folder(name) / "report.html").is_file(),
-            "watch": request is not None,
         }
 
     @command
     def watch(self, name: str, cell: int, seed: int) -> dict[str, Any]:
-        """Write the trial of a run into a file of the session, to be opened in the simulator with the seed."""
-        request = EvaluationRequest.load(self._folder(name))
-        cells = request.plan(self.session.workspace.folder).cells
-        known = load_evaluation(self._folder(name) / "result.json").cells
-        if not 0 <= cell < min(len(cells), len(known)):
-            raise InputError(f"row {cell} does not exist in {name}; it has {len(known)}")
-        if cells[cell].hash != known[cell].hash:
-            raise InputError(f"the trial {cells[cell].trial} has changed since {name} was run; run it again")
+        """Record a run as an episode of the session, to be opened in the simulator shortly before its end.
+
+        The trial is written beside it, to be run with the seed.
+        """
+        trial, space = self._variant(name, cell), self.session.workspace
         file = f"{FOLDER}/{name}/row-{cell + 1}.xml"
-        self.session.workspace.writable(file).write_text(trial_xml(cells[cell].variant), encoding="utf-8")
-        return {"file": file, "seed": seed}
+        space.writable(file).write_text(trial_xml(trial), encoding="utf-8")
+        episode = f"{FOLDER}/{name}/row-{cell + 1}-seed-{seed}.mcap"
+        space.check_space()
+        end = record(trial, seed, space.writable(episode), force=True).end
+        return {"file": file, "seed": seed, "episode": episode, "at": max(0.0, end - BEFORE)}
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
         """Return the report of an evaluation, ``NAME/report.html``."""
@@ -136,6 +162,19 @@ class EvaluationDesk(Desk):
         if not re.fullmatch(r"[\w-][\w. -]{0,60}", name):
             raise InputError(f"name of an evaluation = {name!r:.60}: expected 1 to 60 letters, digits, - and _")
         return self.session.workspace.folder / FOLDER / name
+
+    def _variant(self, name: str, number: int) -> Trial:
+        """Return the trial of a row, with its navigator."""
+        known = load_evaluation(self._folder(name) / RESULT).cells
+        if not 0 <= number < len(known):
+            raise InputError(f"row {number} does not exist in {name}; it has {len(known)}")
+        request, space = self._request(name), self.session.workspace
+        if request is None:
+            return cell_of_result(known[number], space).variant
+        cells = request.plan(space.folder).cells
+        if number >= len(cells) or cells[number].hash != known[number].hash:
+            raise InputError(f"the trial {known[number].trial} has changed since {name} was run; run it again")
+        return cells[number].variant
 
     def _request(self, name: str) -> EvaluationRequest | None:
         folder = self._folder(name)
@@ -157,7 +196,7 @@ class EvaluationDesk(Desk):
         folders = sorted(one for one in root.glob("*") if one.is_dir()) if root.is_dir() else []
         job = self._job
         return {
-            "evaluations": [{"name": one.name, "done": (one / "result.json").is_file()} for one in folders],
+            "evaluations": [{"name": one.name, "done": (one / RESULT).is_file()} for one in folders],
             "running": job.record.title if job else "",
             "share": job.record.share if job else 0.0,
             "problem": self._problem,
@@ -184,6 +223,13 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
             for row in cell.runs
         ],
     }
+
+
+def _title(statistic: Statistic) -> str:
+    """Return a statistic with the unit of its metric."""
+    known = metric_table().get(statistic.metric)
+    unit = "" if known is None else known.unit
+    return f"{statistic.name} [{unit}]" if unit and statistic.kind != "rate" else statistic.name
 
 
 def _plain(value: float | None) -> float | None:

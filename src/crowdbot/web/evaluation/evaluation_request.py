@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from crowdbot.evaluation import EvaluationPlan, families_of, parse_methods, pars
 from crowdbot.metrics import LOG_FAMILIES
 from crowdbot.trials import builtin_trials, load_trial
 from crowdbot.web.jobs.job_forms import check_text
+from crowdbot.web.workspace import shown_path
 
 __all__ = ["FILE", "EvaluationRequest"]
 
@@ -53,17 +55,41 @@ class EvaluationRequest:
         families = (*LOG_FAMILIES, *families_of([one.metric for one in statistics]))
         methods = parse_methods(self.navigators)
         methods = with_safety(methods) if self.safety else methods
-        plan = EvaluationPlan(found, methods, seeds=parse_seeds(self.seeds), families=families)
+        plan = EvaluationPlan(found, methods, seeds=parse_seeds(self.seeds), families=families, trust=False)
         if (runs := len(plan.cells) * len(plan.seeds)) > MOST_RUNS:
             raise InputError(f"the evaluation has {runs} runs, at most {MOST_RUNS}; take fewer seeds or trials")
         return plan
 
-    @property
-    def command(self) -> str:
-        """The same evaluation on the command line."""
-        words = ["crowdbot evaluate", *self.trials, f'--navigators "{self.navigators}"', f"--seeds {self.seeds}"]
+    def command(self, folder: Path) -> str:
+        """Return the same evaluation on the command line; trial files are in the folder."""
+        places = [shlex.quote(one) for one in self._places(folder)]
+        words = ["crowdbot evaluate", *places, f'--navigators "{self.navigators}"', f"--seeds {self.seeds}"]
         words += [f'--metrics "{", ".join(self.metrics)}"', *(["--safety both"] if self.safety else [])]
         return " ".join(words)
+
+    def python(self, folder: Path) -> str:
+        """Return a Python program that gives the same table; trial files are in the folder."""
+        names = [
+            "EvaluationPlan",
+            "evaluate",
+            "parse_methods",
+            "parse_seeds",
+            *(["with_safety"] if self.safety else []),
+        ]
+        methods = f"parse_methods({self.navigators!r})"
+        return f"""from crowdbot.evaluation import {", ".join(names)}
+from crowdbot.trials import load_trial
+
+trials = [load_trial(name) for name in {list(self._places(folder))!r}]
+methods = {f"with_safety({methods})" if self.safety else methods}
+result = evaluate(EvaluationPlan(trials, methods, seeds=parse_seeds({self.seeds!r})))
+for cell in result.cells:
+    print(cell.trial, cell.method, *(cell.estimate(name) for name in {list(self.metrics)!r}), sep="; ")
+"""
+
+    def _places(self, folder: Path) -> list[str]:
+        """Return names of built-in trials, and paths of files from the working folder."""
+        return [one if one in builtin_trials() else shown_path(folder / one) for one in self.trials]
 
     @property
     def words(self) -> tuple[str, ...]:

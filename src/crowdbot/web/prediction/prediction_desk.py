@@ -12,6 +12,7 @@ from crowdbot.core import InputError
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.draft_file import DraftFile
+from crowdbot.web.workspace import shown_path
 
 from .background_picture import BackgroundPicture, parse_homography
 from .example_recordings import EXAMPLES, copy_example
@@ -19,7 +20,7 @@ from .form_rows import scheme_tables
 from .prediction_board import CLEAN, DEGRADED, BoardMember, PredictionBoard
 from .prediction_results import clean_json
 from .prediction_run import PredictionRun
-from .prediction_setup import DegradationChoice, PredictionSetup, shown_path
+from .prediction_setup import DegradationChoice, PredictionSetup
 from .result_tables import frame_table, horizon_rows, person_table, score_table, variable_names, variable_rows
 from .scene_frame import window_frame
 from .stored_results import StoredResults
@@ -27,6 +28,7 @@ from .stored_results import StoredResults
 __all__ = ["PredictionDesk"]
 
 ANIMATIONS = {"animation.gif": "image/gif", "animation.mp4": "video/mp4", "animation.webp": "image/webp"}
+TABLES = ("frames.csv", "frames.parquet", "people.csv", "people.parquet")
 RECENT = 30
 
 
@@ -38,6 +40,8 @@ class PredictionDesk(Desk):
     """
 
     name: ClassVar[str] = "prediction"
+    first: ClassVar[str | None] = None
+    """Recording that a new session opens."""
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
@@ -48,6 +52,8 @@ class PredictionDesk(Desk):
         self._tables: dict[str, Any] | None = None
         self._draft = DraftFile(session.workspace.folder, self.name)
         self._stored = self._draft.load()
+        if self.first is not None and self._stored.get("file") != self.first:
+            self._stored = {"file": self.first, "options": {}, "predictors": []}
         self._results = StoredResults(session.workspace)
 
     def greet(self) -> dict[str, Any]:
@@ -59,7 +65,9 @@ class PredictionDesk(Desk):
         """Open the recording and add the predictors that were there when the server ended, with their results."""
         found, self._stored = self._stored, {}
         if self.board.setup is None and not self.board.members:
-            with contextlib.suppress(InputError, TypeError, KeyError, OSError):  # the recording may be gone
+            chosen = found.get("file") == self.first  # with --open; its errors are shown
+            lenient = () if chosen else (InputError, TypeError, KeyError, OSError)  # the recording may be gone
+            with contextlib.suppress(*lenient):
                 for settings in found["predictors"]:
                     self.board.add({name: value for name, value in settings.items() if value is not None})
                 self.board.open(self.session.workspace.readable(found["file"]), found["options"], found["file"])
@@ -231,12 +239,12 @@ class PredictionDesk(Desk):
             return Resource(self._window(query).encode())
         if path == "background.png" and self.board.background is not None:
             return Resource(self.board.background.data, "image/png")
-        if path in ("frames.csv", "people.csv"):
+        if path in TABLES:
             table = frame_table(self.board) if path.startswith("frames") else person_table(self.board)
-            return Resource(table.to_csv(index=False).encode(), "text/csv", path)
-        if path == "frames.parquet":
+            if path.endswith(".csv"):
+                return Resource(table.to_csv(index=False).encode(), "text/csv", path)
             buffer = io.BytesIO()
-            frame_table(self.board).to_parquet(buffer, index=False)
+            table.to_parquet(buffer, index=False)
             return Resource(buffer.getvalue(), name=path)
         if path in ANIMATIONS:
             return self._animation(path, query)

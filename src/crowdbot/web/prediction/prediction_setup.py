@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,11 +11,12 @@ from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, from_attributes
 from crowdbot.data import Degradation, Recording
+from crowdbot.web.workspace import shown_path
 
 from .form_rows import builtin_kinds, written_values
 from .predictor_choice import PredictorChoice
 
-__all__ = ["DegradationChoice", "PredictionSetup", "recording_of", "shown_path"]
+__all__ = ["DegradationChoice", "PredictionSetup", "recording_of"]
 
 OPTIONS = (
     "format",
@@ -187,12 +187,6 @@ def recording_of(path: Path, options: Mapping[str, Any]) -> Recording:
     if max(given.get("observe", 8), given.get("predict", 12)) > 500:
         raise InputError("observe and predict must be at most 500 rows")
     return Recording(str(path), **given)
-
-
-def shown_path(path: str | Path) -> str:
-    """Return a path relative to the working folder, if the file is inside it."""
-    here = Path.cwd()
-    return os.path.relpath(path, here) if Path(path).is_relative_to(here) else str(path)
 
 
 def _imports(body: str) -> str:

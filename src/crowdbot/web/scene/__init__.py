@@ -5,7 +5,6 @@ from .crowd_layers import PredictedPaths
 from .description import scene_description
 from .episode_events import EpisodeEvent, episode_events, episode_series
 from .frame import LAYERS, instant_frame, scene_frame
-from .measurements import app_measurements
 from .meshes import scene_resource
 from .player import PlayerFile, write_player
 from .recorded_scene import RecordedScene, simulation_reason
@@ -22,7 +21,6 @@ __all__ = [
     "SceneInstant",
     "SensorImage",
     "WalkingBodies",
-    "app_measurements",
     "encode_image",
     "episode_events",
     "episode_series",

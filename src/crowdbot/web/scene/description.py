@@ -71,11 +71,12 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
 
 def _people(simulation: Simulation, motion: PeopleMotion) -> dict[str, Any]:
     people = motion.people
+    body, scale = people.asset_rows
     riders = np.isin(motion.agents, [one.agent for one in simulation.robots])
     return {
-        "body": people.body.tolist(),
+        "body": body.tolist(),
         "kind": [one.name for one in people.persons],
-        "scale": people.scale.round(6).tolist(),
+        "scale": scale.round(6).tolist(),
         "height": people.height.round(4).tolist(),
         "colors": [_hex(region_colors(one)) for one in people.outfits],
         "parts": [sum(1 << part for part in worn_parts(one)) for one in people.outfits],

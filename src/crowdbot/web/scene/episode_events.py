@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.metrics import swept_clearance
 from crowdbot.recording import RecordedEpisode
+from crowdbot.simulation import PushOrder
 
 __all__ = ["NEAR_MISS", "EpisodeEvent", "episode_events", "episode_series"]
 
@@ -25,7 +26,10 @@ MOST_POINTS = 2000
 
 
 class EpisodeEvent(NamedTuple):
-    """Something to look at: time [s], kind (``contact``, ``near miss`` or ``stall``) and a description."""
+    """Something to look at: time [s], kind and a description.
+
+    Kinds are ``contact``, ``fall``, ``push``, ``near miss`` and ``stall``.
+    """
 
     time: float
     kind: str
@@ -33,8 +37,8 @@ class EpisodeEvent(NamedTuple):
 
 
 def episode_events(episode: RecordedEpisode) -> list[EpisodeEvent]:
-    """Return contacts, near misses and stalls of the robots of an episode, by time."""
-    found = _contacts(episode)
+    """Return contacts, near misses and stalls of the robots of an episode, falls of people and pushes, by time."""
+    found = _contacts(episode) + _falls(episode)
     for number, robot in enumerate(episode.robots):
         name = f"robot {number + 1}" if len(episode.robots) > 1 else "the robot"
         found += _near_misses(episode, robot, name) + _stalls(episode, robot, name)
@@ -72,6 +76,19 @@ def _contacts(episode: RecordedEpisode) -> list[EpisodeEvent]:
         if time - latest.get(pair, -math.inf) > APART:
             found.append(EpisodeEvent(round(time, 3), "contact", f"{pair[0]} touches {_body(pair[1])}"))
         latest[pair] = time
+    return found
+
+
+def _falls(episode: RecordedEpisode) -> list[EpisodeEvent]:
+    """Return falls, and forces on people by orders."""
+    found = []
+    for one in episode.falls:
+        cause = f", pushed by {_body(one.cause)}" if one.cause else ""
+        found.append(EpisodeEvent(round(one.begin, 3), "fall", f"person {one.person} falls {one.direction}{cause}"))
+    for time, order in episode.orders:
+        if isinstance(order, PushOrder):
+            text = f"person {order.person} is pushed with {order.force:g} N for {order.duration:g} s"
+            found.append(EpisodeEvent(round(time, 3), "push", text))
     return found
 
 

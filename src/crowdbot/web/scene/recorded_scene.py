@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import json
 import math
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.humans import ACTIVITIES
+from crowdbot.humans import FallPose, blend_fall_poses
 from crowdbot.recording import RecordedEpisode
 from crowdbot.sensors import Reading
 from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
@@ -40,13 +41,11 @@ def simulation_reason(simulation: Simulation, episode: RecordedEpisode, changes:
         episode: the episode.
         changes: number of orders that have changed the trial.
     """
-    trial, world = simulation.trial, worlds_of(simulation.world)[0]
+    world = worlds_of(simulation.world)[0]
     if changes or any(isinstance(order, AddPersonOrder) for _, order in episode.orders):
         return "people, robots or props are added"
     if world.doors is not None or any(prop.movable for prop in (world.stage.props if world.walls_fixed else ())):
         return "doors or props move"
-    if trial.stage.physical().ground is not None:
-        return "the ground is uneven"
     return (
         "" if recorded_slots(simulation.world.ids[0], episode) is not None else "more people are present than at once"
     )
@@ -114,6 +113,7 @@ class RecordedScene:
         self._reading_times = {
             name: [float(np.ravel(one.time)[0]) for one in rows] for name, rows in episode.readings.items()
         }
+        self._robot_names = [str(one["name"]) for one in json.loads(episode.metadata["robots"])]
         self._force_times = [one.time for one in episode.forces]
         trial = simulation.trial
         self._fixed_goals = not (
@@ -129,6 +129,7 @@ class RecordedScene:
         if 1e-9 < step <= 2.0 * STRIDE:
             self._walk(self.scene, step)
         self._at = seconds
+        self.motion.fallen = self._fall_poses(seconds)
         return SceneInstant(
             self.simulation, self.motion, self.scene, self.ids, seconds,
             self._links, self.reading, self._forces, self._fixed_goals,
@@ -154,6 +155,18 @@ class RecordedScene:
         self.ids[slots] = one.ids[here]
         return rest.replace(position=position, velocity=velocity, heading=heading, active=active)
 
+    def _fall_poses(self, seconds: float) -> dict[int, FallPose]:
+        """Return the poses of people out of balance by row of their body; none in files that do not have them."""
+        k, share = self._place(seconds)
+        known = self.episode.fall_poses
+        before, after = (known[min(one, len(known) - 1)] if known else {} for one in (k, k + 1))
+        found = {}
+        for person in {*before, *after}:
+            if 0 <= person < len(self._slots) and self.episode.active[k, person]:
+                row = int(self.motion.row[self._slots[person]])
+                found[row] = blend_fall_poses(before.get(person), after.get(person), share)
+        return {row: pose for row, pose in sorted(found.items()) if row >= 0}
+
     def _place(self, seconds: float) -> tuple[int, float]:
         times = self.episode.times
         k = min(max(int(np.searchsorted(times, seconds + 1e-9, side="right")) - 1, 0), len(times) - 1)
@@ -166,7 +179,7 @@ class RecordedScene:
         count = min(round(BEFORE / STRIDE), math.floor((seconds - self._first) / STRIDE + 1e-9))
         first = self.scene_at(seconds - count * STRIDE)
         wish = self.motion.state.wish[: len(self.motion.afoot)].astype(np.int64)
-        self.motion.begin(first, [ACTIVITIES[k] for k in wish.tolist()])
+        self.motion.begin(first, [self.motion.people.activities[k] for k in wish.tolist()])
         for k in range(count - 1, -1, -1):
             self._walk(self.scene_at(seconds - k * STRIDE), STRIDE)
 
@@ -183,7 +196,18 @@ class RecordedScene:
             if one.name in rows
         }
         known = {name: at for name, at in joints.items() if math.isfinite(at)}
-        return standing_links(self.scene, control.agent, link_frames(body, known))
+        tilt = self._tilt(control.robot.name, k, following, share)
+        return standing_links(self.scene, control.agent, link_frames(body, known, tilt))
+
+    def _tilt(self, robot: str, k: int, following: int, share: float) -> tuple[float, float, float] | None:
+        """Return height [m], roll and pitch [rad] of the root link; None if they are not those of an engine."""
+        names, rows = self._robot_names, self.episode.tilts
+        if self.episode.metadata.get("world") != "physics" or robot not in names or not len(rows):
+            return None
+        before, after = rows[k, names.index(robot)], rows[following, names.index(robot)]
+        found = before + share * (after - before) if np.isfinite(after).all() else before
+        z, roll, pitch = found.tolist()
+        return (z, roll, pitch) if math.isfinite(z) else None
 
     def reading(self, control: RobotControl, sensor: Any, seconds: float | None = None) -> Reading | None:
         """Return the latest reading of a sensor at a time [s] (default: that of :meth:`at`), None if it is old."""

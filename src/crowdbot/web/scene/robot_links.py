@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import SpatialPose
 from crowdbot.simulation import RobotControl, Simulation
-from crowdbot.world import Robot, free_joints, simulated_body
+from crowdbot.world import Robot, frame, free_joints, simulated_body
 
 from .meshes import shown_links
 from .quaternions import quaternions
@@ -54,9 +55,21 @@ def _resting(robot: Robot, targets: tuple[float | None, ...]) -> Floats:
     return link_frames(robot, joints)
 
 
-def link_frames(robot: Robot, joints: Mapping[str, float]) -> Floats:
-    """Return the frames ``[L, 4, 4]`` of the links with shapes for positions of joints; others are at rest."""
+def link_frames(
+    robot: Robot, joints: Mapping[str, float], tilt: tuple[float, float, float] | None = None
+) -> Floats:  # fmt: skip
+    """Return the frames ``[L, 4, 4]`` of the links with shapes for positions of joints; others are at rest.
+
+    Args:
+        robot: the robot.
+        joints: positions of joints by name.
+        tilt: height [m], roll and pitch [rad] of the root link; None: upright on a level floor.
+    """
     poses = robot.model.poses({**robot.posture, **joints})
     found = np.array([poses[name] for name in shown_links(robot)]).reshape(-1, 4, 4)
+    if tilt is not None:
+        height, roll, pitch = tilt
+        turn = SpatialPose.of((0.0, 0.0, 0.0), roll=roll, pitch=pitch).matrix[0]
+        return np.asarray(frame((0.0, 0.0, height), turn) @ found)
     found[:, 2, 3] += robot.lift
     return found

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-from crowdbot.sensors import Ultrasound, spatial_pose
+from crowdbot.sensors import Ultrasound
 
 __all__ = ["NOTHING", "cloud_array", "cone_angle", "range_array", "scan_array"]
 
@@ -54,8 +55,7 @@ def _millimetres(ranges: Floats) -> NDArray[np.uint16]:
 
 def _pose(pose: Any, sensor: Any) -> NDArray[np.float32]:
     """Return position [m] and quaternion ``[7]``; a planar pose is at the height of its mount."""
-    place = spatial_pose(pose)
-    found = np.concatenate([place.position[0], place.rotation[0]])
     if isinstance(pose, Pose):
-        found[2] = sensor.placed[2]
-    return found.astype(np.float32)
+        (x, y), half = pose.position[0].tolist(), 0.5 * float(pose.heading[0])
+        return np.array([x, y, sensor.placed[2], math.cos(half), 0.0, 0.0, math.sin(half)], dtype=np.float32)
+    return np.concatenate([pose.position[0], pose.rotation[0]]).astype(np.float32)

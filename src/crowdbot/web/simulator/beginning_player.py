@@ -36,6 +36,7 @@ class BeginningPlayer:
         self._now, self._shown = 0.0, -1
         self._stopped = threading.Event()
         self._sending = threading.Lock()
+        self._loaded = threading.Event()
         self._thread = threading.Thread(target=self._play, name="crowdbot-beginning", daemon=True)
 
     @property
@@ -69,7 +70,13 @@ class BeginningPlayer:
 
     def resource(self, path: str) -> Resource:
         """Return a mesh; raises KeyError if there is none."""
-        return self.recorded.resource(path)
+        found = self.recorded.resource(path)
+        self._loaded.set()
+        return found
+
+    def wait_for_page(self, seconds: float) -> None:
+        """Wait until a page loads the picture, at most some seconds, because the compiler then slows the server."""
+        self._loaded.wait(seconds)
 
     def _play(self) -> None:
         before = time.monotonic()

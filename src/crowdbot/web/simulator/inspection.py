@@ -12,7 +12,7 @@ from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import Navigator
 from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.web.scene import SceneInstant
-from crowdbot.world import Drive, slot_of
+from crowdbot.world import Drive, slot_of, worlds_of
 
 __all__ = ["inspect_agent", "people_rows"]
 
@@ -89,6 +89,10 @@ def _person_rows(simulation: Simulation, slot: int) -> list[list[Any]]:
         ["radius", round(float(scene.radius[0, slot]), 3), "m"],
         ["model", _model_name(simulation, slot), ""],
     ]
+    if simulation.trial.balance:
+        pose = worlds_of(simulation.world)[0].fall_poses_of(0).get(slot)
+        state = "upright" if pose is None else "out of balance"
+        found.append(["balance", "falls, lies or gets up" if pose is not None and pose.down else state, ""])
     if scene.group[0, slot] >= 0:
         found.append(["group", int(scene.group[0, slot]), ""])
     return found

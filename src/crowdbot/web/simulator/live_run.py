@@ -18,6 +18,7 @@ from crowdbot.simulation import EpisodeStatistics, Order, OrderSource, Simulatio
 from crowdbot.trials import Trial
 
 from .beginning_player import BeginningPlayer
+from .kernel_preparation import prepare_kernels
 from .paced_loop import PacedLoop
 from .recorded_beginning import RecordedBeginning
 from .stage_view import StageView
@@ -29,6 +30,9 @@ SHARE = 0.02
 """Largest share of the real time for metrics that are computed while a trial runs."""
 SEAMLESS = 10.0
 """Time of the recording [s] up to which the run goes on there; later, the run is shown from its start."""
+
+PAGE = 3.0
+"""Longest time [s] that the compiler waits for a page that loads the recording."""
 
 
 class LiveRun:
@@ -167,7 +171,11 @@ class LiveRun:
         return self.state
 
     def _begin(self) -> None:
+        if self.beginning is not None:
+            self.beginning.wait_for_page(PAGE)
         try:
+            if self.beginning is not None:
+                prepare_kernels(lambda: self.loop.closed, self._note_compiling)
             with notify_compiling(self._note_compiling):
                 run = self._stack.enter_context(open_run(self.trial, self.seed, self.file, force=True))
                 self.view.open(run.simulation)

@@ -32,9 +32,11 @@ class PictureDesk(SteeringDesk):
 
     @command
     def description(self) -> dict[str, Any]:
-        """Return what stands still in the picture."""
+        """Return what stands still in the picture; nothing while the simulation is being prepared."""
         player, recorded = self._any(), self._beginning()
-        found: dict[str, Any] = player.do(player.view.description) if recorded is None else recorded.description()
+        if recorded is not None:
+            return recorded.description()
+        found: dict[str, Any] = {} if player.state == "preparing" else player.do(player.view.description)
         return found
 
     @command

@@ -23,24 +23,22 @@ from crowdbot.trials import (
 from crowdbot.web.command import command
 from crowdbot.web.desk import DeskWindows, Resource
 from crowdbot.web.scene import LAYERS, scene_resource
+from crowdbot.web.workspace import shown_path
 
+from .first_trial import FIRST
 from .live_run import LiveRun
 from .live_values import LIVE_VALUES
 from .picture_desk import PictureDesk
 from .playback import Playback
 from .recorded_beginning import RecordedBeginning, shipped_beginning
+from .run_source import run_command, run_python
 from .steering_desk import Player
+from .thumbnail import thumbnail
 from .trial_parameters import parameter_rows
 from .trial_preview import trial_preview
 
-__all__ = ["FIRST", "SimulatorDesk"]
+__all__ = ["SimulatorDesk"]
 
-FIRST: tuple[str, dict[str, str], int] = (
-    "two-way",
-    {"robot/type": "pepper", "robot/default-sensors": "false", "end/collision": "false"},
-    1,
-)
-"""Trial, values and seed that a new session shows: a robot among walking people."""
 HISTORY = 1500
 """Instants of the live values that a new window gets."""
 AVATAR = "you"
@@ -58,7 +56,7 @@ class SimulatorDesk(PictureDesk):
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
-        self._opening = threading.Lock()
+        self._opening = threading.RLock()
         self._number = 0
         self._source: dict[str, Any] = {}
         self._history: deque[list[Any]] = deque(maxlen=HISTORY)
@@ -228,6 +226,26 @@ class SimulatorDesk(PictureDesk):
         return target
 
     @command
+    def command_line(self) -> str:
+        """Return the command that gives the same run, or replays the episode."""
+        return run_command(*self._words())
+
+    @command
+    def python(self) -> str:
+        """Return a Python program that gives the same run, or reads the episode."""
+        return run_python(*self._words())
+
+    def _words(self) -> tuple[dict[str, Any], str, str]:
+        player, name = self._any(), self._source["name"]
+        is_file = name.endswith((".xml", ".mcap"))
+        place = shown_path(self.session.workspace.readable(name)) if is_file else name
+        changes = list[str]()
+        if isinstance(player, LiveRun):
+            changes += [f"{player.given} order{'s' * (player.given > 1)}"] if player.given else []
+            changes += ["the person that you move"] if any(one.name == AVATAR for one in player.trial.avatars) else []
+        return self._source, place, " and ".join(changes)
+
+    @command
     def ping(self) -> None:
         """Do nothing, to measure the latency."""
 
@@ -235,7 +253,9 @@ class SimulatorDesk(PictureDesk):
         """Return a thumbnail of a trial, or meshes of the picture."""
         kind, _, name = path.partition("/")
         if kind == "thumbnail":
-            return Resource(_thumbnail(name.removesuffix(".svg")), "image/svg+xml")
+            name = name.removesuffix(".svg")
+            file = self.session.workspace.readable(name) if name.endswith(".xml") else None
+            return Resource(thumbnail(name, file), "image/svg+xml")
         player = self._any()
         if (recorded := self._beginning()) is not None:
             return recorded.resource(path)
@@ -258,7 +278,9 @@ class SimulatorDesk(PictureDesk):
             if self.first is None:
                 name, values, seed = FIRST
                 trial = self._load(name, values, 1)
-                self._start(trial, name, dict(values), seed, 1, False, shipped_beginning())
+                with self._opening:
+                    if self._player is None:  # a window may have opened another one meanwhile
+                        self._start(trial, name, dict(values), seed, 1, False, shipped_beginning())
             elif self.first.endswith(".mcap"):
                 self.open_episode(self.first)
             else:
@@ -350,10 +372,3 @@ class SimulatorDesk(PictureDesk):
 def _recorded_instant(player: Playback, at: float) -> float:
     times = player.episode.times
     return float(times[int(abs(times - at).argmin())])
-
-
-@functools.lru_cache(maxsize=256)
-def _thumbnail(name: str) -> bytes:
-    if name not in trial_titles():
-        raise KeyError(name)
-    return load_trial(name)._repr_svg_().encode()

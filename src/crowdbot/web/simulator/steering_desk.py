@@ -47,12 +47,15 @@ class SteeringDesk(Desk):
     def inspect(self, id: int) -> dict[str, Any]:
         """Return the state of a person or robot."""
         player = self._any()
-        return self._asked(lambda: inspect_agent(player.simulation, id))
+        found: dict[str, Any] = self._asked(lambda: inspect_agent(player.simulation, id))
+        return found
 
     @command
     def people(self) -> list[dict[str, Any]]:
-        """Return everybody who is present."""
+        """Return everybody who is present; nobody while the simulation is being prepared, which may take long."""
         player = self._any()
+        if player.state == "preparing":
+            return []
         rows: list[dict[str, Any]] = player.do(
             lambda: people_rows(player.view.simulation, player.view.recording_instant)
         )
@@ -62,7 +65,7 @@ class SteeringDesk(Desk):
     def values(self) -> list[dict[str, Any]]:
         """Return the values of the trial by their paths."""
         player = self._any()
-        rows: list[dict[str, Any]] = player.do(lambda: value_rows(player.view.simulation.trial))
+        rows: list[dict[str, Any]] = self._asked(lambda: value_rows(player.view.simulation.trial))
         return rows
 
     @command
@@ -96,6 +99,8 @@ class SteeringDesk(Desk):
         if robot in run.controls:
             return
         spec = run.do(lambda: _robot(run.simulation, robot))
+        if spec.mirror is not None or bool(getattr(spec.navigator, "source", "")):
+            raise InputError(f"robot {robot!r} is moved over its own connection; the app cannot drive it")
         if not isinstance(spec.navigator, ExternalNavigator):
             run.order(ParameterOrder(path=f"robot[{robot}]/navigator/type", value=EXTERNAL, source=SOURCE))
             run.taken[robot] = spec.navigator
@@ -130,12 +135,11 @@ class SteeringDesk(Desk):
             raise InputError(f"{avatar!r} is a robot, not an avatar")
         control.hold(float(forward), float(left), float(turn))
 
-    def _asked(self, action: Any) -> dict[str, Any]:
+    def _asked(self, action: Any) -> Any:
         player = self._any()
         if player.state == "preparing":
             raise InputError("the simulation is being prepared; values come as soon as it runs")
-        found: dict[str, Any] = player.do(action)
-        return found
+        return player.do(action)
 
     def _beginning(self) -> BeginningPlayer | None:
         """Return what shows a recording while the run is prepared."""

@@ -67,6 +67,11 @@ class Avatars:
         self._latest: dict[tuple[int, float], tuple[PoseSource, PoseMotion]] = {}  # holds sources, so ids are unique
         self.rows = np.zeros((len(self.sources), len(self.agents), len(BodyPose(0.0, 0.0).row())))
 
+    @property
+    def people(self) -> Ints:
+        """The agents that are persons, without robots."""
+        return np.asarray(self.agents[~np.isin(self.agents, self.robots)])
+
     def __deepcopy__(self, memo: Any) -> Avatars:
         """Return an independent copy; sources do not change, so they are shared."""
         return self.select(range(len(self.sources)))

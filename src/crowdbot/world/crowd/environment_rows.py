@@ -53,9 +53,16 @@ def stack_scenes(scenes: Sequence[Scene]) -> Scene:
     agents = max(scene.shape[1] for scene in scenes)
     rows = [pad_scene(scene, agents) for scene in scenes]
     arrays = {name: np.concatenate([getattr(row, name) for row in rows]) for name in _names(rows[0])}
-    memory = {name: np.concatenate([row.memory[name] for row in rows]) for name in rows[0].memory}
+    names = {name: value for row in rows for name, value in row.memory.items()}
+    memory = {name: np.concatenate([_memory(row, name, value) for row in rows]) for name, value in names.items()}
     times = np.concatenate([np.broadcast_to(row.time, (row.shape[0],)) for row in rows])
     return rows[0].replace(**arrays, memory=memory, time=_shared(times))
+
+
+def _memory(scene: Scene, name: str, like: NDArray[Any]) -> NDArray[Any]:
+    """Return a memory of a scene, zeros if it begins later in the run, as that of pushes."""
+    known = scene.memory.get(name)
+    return np.zeros((*scene.shape, *like.shape[2:]), dtype=like.dtype) if known is None else known
 
 
 def pad_scene(scene: Scene, agents: int) -> Scene:
@@ -98,7 +105,10 @@ def trim_scene(scene: Scene, agents: int) -> Scene:
 def put_scene(scene: Scene, index: NDArray[np.int64], rows: Scene) -> Scene:
     """Return the scene with the environments ``index`` replaced by those of another with as many agents."""
     arrays = {name: _put(getattr(scene, name), index, getattr(rows, name)) for name in _names(scene)}
-    memory = {name: _put(value, index, rows.memory[name]) for name, value in scene.memory.items()}
+    names = {**rows.memory, **scene.memory}
+    memory = {
+        name: _put(_memory(scene, name, value), index, _memory(rows, name, value)) for name, value in names.items()
+    }
     times = np.array(np.broadcast_to(scene.time, (scene.shape[0],)))
     times[index] = rows.time
     return scene.replace(**arrays, memory=memory, time=_shared(times))

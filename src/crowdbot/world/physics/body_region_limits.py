@@ -7,6 +7,7 @@ of the region: ``F = v sqrt(k mu)``. Solver forces during an impact are not repo
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -141,6 +142,7 @@ def permitted_speed(mass: float, region: str) -> float:
     return tissue.transient * tissue.limit / two_body_force(1.0, mass, region)
 
 
+@functools.lru_cache(maxsize=4096)
 def softness(region: str, person: float, mass: float, dt: float, moved: float | None = None) -> tuple[float, float]:
     """Return stiffness and damping of a contact per reduced mass [1/s2, 1/s], for the solver.
 

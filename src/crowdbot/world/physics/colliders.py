@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.ground.surfaces import ground_boxes
+from crowdbot.world.rendering.carried_objects import carried_solids, has_things
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
@@ -24,6 +25,7 @@ from .stage import PhysicsStage, PropBody
 __all__ = ["scene_bodies"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Frames = Mapping[str, Floats]
 UPRIGHT = math.cos(math.radians(5.0))
 """Cylinders tilted by less than this are upright."""
@@ -50,10 +52,12 @@ def scene_bodies(
     props: Mapping[int, Floats] | None = None,
     doors: Sequence[float] | Floats | None = None,
     skins: int | None = None,
+    only: Ints | None = None,
 ) -> Bodies:
     """Return the bodies of all people, robots and props in a scene, E = 1, for range sensors.
 
-    People consist of 17 capsules, robots of their colliders, and props of their visual shapes. Boxes, spheres, capsules
+    People consist of 17 capsules and what they hold, sit on and push, without bags, robots of their colliders, and
+    props of their visual shapes. Boxes, spheres, capsules
     and upright cylinders are exact. A tilted cylinder becomes a box of equal width, or a capsule if it is longer than
     wide. A mesh becomes the bounding boxes of its convex pieces, an ellipsoid a stack of discs. An agent that is
     neither in ``motion`` nor in ``robots`` has no body and is a cylinder with its radius. :meth:`Scene.without` removes
@@ -69,6 +73,7 @@ def scene_bodies(
         props: frames ``[4, 4]`` in the world of moved props, by number.
         doors: how far each door of the stage is open, 0 to 1 (default: closed).
         skins: level of detail of people's skins, 0 (finest) to 2, for rays that hit the mesh; None: no skins.
+        only: agents that have a skin (default: all people).
 
     Raises:
         InputError: the scene has several environments.
@@ -86,6 +91,8 @@ def scene_bodies(
         limbs = motion.limbs(scene.active[0])
         parts = limbs.parts
         found.capsules.append((limbs.start[0], limbs.end[0], limbs.radius[0], limbs.owner, limbs.part))
+        for agent, kind, place, size in _held_things(scene, motion):
+            found.add(kind, place[None], size[None], agent)
     for agent, robot in (robots or {}).items():
         places = (frames or {}).get(agent) or _standing(scene, agent, robot, (joints or {}).get(agent, {}))
         for kind, rows in _rows_of(robot).items():
@@ -99,7 +106,7 @@ def scene_bodies(
     for k, leaf in enumerate(stage.doors if stage is not None else ()):
         middle, half, yaw = leaf.box(0.0 if doors is None else doors[k])
         found.add("box", frame(middle, axis_rotation((0.0, 0.0, 1.0), yaw))[None], half[None], STAGE)
-    skin = None if skins is None or motion is None else _skins(scene, motion, skins)
+    skin = None if skins is None or motion is None else _skins(scene, motion, skins, only)
     return found.bodies(parts, skin)
 
 
@@ -173,6 +180,18 @@ def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, Array
     return {link: base @ pose for link, pose in poses.items()}
 
 
+def _held_things(scene: Scene, motion: PeopleMotion) -> list[tuple[int, str, Floats, Floats]]:
+    """Return owner, kind, frame ``[4, 4]`` and sizes of what people hold and push."""
+    busy = [k for k, agent in enumerate(motion.agents) if scene.active[0, agent] and has_things(motion.state.blend, k)]
+    if not busy:
+        return []
+    posture, found = motion.posture(), []
+    for k in busy:
+        solids = carried_solids(motion.people, posture, motion.state.yaw, motion.state.blend, k, k < len(motion.afoot))
+        found += [(int(motion.agents[k]), kind, frame(place, turn), size) for kind, turn, place, size in solids]
+    return found
+
+
 @functools.lru_cache(maxsize=16)
 def _ground_boxes(ground: Ground) -> tuple[Floats, Floats]:
     return ground_boxes(ground)
@@ -233,12 +252,14 @@ def _numbers(element: Element, key: str) -> Floats:
     return np.array([float(word) for word in element.attributes.get(key, "0 0 0").split()])
 
 
-def _skins(scene: Scene, motion: PeopleMotion, level: int) -> Skins:
-    """Return the skins of all people present, without hidden parts."""
-    points = motion.skin(level)
-    points[~scene.active[0, motion.agents]] = np.nan
-    worn, faces = motion.people.clothing_mask(level), motion.people.faces(level)
+def _skins(scene: Scene, motion: PeopleMotion, level: int, only: Ints | None) -> Skins:
+    """Return the skins of all people present, or of some agents, without hidden parts."""
+    numbers = np.arange(len(motion.agents)) if only is None else np.flatnonzero(np.isin(motion.agents, only))
+    agents = motion.agents[numbers]
+    points = motion.skin(level, numbers)
+    points[~scene.active[0, agents]] = np.nan
+    worn, faces = motion.people.clothing_mask(level)[numbers], motion.people.faces(level)
     count = points.shape[1]
     rows = [faces[own] + k * count for k, own in enumerate(worn)]
-    owner = np.repeat(motion.agents, worn.sum(axis=1))
+    owner = np.repeat(agents, worn.sum(axis=1))
     return Skins.of(points.reshape(1, -1, 3), np.concatenate(rows) if rows else np.zeros((0, 3)), owner)

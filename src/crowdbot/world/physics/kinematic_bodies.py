@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Walls
 from crowdbot.humans import People
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from crowdbot.world.doors.doors import Doors
 
 __all__ = ["KinematicBodies"]
+
+Ints = NDArray[np.int64]
 
 
 class KinematicBodies:
@@ -70,10 +73,11 @@ class KinematicBodies:
         """Make the next image with a new renderer, since robots, people or props were added or removed."""
         self._renderer = None
 
-    def scene(self, scene: Scene, skins: int | None) -> Scene:
+    def scene(self, scene: Scene, skins: int | None, only: Ints | None = None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
+        doors = self._shares()
         found = scene_bodies(
-            scene, self.people, self.robots, self.stage, joints=self.joints, doors=self._shares(), skins=skins
+            scene, self.people, self.robots, self.stage, joints=self.joints, doors=doors, skins=skins, only=only
         )
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 

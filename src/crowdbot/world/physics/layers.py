@@ -1,15 +1,22 @@
 """Collision filters of the physics world: values of MuJoCo's ``contype`` and ``conaffinity``.
 
-Two geoms collide if the type of one is in the affinity of the other. People do not collide with each other (the crowd
-model separates them) or with the floor (their feet are placed on it). Of the limbs of a person, only the trunk collides
-with walls and fixed objects.
+Two geoms collide if the type of one is in the affinity of the other. People do not collide with the floor (their feet
+are placed on it), and with each other only if one of them is out of balance: otherwise the crowd model separates them.
+Of the limbs of a person, only the trunk collides with walls and fixed objects.
 """
 
 from __future__ import annotations
 
-__all__ = ["DYNAMIC", "GROUND", "LEAF", "LIMB", "PULLED", "RAISED", "ROBOT", "STANDING", "TRUNK"]
+from typing import Any
 
-_ROBOT, _STAGE, _PERSON, _MOVED, _FLOOR, _RAISED = 1, 2, 4, 8, 16, 32
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.humans import LIMBS
+
+__all__ = ["DYNAMIC", "GROUND", "LEAF", "LIMB", "PULLED", "RAISED", "ROBOT", "STANDING", "TRUNK", "write_layers"]
+
+_ROBOT, _STAGE, _PERSON, _MOVED, _FLOOR, _RAISED, _UNSTEADY = 1, 2, 4, 8, 16, 32, 64
 
 
 def _bits(kind: int, touches: int) -> dict[str, str]:
@@ -26,4 +33,26 @@ LEAF = _bits(0, _ROBOT | _PERSON | _MOVED)
 STANDING = _bits(_STAGE, _ROBOT | _MOVED)
 DYNAMIC = _bits(_MOVED, _ROBOT | _STAGE | _PERSON | _MOVED | _FLOOR)
 LIMB = _bits(_PERSON, _ROBOT | _MOVED)
-TRUNK = _bits(_PERSON, _ROBOT | _MOVED | _STAGE)
+TRUNK = _bits(_PERSON, _ROBOT | _MOVED | _STAGE | _UNSTEADY)
+_IS_TRUNK = np.array([limb.region == "torso" for limb in LIMBS])
+
+
+def write_layers(
+    model: Any,
+    geoms: NDArray[np.int64],
+    bodies: NDArray[np.int64],
+    unsteady: NDArray[np.bool_],
+    down: NDArray[np.bool_],
+) -> None:
+    """Let people out of balance push others: with the trunk while they stand, with all limbs on their way down.
+
+    Args:
+        model: engine model.
+        geoms, bodies: limbs ``[S, L]`` and bodies ``[S]`` of people.
+        unsteady, down: ``[S]`` whether a body is out of balance, and whether it falls or lies.
+    """
+    if not len(bodies):
+        return
+    pushing = (unsteady[:, None] & _IS_TRUNK) | down[:, None]
+    model.geom_contype[geoms.ravel()] = np.where(pushing, _PERSON | _UNSTEADY, _PERSON).ravel()
+    model.body_contype[bodies] = np.where(unsteady | down, _PERSON | _UNSTEADY, _PERSON)

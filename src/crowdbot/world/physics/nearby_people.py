@@ -14,7 +14,7 @@ from crowdbot.world.physics.robots.robot_body import RobotBody
 
 from .stage import PhysicsStage
 
-__all__ = ["movers", "people_near"]
+__all__ = ["add_unsteady", "movers", "people_near"]
 
 Floats = NDArray[np.float64]
 Mover = tuple[float, float, float, float, bool]
@@ -48,6 +48,29 @@ def people_near(
     near = np.flatnonzero(nearest < reach)
     near = near[np.lexsort((persons[near], nearest[near]))]
     return near, mass, ahead, firm
+
+
+def add_unsteady(
+    scene: Scene, persons: NDArray[np.int64], near: NDArray[np.int64], unsteady: NDArray[np.int64], reach: float
+) -> NDArray[np.int64]:
+    """Return who needs a body: people out of balance first, then those near movers, then those near the former.
+
+    Args:
+        scene: with positions.
+        persons: ``[P]`` agents that are people.
+        near: indices into ``persons`` of those near movers, by decreasing priority.
+        unsteady: agents out of balance.
+        reach: largest distance [m] of people whom they may touch.
+    """
+    own = np.flatnonzero(np.isin(persons, unsteady))
+    if not len(own):
+        return near
+    away = scene.position[0, persons[:, None]] - scene.position[0, persons[own]][None]
+    gap = np.sqrt(np.sum(away * away, axis=-1)).min(axis=1)
+    close = np.flatnonzero(gap < reach)
+    close = close[np.lexsort((persons[close], gap[close]))]
+    wanted = np.concatenate([own, near, close])
+    return wanted[np.sort(np.unique(wanted, return_index=True)[1])]
 
 
 def movers(

@@ -8,17 +8,21 @@ returns to the path of the crowd model with limited force.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .balance.balance import Balance
+from .balance.force_pushes import ForcePushes
+from .balance.recovery import BRACE, GRAVITY, GRIP, REACTION, recovery_force
 from .body_region_limits import region_of, softness
+from .body_shapes import BodyShapes
 from .contacts import EngineContact
-from .limb_poses import capsule_poses, chain_rows, guard_limbs
+from .layers import write_layers
+from .limb_poses import chain_rows, move_limbs
 from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
-from .recovery import BRACE, REACTION, recovery_force
 
 __all__ = ["PeopleBodies"]
 
@@ -44,58 +48,6 @@ about :data:`REACTION` exceeds :data:`BRACE`. Single impacts do not move it."""
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
-class BodyShapes(NamedTuple):
-    """Limbs and masses of the bodies, which are parts of the engine model; S bodies, L limbs.
-
-    Fields:
-        position, rotation: ``[S, L, 3]`` [m] and quaternions ``[S, L, 4]`` of the limbs relative to their bodies.
-        size: radius, half length and 0 ``[S, L, 3]`` [m].
-        bound: radius of the bounding sphere ``[S, L]`` [m].
-        softness: stiffness and damping of contacts ``[S, L, 2]``, negated.
-        mass: ``[S]`` [kg].
-        inverse_weight: inverse of mass and inertia ``[S, 2]``.
-    """
-
-    position: Floats
-    rotation: Floats
-    size: Floats
-    bound: Floats
-    softness: Floats
-    mass: Floats
-    inverse_weight: Floats
-
-    @classmethod
-    def of(cls, model: Any, geoms: Ints, bodies: Ints) -> BodyShapes:
-        """Return a copy of the shapes of a model."""
-        position, rotation, size, bound, softness = (
-            array.reshape(len(bodies), LIMB_COUNT, *array.shape[1:])
-            for array in (getattr(model, name)[geoms] for name in (*POSES, "geom_solref"))
-        )
-        return cls(position, rotation, size, bound, softness, model.body_mass[bodies], model.body_invweight0[bodies])
-
-    def copy(self) -> BodyShapes:
-        """Return an independent copy."""
-        return BodyShapes(*(array.copy() for array in self))
-
-    def write_all(self, model: Any, geoms: Ints, bodies: Ints) -> None:
-        """Write the shapes to a model."""
-        if not len(bodies):
-            return
-        self.write_poses(model, geoms)
-        model.geom_solref[int(geoms[0]) : int(geoms[-1]) + 1] = self.softness.reshape(-1, 2)
-        model.body_mass[bodies], model.body_invweight0[bodies] = self.mass, self.inverse_weight
-
-    def write_poses(self, model: Any, geoms: Ints) -> None:
-        """Write poses and sizes of the limbs to a model."""
-        rows = slice(int(geoms[0]), int(geoms[-1]) + 1)
-        for name, array in zip(POSES, self, strict=False):
-            getattr(model, name)[rows] = array.reshape(len(geoms), *array.shape[2:])
-
-
-POSES = ("geom_pos", "geom_quat", "geom_size", "geom_rbound")
-"""Arrays of an engine model with the poses and sizes of limbs, in the order of :class:`BodyShapes`."""
-
-
 class PeopleBodies:
     """Pool of bodies in the engine, assigned to nearby people.
 
@@ -109,6 +61,8 @@ class PeopleBodies:
         agent: ``[S]`` agent of each body, -1 for a free one.
         pushed: ``[S]`` whether a contact displaced the body during this step of the world.
         led: agents whose motion comes from outside: contacts do not displace them.
+        balance: balance of the agents; None: nobody loses it.
+        pushes: forces from outside during this step of the world.
     """
 
     def __init__(self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None) -> None:
@@ -117,6 +71,9 @@ class PeopleBodies:
         self.agent = np.full(slots, -1, dtype=np.int64)
         self.pushed = np.zeros(slots, dtype=np.bool_)
         self.led: Ints = np.zeros(0, dtype=np.int64)
+        self.balance: Balance | None = None
+        self.pushes: ForcePushes | None = None
+        self._heading = np.zeros(0)
         self._begin, self._duration = np.zeros((0, 2)), 0.0
         self._off = np.zeros((slots, 2))
         self._mass, self._center = np.full(slots, 70.0), np.ones(slots)
@@ -133,7 +90,7 @@ class PeopleBodies:
         self._touched = np.zeros(slots, dtype=np.int64)
         self._since = np.zeros(slots, dtype=np.int64)
         self._fresh = np.ones(slots, dtype=np.bool_)
-        self._hold = round(HOLD / step)
+        self._hold, self._quiet = round(HOLD / step), False
         self.swing = np.zeros((slots, LIMB_COUNT, 6))
         """Velocities [m/s] of both ends of the limbs relative to the body."""
         self._park(np.arange(slots))
@@ -152,6 +109,9 @@ class PeopleBodies:
         """Use a model in the following engine steps, in which nobody else uses it."""
         self._model = model
         self.shapes.write_all(model, self.geoms.ravel(), self.bodies)
+        if self.balance is not None:
+            unsteady, down = self.balance.unsteady[self.agent], self.balance.down[self.agent]
+            write_layers(model, self.geoms, self.bodies, unsteady & (self.agent >= 0), down & (self.agent >= 0))
 
     def release(self) -> None:
         """Use the model no longer."""
@@ -162,10 +122,11 @@ class PeopleBodies:
         more = PeopleBodies(model, data, len(shapes.mass), self.step, shapes)
         old, kept = len(self.agent), dict(self.__dict__)
         self.__dict__.update(more.__dict__)
+        self.balance, self.pushes = kept["balance"], kept["pushes"]
         for name, array in kept.items():
             if not isinstance(array, np.ndarray) or name in ("geoms", "bodies", "_place", "_speed"):
                 continue
-            if name in ("led", "_begin"):  # of agents, not of bodies
+            if name in ("led", "_begin", "_heading"):  # of agents, not of bodies
                 setattr(self, name, array)
             else:
                 getattr(self, name)[:old] = array
@@ -215,7 +176,9 @@ class PeopleBodies:
         x, y = self._data.qpos[self._place[slots[0]] + np.arange(2)].tolist()
         return np.asarray(self._limbs_now[slots[0]] + (x, y, 0.0, x, y, 0.0))
 
-    def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
+    def begin(
+        self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float, heading: Floats
+    ) -> None:  # fmt: skip
         """Set the targets of all bodies for the next step of the world.
 
         Args:
@@ -223,8 +186,9 @@ class PeopleBodies:
             way: velocities ``[A, 2]`` [m/s] towards the positions of the crowd model.
             before, after: both limb ends ``[A, L, 6]`` at the start and the end of the step, relative to the body.
             duration: duration of the step [s].
+            heading: headings ``[A]`` [rad].
         """
-        here = self._here
+        here, self._heading = self._here, heading
         agents = self.agent[here]
         self._way[here] = way[agents]
         self._begin, self._duration = place, duration
@@ -232,6 +196,10 @@ class PeopleBodies:
         held = here[touched]  # a person in contact cannot change velocity immediately
         self._off[held] = self._velocity(held) - self._way[held]
         self.pushed[:] = np.any(self._off != 0.0, axis=1)
+        self._quiet = self._quiet and not self.pushed.any()
+        if self.balance is not None:
+            self.pushed[here] |= self.balance.unsteady[agents]
+            self._quiet = self._quiet and not self.pushed.any()
         self._limbs = (before[agents], after[agents])
         self._stride[here] = self.swing[here] = (after[agents] - before[agents]) / duration
         for axis in (0, 1):
@@ -249,22 +217,29 @@ class PeopleBodies:
         force = np.zeros((len(here), 2))
         if np.any(self.pushed):
             force = self._braced(here)
+        if self.pushes:
+            force += self._push(here, self.pushes)
         for axis in (0, 1):
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
-    def register_contacts(self, contacts: Iterable[EngineContact]) -> None:
+    def register_contacts(self, contacts: Sequence[EngineContact]) -> None:
         """Record people pushed in the last engine step, and let pressed limbs yield."""
+        if not contacts and self._quiet:
+            return
         self._touched, self._wary = np.maximum(self._touched - 1, 0), np.maximum(self._wary - 1, 0)
         fresh = self.step / REACTION
         self._load *= 1.0 - fresh
         for contact in contacts:
-            for party, limb, sign in (
-                (contact.first, contact.first_part, -1.0),
-                (contact.second, contact.second_part, 1.0),
+            for party, limb, sign, other in (
+                (contact.first, contact.first_part, -1.0, contact.second),
+                (contact.second, contact.second_part, 1.0, contact.first),
             ):
                 if party.kind == "person" and party.number in self.agent:  # riders are parts of robots
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
+                    if self.balance is not None and party.number not in self.led:
+                        change = sign * contact.force[:2] * (self.step / self._mass[slot])
+                        self.balance.push(party.number, change, float(contact.point[2]), other)
                     self._beware(slot, -sign * contact.normal)
                     row = LIMB_NAMES.index(limb)
                     self._load[slot, row] += fresh * sign * contact.force
@@ -276,6 +251,7 @@ class PeopleBodies:
             now = self._velocity(here)
             self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
         self._since[self.pushed] += 1
+        self._quiet = not (contacts or self._touched.any() or self._wary.any() or self.pushed.any() or self._load.any())
 
     def _lead(self, share: float) -> None:
         """Keep the bodies that are led from outside on their path, at the end of the engine step before ``share``."""
@@ -334,9 +310,32 @@ class PeopleBodies:
         return np.stack([self._data.qvel[self._speed[slots] + axis] for axis in (0, 1)], axis=-1).reshape(-1, 2)
 
     def _braced(self, here: Ints) -> Floats:
+        """Return the horizontal forces ``[P, 2]`` [N] by which people brace, topple, step or rub on the floor."""
         error = self._way[here] - self._velocity(here)
         since = np.asarray(self._since[here] * self.step, dtype=np.float64)
-        return recovery_force(error, self._mass[here], self._center[here], since, self._touched[here] == 0)
+        mass, center, free = self._mass[here], self._center[here], self._touched[here] == 0
+        if self.balance is None:
+            return recovery_force(error, mass, center, since, free)
+        agents = self.agent[here]
+        balance, down = self.balance, self.balance.down[agents]
+        balance.advance(agents[~np.isin(agents, self.led)], self._heading, self.step)
+        own = np.where(down[:, None], 0.0, balance.speed[agents])  # the rest of the error is not that of a pendulum
+        force = recovery_force(error + own, mass, center, since, free) + mass[:, None] * balance.pulled[agents]
+        size = np.sqrt(np.sum(error * error, axis=1))
+        rubbed = mass * np.minimum(size / self.step, GRIP * GRAVITY) / np.maximum(size, 1e-12)
+        return np.asarray(np.where(down[:, None], error * rubbed[:, None], force))
+
+    def _push(self, here: Ints, pushes: ForcePushes) -> Floats:
+        """Return the forces ``[P, 2]`` [N] from outside; who is pushed does not step yet."""
+        force = pushes.forces(self.agent[here], self._mass[here], self.balance)
+        self._touched[here[np.any(force != 0.0, axis=1)]] = self._hold
+        self._quiet = False
+        return force
+
+    def unsettled(self) -> Ints:
+        """Return the agents who are not on the path of the crowd model."""
+        off = np.any(self._off != 0.0, axis=1) | (self._touched > 0)
+        return np.asarray(self.agent[off & (self.agent >= 0)])
 
     def _park(self, slots: Ints) -> None:
         """Move unused bodies out of the way."""
@@ -365,36 +364,15 @@ class PeopleBodies:
             shapes.softness[slot, limb] = (-stiffness, -damping)
 
     def _move(self, here: Ints, walk: Floats) -> None:
-        """Move limbs according to the gait. Limbs of people in contact keep their pose and return slowly afterwards.
-
-        A limb that continued its gait while blocked would press without limit.
-        """
-        held = (self._touched[here] > 0) & ~self._fresh[here]
-        late = held | self._late[here]
-        lag = walk - self._limbs_now[here]
-        length = np.sqrt(np.maximum(np.sum(lag[..., :3] ** 2, axis=-1), np.sum(lag[..., 3:] ** 2, axis=-1)))
-        fastest = np.where(late, RETURN, QUICK)[:, None]
-        share = np.minimum(1.0, fastest * self.step / np.maximum(length, 1e-12))
-        share[held] = 0.0
-        share[self._fresh[here]] = 1.0
-        moved = share[..., None] * lag
-        toward = np.where((late & (self._wary[here] > 0))[:, None], self._toward[here], 0.0)
-        guarded = guard_limbs(moved, toward, GUARD * self.step)
-        late &= held | np.any(share < 1.0, axis=1) | np.any(guarded != moved, axis=(1, 2))
-        behind = (late[:, None] | (share < 1.0))[..., None]
-        moved = guarded
-        now = np.where(behind, self._limbs_now[here] + moved, walk)
-        self.swing[here] = np.where(behind, moved / self.step, self._stride[here])
-        self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
-        self._walk_now[here] = walk
-        self._pose(here, now)
-
-    def _pose(self, here: Ints, limbs: Floats) -> None:
-        """Set the poses of the capsules relative to their bodies."""
+        """Move limbs according to the gait; a limb that continued its gait while blocked would press without limit."""
         shapes = self.shapes
-        shapes.position[here], shapes.size[here, :, 1], shapes.rotation[here] = capsule_poses(limbs)
-        shapes.bound[here] = shapes.size[here, :, 1] + shapes.size[here, :, 0]
+        move_limbs(
+            here, walk, self._touched, self._wary, self._toward, SPEEDS, self.step, self._fresh, self._late,
+            self._stride, self._limbs_now, self._walk_now, self.swing, shapes.position, shapes.rotation, shapes.size,
+            shapes.bound,
+        )  # fmt: skip
 
 
+SPEEDS = np.array([QUICK, RETURN, GUARD])
 STEADY = 1e-4
 """A pushed person with a velocity error below this [m/s] has recovered."""

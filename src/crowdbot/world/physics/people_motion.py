@@ -10,14 +10,17 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, stream
 from crowdbot.humans import (
+    ACTIVITIES,
     CHAIR,
     LIMBS,
     WHEELCHAIR,
+    FallPose,
     Gait,
     Gaits,
     People,
     Posture,
     ankle_positions,
+    fall_postures,
     reach_poses,
     stand_on_ground,
     striking_mass,
@@ -31,6 +34,8 @@ Ints = NDArray[np.int64]
 NAMES = tuple(limb.name for limb in LIMBS)
 SOLE, STEEP = 0.06, 2.0
 """A foot stands on the highest ground within ``SOLE`` [m] of the ankle, and rises ahead of an edge with this slope."""
+LOOK, GAZE = ACTIVITIES.index("look"), 0.9
+"""The activity of looking at the nearest robot, and the height [m] of the point looked at."""
 FASTEST = 11.9
 """Upper limit of the walking speed [m/s] for gaits."""
 
@@ -88,6 +93,9 @@ class PeopleMotion:
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))
         self.poses: Mapping[int, Floats] = {}
+        self.fallen: Mapping[int, FallPose] = {}
+        """Poses of people out of balance at the end of the latest step, by row."""
+        self._targets: Mapping[int, Floats] = {}
         self.gait = self._new_gait(seed, range(len(agents)))
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity, self._busy("walk"))
@@ -111,6 +119,8 @@ class PeopleMotion:
             (*persons[:first], *(one.persons[0] for one in more), *persons[first:]),
             np.insert(self.people.variation, first, variation),
             np.insert(self.people.height, first, np.concatenate([one.height for one in more])),
+            self.people.clips,
+            self.people.own,
         )
         numbers = list(self.gait.ids or ())
         following = max(numbers, default=-1) + 1
@@ -167,6 +177,11 @@ class PeopleMotion:
         """Set the poses ``[139]`` of agents for the next state, see :meth:`crowdbot.humans.BodyPose.row`."""
         self.poses = {int(self.row[agent]): row for agent, row in poses.items()}
 
+    def fall_poses(self, active: NDArray[np.bool_]) -> dict[int, FallPose]:
+        """Return the poses of the people out of balance who are present, ``active`` ``[A]``, by agent."""
+        found = {int(self.agents[row]): pose for row, pose in self.fallen.items()}
+        return {agent: found[agent] for agent in sorted(found) if active[agent]}
+
     def move(self, agent: int, dx: float, dy: float) -> None:
         """Move the limbs of an agent that is elsewhere at once [m]."""
         if (dx or dy) and self.row[agent] >= 0:
@@ -176,15 +191,17 @@ class PeopleMotion:
     def posture(self, state: Gaits | None = None) -> Posture:
         """Return the posture of all people, by default the current one."""
         state = self.state if state is None else state
-        walking = self.gait.posture(state)
+        walking = self.gait.posture(state, self._targets)
         if self.ground is not None:
             under = self.ground.support(ankle_positions(walking)[..., :2], SOLE, STEEP)
             walking = stand_on_ground(walking, self.people, state.yaw, under)
+        if self.fallen:
+            walking = fall_postures(walking, self.people, state.yaw, self.fallen)
         return reach_poses(walking, self.people, self.poses) if self.poses else walking
 
-    def skin(self, level: int) -> Floats:
-        """Return the current vertices ``[N, V, 3]`` [m] of all people at a level of detail."""
-        return self.people.skin(self.posture(), level)
+    def skin(self, level: int, numbers: Ints | None = None) -> Floats:
+        """Return the current vertices ``[N, V, 3]`` [m] of people, by default all, at a level of detail."""
+        return self.people.skin(self.posture(), level, numbers)
 
     def ends_of(self, state: Gaits) -> Floats:
         """Return both ends of all limbs ``[N, L, 6]`` [m] in the world."""
@@ -239,11 +256,30 @@ class PeopleMotion:
 
     def _of(self, scene: Scene) -> tuple[Floats, Floats, Floats]:
         here = scene.active[0, self.agents]
+        self._targets = self._nearest_robots(scene)
         place = np.where(here[:, None], scene.position[0, self.agents], 0.0)
         velocity = np.where(here[:, None], scene.velocity[0, self.agents], 0.0)
         speed = np.sqrt(np.sum(velocity * velocity, axis=1, keepdims=True))
         velocity = velocity * np.minimum(1.0, FASTEST / np.maximum(speed, 1e-9))
         return place, velocity, np.where(here, scene.heading[0, self.agents], 0.0)
+
+    def _nearest_robots(self, scene: Scene) -> dict[int, Floats]:
+        """Return the point ``[3]`` [m] of the nearest robot, by row of each person who looks at robots."""
+        rows = np.flatnonzero(self._looks) if len(self._looks) == len(self.agents) else np.empty(0, dtype=np.int64)
+        robots = np.flatnonzero(scene.active[0] & scene.external[0])
+        robots = robots[self.row[robots] < 0]
+        found = {}
+        for row in rows:
+            away = scene.position[0, robots] - scene.position[0, self.agents[row]]
+            if len(away):
+                place = scene.position[0, robots[int(np.argmin(np.sum(away * away, axis=1)))]]
+                found[int(row)] = np.array([place[0], place[1], GAZE])
+        return found
+
+    @property
+    def _looks(self) -> NDArray[np.bool_]:
+        state = getattr(self, "state", None)
+        return np.zeros(0, dtype=np.bool_) if state is None else state.wish == LOOK
 
     def _measured(self, state: Gaits) -> tuple[Floats, Floats]:
         found = self.people.limbs(self.posture(state))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.world.crowd.ghosts import hide_ghosts
+from crowdbot.world.phases.pushes import acting_pushes
 from crowdbot.world.physics.robots.robot_body import RobotBody
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.planar_live_changes import (
@@ -29,6 +30,8 @@ from crowdbot.world.rendering.camera import CameraImages, SceneCamera
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.robot import Robot
 
+from .balance.falling_people import FallingPeople
+from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart
 from .mjcf_model import MjcfModel
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["RigidWorld"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 SLOTS = 24
 """Default of the largest number of people with a body in the engine."""
 MORE = 4
@@ -55,6 +59,7 @@ class RigidWorld(PlanarWorld):
     """Part of :class:`PhysicsWorld`: access to the bodies, and changes of them between two steps."""
 
     people: PeopleMotion
+    falling: FallingPeople | None
     rigid: WorldBodies
     stage: PhysicsStage
     _renderers: dict[bool, Renderer]
@@ -91,6 +96,15 @@ class RigidWorld(PlanarWorld):
     @property
     def _movable(self) -> list[int]:
         return [k for k, prop in enumerate(self.stage.props) if prop.movable]
+
+    def _wanting(self, scene: Scene) -> Ints:
+        """Return the people who need a body although nothing may be near them: out of balance, or pushed."""
+        pushed = acting_pushes(scene, self.ids)
+        return pushed if self.falling is None else np.union1d(self.falling.wanting(), pushed)
+
+    def _push_people(self, crowd: Scene) -> Scene:
+        """Return the scene unchanged: the engine applies the forces."""
+        return crowd
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
         """Set the commands of joint motors of a robot; they stay in force until changed.
@@ -210,6 +224,8 @@ class RigidWorld(PlanarWorld):
             self.rigid.change(starts=starts, ghosts=[*self.rigid.ghosts, *([agent] if ghost else [])])
             self._at[agent] = place
         put_robot_at(self, agent, robot, place, ghost, [0] if present else [])
+        if self.falling is not None:
+            self.falling.grow(self.people, self.scene.shape[1])
         self._forget()
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
@@ -248,6 +264,8 @@ class RigidWorld(PlanarWorld):
     def embody_person(self, agent: int, environment: int) -> None:
         """Give a new person a body."""
         self.people.grow(self.scene.shape[1], [agent])
+        if self.falling is not None:
+            self.falling.grow(self.people, self.scene.shape[1])
         wanted = min(SLOTS, len(self.people.afoot))
         if wanted > self.rigid.slots and not self._slots_fixed:
             self.rigid.change(slots=min(SLOTS, self.rigid.slots + MORE))
@@ -261,3 +279,29 @@ class RigidWorld(PlanarWorld):
     def _forget(self) -> None:
         """Drop what was derived from the old bodies."""
         self._renderers, self._plane = {}, None
+
+    def _led_people(self, scene: Scene) -> Ints:
+        """Return the agents whose motion comes from outside: avatars, and people on recorded tracks."""
+        led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
+        if self.script is None:
+            return led
+        return np.union1d(led, np.flatnonzero(self.script.follower_mask(scene)[0]))
+
+    def _heading_of(self, agent: int) -> float:
+        return float(self.scene.heading[0, agent])
+
+    def _limb_mass_of(self, agent: int, limb: str, point: Floats, normal: Floats) -> float:
+        return self.people.limb_mass(agent, limb, point, normal, self._people_bodies.limb_ends(agent))
+
+    def _mass_of(self, party: ContactBody) -> float:
+        if party.kind == "robot":
+            return self.robot_bodies[party.number].mass
+        if party.kind == "person":
+            return float(self.people.people.mass[self.people.row[party.number]])
+        if (
+            party.kind == "wall"
+            and party.number < 0
+            and (leaf := self.stage.doors[-1 - party.number]).opening == "push"
+        ):
+            return leaf.mass
+        return self.stage.props[party.number].weight if party.kind == "prop" else math.inf

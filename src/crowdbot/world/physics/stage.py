@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError
+from crowdbot.world.buildings.building import Building
 from crowdbot.world.doors.leaf import DoorLeaf
 from crowdbot.world.ground.ground import Ground
+from crowdbot.world.stage_appearance import StageAppearance
 from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
@@ -31,6 +33,7 @@ Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
 LEG = 0.05
 """Width of the legs and thickness of the top of a table [m]."""
+DAYLIGHT = StageAppearance()
 BARK = "0.45 0.33 0.22 1"
 LEAF = "0.33 0.52 0.27 1"
 
@@ -239,6 +242,8 @@ class PhysicsStage:
         floor_color, wall_color: red, green, blue from 0 to 1.
         ground: ramps, stairs, platforms and thresholds; None: level.
         doors: doors; their state is that of a world.
+        appearance: surfaces, sky and light in images of the renderer ``software``.
+        building: a building that is drawn instead of the walls; sensors and people meet the walls.
 
     Raises:
         InputError: the height or the friction is not finite and above 0.
@@ -255,6 +260,8 @@ class PhysicsStage:
     wall_color: Color = (0.86, 0.84, 0.80)
     ground: Ground | None = None
     doors: tuple[DoorLeaf, ...] = ()
+    appearance: StageAppearance = DAYLIGHT
+    building: Building | None = None
 
     def __post_init__(self) -> None:
         for name in ("wall_height", "friction"):

@@ -16,6 +16,7 @@ from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.doors.doors import Doors
 from crowdbot.world.doors.motion import read_leaves, turn_leaves
 from crowdbot.world.ground.walking_speed import slow_people
+from crowdbot.world.phases.pushes import keep_pushes
 from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
 from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.rendering.renderer import Renderer
@@ -25,15 +26,18 @@ from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.robot import spatial as spatial_pose
 from crowdbot.world.world import Contact
 
+from .balance.fall import Fall
+from .balance.falling_people import FallingPeople
+from .balance.force_pushes import ForcePushes
+from .balance.recovery import CENTER
 from .colliders import scene_bodies
 from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
 from .kinematic_base import kinematic_bases
-from .nearby_people import movers, people_near
+from .nearby_people import add_unsteady, movers, people_near
 from .people_motion import LimbCapsules, PeopleMotion
-from .recovery import CENTER
 from .rigid_world import SLOTS, RigidWorld
 from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
@@ -72,6 +76,8 @@ class PhysicsWorld(RigidWorld):
         physics_dt: time step of the engine [s].
         slots: number of people that can have a body at the same time (default: 24, or the number of people if smaller).
         motors: command type of robot joints by agent and joint: ``position``, ``velocity`` or ``effort``.
+        balance: whether pushed people brace, step and fall; otherwise they stay upright.
+        get_up: time [s] after which people who have fallen get up; None: they stay on the floor.
         planar: other arguments of :class:`PlanarWorld`.
 
     Attributes:
@@ -113,6 +119,8 @@ class PhysicsWorld(RigidWorld):
         physics_dt: float = 0.005,
         slots: int | None = None,
         motors: Mapping[int, Mapping[str, str]] | None = None,
+        balance: bool = False,
+        get_up: float | None = 5.0,
         **planar: Any,
     ) -> None:
         stage = stage or PhysicsStage()
@@ -127,6 +135,7 @@ class PhysicsWorld(RigidWorld):
         self.stage, self.physics_dt = stage, physics_dt
         self._prop_names = [f"prop{number}" for number in range(len(stage.props))]
         self.people = PeopleMotion(self.scene, persons, people, seed, riders, stage.ground)
+        self.falling = FallingPeople(self.people, scene.shape[1], get_up) if balance else None
         self._plane: tuple[Scene, Scene] | None = None
         self.skipped_people = 0
         self.forces: tuple[ContactForce, ...] = ()
@@ -138,6 +147,11 @@ class PhysicsWorld(RigidWorld):
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All contact events so far, ordered by start time."""
         return self._contact_tracker.contact_events
+
+    @property
+    def falls(self) -> tuple[Fall, ...]:
+        """Falls of people so far, ordered by start time; those that are not over, too."""
+        return () if self.falling is None else self.falling.falls
 
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
@@ -184,7 +198,7 @@ class PhysicsWorld(RigidWorld):
     def pose_people(self) -> None:
         """Do nothing: a step moves the bodies of people."""
 
-    def bodies(self, skins: int | None = None) -> Bodies:
+    def bodies(self, skins: int | None = None, only: Ints | None = None) -> Bodies:
         """Return the current shapes for range sensors; ``skins`` is a level of detail, see :func:`scene_bodies`."""
         frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.rigid.main.robots.items()}
         robots = {agent: robot_bodies.robot for agent, robot_bodies in self.rigid.main.robots.items()}
@@ -192,13 +206,14 @@ class PhysicsWorld(RigidWorld):
         scene = hide_ghosts(self.scene, self.ghosts)
         doors = None if self.doors is None else self.doors.signed_share
         return scene_bodies(
-            scene, self.people, robots, self.stage, frames=frames, props=moved, doors=doors, skins=skins
+            scene, self.people, robots, self.stage, frames=frames, props=moved, doors=doors, skins=skins, only=only
         )
 
-    def body_scene(self, skins: int | None = None, environment: int = 0) -> Scene:
+    def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
         """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
         scene = hide_ghosts(self.scene, self.ghosts)
-        return scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
+        only = self.avatars.people if avatars and self.avatars is not None else None
+        return scene.replace(bodies=self.bodies(skins, only), wall_height=self.stage.wall_height)
 
     def _outlines(self) -> Walls:
         if not self._movable:
@@ -222,6 +237,7 @@ class PhysicsWorld(RigidWorld):
         walls = self.scene.walls
         self.rigid = WorldBodies(walls, self.stage, starts, self.ghosts, slots, self.physics_dt)
         self.rigid.people.led = self._led_people(self.scene)
+        self.rigid.people.balance = None if self.falling is None else self.falling.balance
         self._contact_tracker = BodyContactTracker(self.physics_dt, self._mass_of, self._limb_mass_of, self._heading_of)
         self._at = {a: (start.x, start.y, start.heading) for a, start in starts.items()}
 
@@ -234,11 +250,14 @@ class PhysicsWorld(RigidWorld):
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         start = before.replace(walls=self._outlined)
+        if self.falling is not None:
+            start = self.falling.add_obstacles(start)
         if self.stage.ground is None:
             earlier, crowd = super()._step_crowd(start)
-            return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
+            kept = {"walls": before.walls, "external": before.external}
+            return earlier.replace(**kept), crowd.replace(**kept)
         earlier, crowd = super()._step_crowd(slow_people(start, self.stage.ground))
-        kept = {name: getattr(before, name) for name in ("walls", "preferred_speed", "max_speed")}
+        kept = {name: getattr(before, name) for name in ("walls", "external", "preferred_speed", "max_speed")}
         return earlier.replace(**kept), crowd.replace(**kept)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
@@ -247,20 +266,26 @@ class PhysicsWorld(RigidWorld):
             return after
         present = after.active.copy()
         present[:, list(self.robot_bodies)] = False
+        if self.falling is not None:
+            present &= ~self.falling.balance.down
         walls, robots = after.walls, after.active
         resolve_overlaps = super()._resolve_overlaps(earlier, after.replace(active=present, walls=self._outlined))
         return resolve_overlaps.replace(active=robots, walls=walls)
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         """Run the engine for a step of the world, and return the scene with the moved bodies."""
+        end = float(self.environment_time.age)  # the time is already at the end of this step
+        if self.falling is not None:
+            after = self.falling.lead(before, after, end, self.dt)
+            self.people.fallen = self.falling.poses(self.people, after, end)
         led = self._mirrored_robots(before, after)
         for agent, robot_bodies in self.robot_bodies.items():
             at_rest = (*before.position[0, agent].tolist(), float(before.heading[0, agent]))
             if self._at[agent] != at_rest and agent not in led.twists:
                 self._put(agent, before)
             robot_bodies.ask(led.twists.get(agent, asked[agent]))
+        self._people_bodies.pushes = ForcePushes(after, self.ids, self.physics_dt)
         gait, ends = self._prepared(before, after)
-        end = float(self.environment_time.age)  # the time is already at the end of this step
         self._touched = {}
         self.rigid.reader.led = frozenset([*led.twists, *self.rigid.people.led.tolist()])
         bases = kinematic_bases(self.engine_model, self.data, self.rigid.main.robots, led.twists)
@@ -290,14 +315,10 @@ class PhysicsWorld(RigidWorld):
         if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
             gait, ends = self.people.next_state(scene, self.dt), None
         self.people.take(gait, ends)
-        return scene
-
-    def _led_people(self, scene: Scene) -> Ints:
-        """Return the agents whose motion comes from outside: avatars, and people on recorded tracks."""
-        led = np.zeros(0, dtype=np.int64) if self.avatars is None else self.avatars.agents
-        if self.script is None:
-            return led
-        return np.union1d(led, np.flatnonzero(self.script.follower_mask(scene)[0]))
+        if self.falling is not None:
+            assert isinstance(self.seed, int), "an environment has one seed"
+            self.falling.update(self.people, scene, end, self.seed)
+        return keep_pushes(scene, self.ids, self.dt, self._people_bodies.unsettled())
 
     def _mirrored_robots(self, before: Scene, after: Scene) -> MirroredRobots:
         """Return the motion of the robots whose pose comes from outside."""
@@ -314,7 +335,7 @@ class PhysicsWorld(RigidWorld):
             self._embody(before)
             way = (after.position[0] - before.position[0]) / self.dt
             start, end = self.people.relative_ends(before), self.people.relative_ends(after, ends)
-            self._people_bodies.begin(before.position[0], way, start, end, self.dt)
+            self._people_bodies.begin(before.position[0], way, start, end, self.dt, before.heading[0])
         return gait, ends
 
     def _embody(self, scene: Scene) -> None:
@@ -324,6 +345,7 @@ class PhysicsWorld(RigidWorld):
         led = () if self.avatars is None else self.avatars.robots
         found = movers(self.rigid.main.robots, self.stage, self._movable, self.data, led)
         near, mass, ahead, firm = people_near(scene, persons, found, NEAR + FAST * self.dt)
+        near = add_unsteady(scene, persons, near, self._wanting(scene), NEAR + FAST * self.dt)
         rows = self.people.row[persons[near]]
         people = self.people.people
         self.skipped_people = self._people_bodies.take(
@@ -374,22 +396,3 @@ class PhysicsWorld(RigidWorld):
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         return tuple(sorted(Contact(0, *pair, -depth) for pair, depth in self._touched.items()))
-
-    def _heading_of(self, agent: int) -> float:
-        return float(self.scene.heading[0, agent])
-
-    def _limb_mass_of(self, agent: int, limb: str, point: Floats, normal: Floats) -> float:
-        return self.people.limb_mass(agent, limb, point, normal, self._people_bodies.limb_ends(agent))
-
-    def _mass_of(self, party: ContactBody) -> float:
-        if party.kind == "robot":
-            return self.robot_bodies[party.number].mass
-        if party.kind == "person":
-            return float(self.people.people.mass[self.people.row[party.number]])
-        if (
-            party.kind == "wall"
-            and party.number < 0
-            and (leaf := self.stage.doors[-1 - party.number]).opening == "push"
-        ):
-            return leaf.mass
-        return self.stage.props[party.number].weight if party.kind == "prop" else math.inf

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose
-from crowdbot.sensors import Lens
+from crowdbot.sensors import Lens, check_renderer
 
 __all__ = ["LARGEST", "CameraImages", "CameraView", "SceneCamera"]
 
@@ -41,6 +41,7 @@ class CameraView(NamedTuple):
         left, right, bottom, top: edges of the image at distance 1 along the axis.
         near, far: clipping distances [m].
         width, height: size of the image [pixels].
+        wall_tops: width of the dark strips drawn along the tops of walls [m]; 0: none.
     """
 
     place: Floats
@@ -54,6 +55,7 @@ class CameraView(NamedTuple):
     far: float
     width: int
     height: int
+    wall_tops: float = 0.0
 
     @classmethod
     def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> CameraView:
@@ -89,6 +91,10 @@ class SceneCamera:
         near, far: clipping distances [m].
         detail: level of detail of people's skins, 0 (finest) to 2.
         shadows: whether shadows are rendered, which is slow without a GPU.
+        wall_tops: width of the dark strips drawn along the tops of walls [m], so that thin walls and the doors between
+            them show from above; 0: none.
+        renderer: one of :data:`crowdbot.sensors.RENDERERS`.
+        antialiasing: samples per pixel, 1, 2, 4 or 8; ``opengl`` has 1.
 
     Raises:
         InputError: a value is not allowed, or position and target are equal.
@@ -108,6 +114,9 @@ class SceneCamera:
     far: float = 200.0
     detail: int = 1
     shadows: bool = False
+    wall_tops: float = 0.0
+    renderer: str = "opengl"
+    antialiasing: int = 1
 
     def __post_init__(self) -> None:
         _checked_size("Camera", self.width, self.height)
@@ -117,6 +126,9 @@ class SceneCamera:
             raise InputError(f"SceneCamera: near = {self.near} m must be above 0 and below far = {self.far} m")
         if self.detail not in (0, 1, 2):
             raise InputError(f"SceneCamera: detail = {self.detail} must be 0, 1 or 2")
+        if not 0.0 <= self.wall_tops < math.inf:
+            raise InputError(f"SceneCamera: wall_tops = {self.wall_tops} m must be finite and at least 0")
+        check_renderer("SceneCamera", self.renderer, self.antialiasing)
         away = np.subtract(self.target, self.position)
         if away.shape != (3,) or not np.all(np.isfinite(away)) or not np.any(away):
             raise InputError(
@@ -143,9 +155,8 @@ class SceneCamera:
         """Return the view for a robot link with the frame ``[4, 4]``."""
         high = math.tan(0.5 * self.view)
         wide = high * self.width / self.height
-        return CameraView(
-            *self.axes(robot_body), -wide, wide, -high, high, self.near, self.far, self.width, self.height
-        )
+        edges = -wide, wide, -high, high, self.near, self.far
+        return CameraView(*self.axes(robot_body), *edges, self.width, self.height, self.wall_tops)
 
 
 def _checked_size(what: str, width: int, height: int) -> None:

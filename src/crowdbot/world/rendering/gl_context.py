@@ -13,12 +13,14 @@ from typing import Any
 from crowdbot.core import InputError
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["backend", "close_gl_context", "create_gl_context"]
+__all__ = ["backend", "close_gl_context", "create_gl_context", "graphics_library"]
 
 KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
 OPEN: list[Any] = []
 """Contexts in use."""
+LIBRARIES: set[str] = set()
+"""Names of the libraries of all contexts of this program."""
 BUSY: list[Any] = []
 """Renderers whose context is current in another thread."""
 LONGEST = 60.0
@@ -66,6 +68,7 @@ def create_gl_context(width: int, height: int) -> Any:
             f"rendering with {name} does not work ({str(error).strip() or type(error).__name__});"
             " set MUJOCO_GL to egl or osmesa before Python starts"
         ) from error
+    LIBRARIES.add(_library(name))
     if not OPEN:
         atexit.register(_closed)  # registered after the backend is loaded, to be closed before the backend
     OPEN.append(made)
@@ -86,6 +89,22 @@ def close_gl_context(context: Any, drawn_by: Any) -> None:
         OPEN.remove(context)
         drawn_by.free()
         context.free()
+
+
+def graphics_library() -> tuple[str, ...]:
+    """Return the libraries that have drawn images in this program, with backend, renderer and version.
+
+    Images of other libraries may differ in the last bits; those of the renderer ``software`` do not.
+    """
+    return tuple(sorted(LIBRARIES))
+
+
+def _library(name: str) -> str:
+    """Return the name of the library of the current context."""
+    from OpenGL import GL
+
+    words = (GL.glGetString(kind) for kind in (GL.GL_RENDERER, GL.GL_VERSION))
+    return f"{name}: " + ", ".join((word or b"unknown").decode("ascii", "replace") for word in words)
 
 
 def _closed() -> None:

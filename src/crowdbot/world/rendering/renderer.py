@@ -18,6 +18,8 @@ from crowdbot.world.physics.stage import PhysicsStage
 from crowdbot.world.robots.robot import Robot
 
 from .camera import CameraImages, CameraView, SceneCamera
+from .people_labels import box_labels, keypoint_labels
+from .software_visuals import SoftwareVisuals
 from .visuals import Visuals
 
 __all__ = ["Renderer"]
@@ -106,7 +108,9 @@ class Renderer:
         self._coordinates: Floats | None = None
         self._doors: Sequence[float] = ()
         self._scene: Scene
-        self._visuals: Visuals | None = None
+        self._lifts = {agent: robot.lift for agent, robot in robots.items()}
+        self._postures: dict[int, tuple[Mapping[str, float], Mapping[str, Any]]] = {}
+        self._visuals: dict[str, Visuals | SoftwareVisuals] = {}
 
     def show(
         self,
@@ -141,9 +145,12 @@ class Renderer:
         Raises:
             InputError: no OpenGL backend works, or the robot or link of the camera is unknown.
         """
-        looks = self._arranged(camera.detail)
+        looks = self._arranged(camera.detail, camera.renderer)
         view = camera.on(self._carrier(camera, looks))
-        return looks.images(view, self._scene.active[0], rgb, depth, segmentation, camera.shadows)
+        kinds = rgb, depth, segmentation, camera.shadows
+        if isinstance(looks, SoftwareVisuals):
+            return looks.images(view, self._scene.active[0], *kinds, camera.antialiasing)
+        return looks.images(view, self._scene.active[0], *kinds)
 
     def render(self, camera: LensCamera, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
         """Return images of a camera of :mod:`crowdbot.sensors`, without distortion; implements ``ImageSource``.
@@ -156,43 +163,69 @@ class Renderer:
             InputError: no OpenGL backend works, the image is too large, or there are several poses.
         """
         view = CameraView.through(camera.lens, pose, camera.near, camera.far)
-        seen = self._arranged(self.detail).images(view, self._scene.active[0], True, True, True, False)
+        looks = self._arranged(self.detail, getattr(camera, "renderer", "opengl"))
+        if isinstance(looks, SoftwareVisuals):
+            labels = getattr(camera, "segmentation", True) or getattr(camera, "labels", False)
+            kinds = True, labels, labels, getattr(camera, "shadows", False)
+            seen = looks.images(view, self._scene.active[0], *kinds, getattr(camera, "antialiasing", 1))
+            assert seen.rgb is not None
+            if not labels:
+                return {"rgb": seen.rgb[None]}
+        else:
+            seen = looks.images(view, self._scene.active[0], True, True, True, False)
         assert seen.rgb is not None
         assert seen.depth is not None
         assert seen.segmentation is not None
         who = seen.segmentation.astype(np.int64)[None]
-        return {"rgb": seen.rgb[None], "depth": seen.depth[None].astype(np.float64), "hit": who, "part": 0 * who - 1}
+        found: dict[str, NDArray[Any]]
+        found = {"rgb": seen.rgb[None], "depth": seen.depth[None].astype(np.float64), "hit": who, "part": 0 * who - 1}
+        if getattr(camera, "labels", False):
+            active = self._scene.active[0]
+            points = keypoint_labels(self.people, active, camera.lens, pose, found["depth"][0], who[0])
+            found |= {"keypoints": points[None], "solid_boxes": box_labels(self.people, active)[None]}
+        return found
 
-    def _arranged(self, detail: int) -> Visuals:
-        """Return the visuals with current poses."""
-        if self._visuals is None or self._visuals.detail != detail:
-            self._visuals = None  # free the old context before creating a new one
-            self._visuals = Visuals(self._whole, self.people, self.stage, detail)
-        model, data = self._visuals.model, self._visuals.data
+    def _arranged(self, detail: int, kind: str) -> Visuals | SoftwareVisuals:
+        """Return the visuals of a renderer with current poses."""
+        looks = self._visuals.get(kind)
+        if looks is None or looks.detail != detail:
+            looks = None
+            self._visuals.pop(kind, None)  # free the old context before creating a new one
+            make = SoftwareVisuals if kind == "software" else Visuals
+            looks = self._visuals[kind] = make(self._whole, self.people, self.stage, detail)
+        model, data = looks.model, looks.data
         if self._coordinates is not None:
             data.qpos[:] = self._coordinates
         else:
             for agent, robot in self.robots.items():
-                self._put(self._visuals, agent, robot)
+                self._put(looks, agent, robot)
             for k, share in enumerate(self._doors):
-                data.qpos[self._visuals.joints[f"door{k}"]] = share * self.stage.doors[k].range
+                data.qpos[looks.joints[f"door{k}"]] = share * self.stage.doors[k].range
         mj = engine()
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
-        return self._visuals
+        return looks
 
-    def _put(self, looks: Visuals, agent: int, robot: Robot) -> None:
+    def _put(self, looks: Visuals | SoftwareVisuals, agent: int, robot: Robot) -> None:
         model, data, prefix = looks.model, looks.data, self._whole.prefixes[agent]
         body = model.body_mocapid[model.body(prefix + robot.model.root).id]
         heading = float(self._scene.heading[0, agent])
-        data.mocap_pos[body] = (*self._scene.position[0, agent].tolist(), robot.lift)
+        data.mocap_pos[body] = (*self._scene.position[0, agent].tolist(), self._lifts[agent])
         data.mocap_quat[body] = math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading)
-        for name, place in robot.model.positions({**robot.posture, **self._joints.get(agent, {})}).items():
+        for name, place in self._positions(agent, robot).items():
             joint = looks.joints.get(prefix + name)
             if joint is not None and robot.model.joints[name].size == 1:
                 data.qpos[joint] = place[0]
 
-    def _carrier(self, camera: SceneCamera, looks: Visuals) -> Floats:
+    def _positions(self, agent: int, robot: Robot) -> Mapping[str, Any]:
+        """Return the positions of all joints of a robot; those of the latest image while its posture is the same."""
+        given = {**robot.posture, **self._joints.get(agent, {})}
+        known = self._postures.get(agent)
+        if known is None or known[0] != given:
+            known = self._postures[agent] = given, robot.model.positions(given)
+        return known[1]
+
+    def _carrier(self, camera: SceneCamera, looks: Visuals | SoftwareVisuals) -> Floats:
         found = np.eye(4)
         if camera.robot is None:
             return found

@@ -9,23 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import format_xml
-from crowdbot.humans.asset import shapes
-from crowdbot.humans.wardrobe import region_colors
+from crowdbot.humans import People, region_colors, shapes
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import PhysicsStage
 
+from .building_meshes import CEILINGS, add_building_part
 from .camera import LARGEST, CameraImages, CameraView
 from .gl_context import close_gl_context, create_gl_context
+from .labels import NOTHING, WALL, geom_code
 
 __all__ = ["Visuals"]
 
 Floats = NDArray[np.float64]
 SHAPES_MOST = 20_000
+HIDDEN = 5
+"""Group of shapes that are not drawn."""
 SHADED = 10.0
 """Largest distance [m] along the camera axis of the centre of the shadow map."""
-NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
+EDGE = np.array([0.22, 0.22, 0.24, 1.0], dtype=np.float32)
+"""Colour of the strips on the tops of walls."""
 
 
 class Visuals:
@@ -44,8 +48,11 @@ class Visuals:
 
     def __init__(self, built: MjcfModel, motion: PeopleMotion, stage: PhysicsStage, detail: int) -> None:
         self._mj, self.detail = engine(), detail
-        self._walkers, self._sunny = motion, not stage.lights
-        self._faces, self._part = motion.people.faces(detail), motion.people.clothing_mask(detail)
+        self._walkers, self._sunny, self._stage = motion, not stage.lights, stage
+        people = motion.people
+        mesh, worn = people.mesh(detail), people.clothing_mask(detail)
+        self._span = [mesh.vertex_span(own) for own in people.own_body.tolist()]
+        self._faces = [mesh.faces[own] - span.start for own, span in zip(worn, self._span, strict=True)]
         self.model = self._painted(built)
         self.data = self._mj.MjData(self.model)
         self.joints = {self.model.joint(k).name: int(self.model.jnt_qposadr[k]) for k in range(self.model.njnt)}
@@ -93,30 +100,36 @@ class Visuals:
         """Return the model with a skin and its colours for each person."""
         mj, motion = self._mj, self._walkers
         spec = mj.MjSpec.from_string(format_xml(built.root), assets=built.files)
-        names = shapes().regions
-        region = shapes().levels[self.detail].face_region
-        around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
         skin = motion.skin(self.detail)
-        for k, outfit in enumerate(motion.people.outfits):
-            worn = self._part[k]
+        for k in range(len(motion.people)):
+            points, faces = skin[k, self._span[k]], self._faces[k]
+            uv, corners, paint = _texture_of(motion.people, k, self.detail)
             spec.add_mesh(
                 name=f"skin{k}",
                 inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
-                uservert=skin[k].ravel(),
-                usernormal=_normals(skin[k], self._faces[worn]).ravel(),
-                userface=self._faces[worn].ravel().astype(np.int32),
-                userfacenormal=self._faces[worn].ravel().astype(np.int32),
-                usertexcoord=around.ravel(),
-                userfacetexcoord=np.repeat(region[worn], 3).astype(np.int32),
+                uservert=points.ravel(),
+                usernormal=_normals(points, faces).ravel(),
+                userface=faces.ravel().astype(np.int32),
+                userfacenormal=faces.ravel().astype(np.int32),
+                usertexcoord=uv.ravel(),
+                userfacetexcoord=corners.astype(np.int32),
             )
-            paint = (255.0 * np.clip(region_colors(outfit), 0.0, 1.0)).astype(np.uint8)
-            cloth = spec.add_texture(name=f"cloth{k}", type=mj.mjtTexture.mjTEXTURE_2D, width=len(names), height=1)
+            high, wide = paint.shape[:2]
+            cloth = spec.add_texture(name=f"cloth{k}", type=mj.mjtTexture.mjTEXTURE_2D, width=wide, height=high)
             cloth.nchannel = 3
             cloth.data = paint.tobytes()
             material = spec.add_material(name=f"cloth{k}", specular=0.1, shininess=0.1)
             material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = f"cloth{k}"
+        building = self._stage.building
+        for k, part in enumerate(() if building is None else building.parts):
+            add_building_part(spec, k, part)
         model = spec.compile()
+        if building is not None:
+            walls = [k for k in range(model.ngeom) if model.geom(k).name.startswith("wall/")]
+            model.geom_group[[k for k in walls if "/building" not in model.geom(k).name]] = HIDDEN
         self._meshes = np.array([model.mesh(f"skin{k}").id for k in range(len(motion.people))], dtype=np.int64)
+        boards = (model.geom_type == mj.mjtGeom.mjGEOM_BOX) & (model.geom_bodyid == 0)
+        self._boards = [int(k) for k in np.flatnonzero(boards) if model.geom(k).name.startswith("wall/")]
         self._cloths = [model.material(f"cloth{k}").id for k in range(len(motion.people))]
         shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
         bare = (model.geom_group == 3) & ~np.isin(model.geom_bodyid, list(shown))
@@ -130,12 +143,13 @@ class Visuals:
             fall = -view.forward[2]
             reach = min(SHADED, view.place[2] / fall) if fall > 1e-6 else SHADED
             model.light_pos[0, :2] = (view.place + reach * view.forward)[:2]
+        self._option.geomgroup[CEILINGS] = 0 if view.wall_tops else 1
         mj.mj_camlight(model, data)
         mj.mjv_updateScene(model, data, self._option, None, mj.MjvCamera(), mj.mjtCatBit.mjCAT_ALL.value, scene)
-        codes = np.full(scene.ngeom + len(self._meshes) + 2, NOTHING, dtype=np.int64)
+        codes = np.full(scene.ngeom + len(self._meshes) + len(self._boards) + 2, NOTHING, dtype=np.int64)
         for geom in scene.geoms[: scene.ngeom]:
             if geom.segid >= 0 and geom.objtype == mj.mjtObj.mjOBJ_GEOM:
-                codes[geom.segid + 1] = self._code(model.geom(geom.objid).name)
+                codes[geom.segid + 1] = geom_code(model.geom(geom.objid).name)
         for eye in scene.camera:
             eye.pos, eye.forward, eye.up = view.place, view.forward, view.up
             eye.frustum_center = 0.5 * view.near * (view.left + view.right)
@@ -144,7 +158,22 @@ class Visuals:
             eye.frustum_near, eye.frustum_far = view.near, view.far
             eye.orthographic = 0
         self._people(codes, view, active)
+        if view.wall_tops:
+            self._wall_tops(codes, view.wall_tops)
         return codes
+
+    def _wall_tops(self, codes: NDArray[np.int64], width: float) -> None:
+        """Add strips of ``width`` [m] on walls of boards."""
+        mj, model, data, scene = self._mj, self.model, self.data, self._scene
+        for k in self._boards[: scene.maxgeom - scene.ngeom]:
+            half, turn = model.geom_size[k], data.geom_xmat[k]
+            size = half[0], max(0.5 * width, half[1]), 0.005
+            place = data.geom_xpos[k] + (0.0, 0.0, half[2] + 0.005)
+            geom = scene.geoms[scene.ngeom]
+            mj.mjv_initGeom(geom, mj.mjtGeom.mjGEOM_BOX, np.array(size), place, turn, EDGE)
+            geom.segid, geom.category = scene.ngeom, mj.mjtCatBit.mjCAT_STATIC
+            scene.ngeom += 1
+            codes[geom.segid + 1] = WALL
 
     def _people(self, codes: NDArray[np.int64], view: CameraView, active: NDArray[np.bool_]) -> None:
         """Add the skins of people who are present and not behind the camera."""
@@ -154,14 +183,15 @@ class Visuals:
             return
         skin = motion.skin(self.detail)
         for k in np.flatnonzero(here):
-            ahead = (skin[k] - view.place) @ view.forward
+            points = skin[k, self._span[k]]
+            ahead = (points - view.place) @ view.forward
             if ahead.max() < 0.0 or ahead.min() > view.far:
                 continue
             mesh = int(self._meshes[k])
             first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-            model.mesh_vert[first : first + count] = skin[k]
+            model.mesh_vert[first : first + count] = points
             bent = int(model.mesh_normaladr[mesh])
-            model.mesh_normal[bent : bent + count] = _normals(skin[k], self._faces[self._part[k]])
+            model.mesh_normal[bent : bent + count] = _normals(points, self._faces[k])
             mj.mjr_uploadMesh(model, self._context, mesh)
             geom = scene.geoms[scene.ngeom]
             mj.mjv_initGeom(
@@ -172,10 +202,21 @@ class Visuals:
             scene.ngeom += 1
             codes[geom.segid + 1] = int(motion.agents[k])
 
-    def _code(self, name: str) -> int:
-        if name.startswith("robot"):
-            return int(name.removeprefix("robot").split("/")[0])
-        return FLOOR if name == "floor" else WALL if name.startswith("wall/") else PROP
+
+def _texture_of(people: People, row: int, detail: int) -> tuple[Floats, NDArray[np.int64], NDArray[np.uint8]]:
+    """Return texture coordinates ``[N, 2]``, their rows for all corners, and the picture of a person.
+
+    The picture of an included body has one pixel for each region.
+    """
+    own, mesh = int(people.own_body[row]), people.mesh(detail)
+    if own >= 0:
+        uv = people.own[own].levels[detail].uv.reshape(-1, 2)
+        return uv * (1.0, -1.0) + (0.0, 1.0), np.arange(len(uv)), np.ascontiguousarray(people.own[own].picture[::-1])
+    names = shapes().regions
+    around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
+    worn = people.clothing_mask(detail)[row, mesh.face_span(-1)]
+    colors = (255.0 * np.clip(region_colors(people.outfits[row]), 0.0, 1.0)).astype(np.uint8)
+    return around, np.repeat(mesh.included.face_region[worn], 3), colors[None]
 
 
 def _metric(raw: NDArray[np.float32], view: CameraView) -> NDArray[np.float32]:

@@ -2,7 +2,7 @@
 
 from .folders import robot_folder
 from .inertia import replacement_shape
-from .meshes import with_pieces
+from .meshes import read_mesh, with_pieces
 from .mjcf import BaseServo, Mjcf, mjcf
 from .model import JOINT_KINDS, Joint, Link, LinkInertia, LinkShape, Mimic, Motor, Remark, RobotModel
 from .reading import read_urdf
@@ -32,6 +32,7 @@ __all__ = [
     "describe",
     "mjcf",
     "parse_robot_file",
+    "read_mesh",
     "read_urdf",
     "replacement_shape",
     "robot_folder",

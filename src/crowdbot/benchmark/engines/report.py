@@ -1,0 +1,192 @@
+"""Measurement and report of ``crowdbot bench engines``."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.benchmark.speed.timing import environment
+from crowdbot.benchmark.speed.workloads import crowd
+from crowdbot.core import InputError, MissingExtra, Scene, kebab_case
+
+from .engine_peer import EnginePeer
+from .engine_row import EngineRow, MillionRow
+from .other_peers import JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer
+from .paired_steps import kernel_threads, time_steps
+from .rvo2_peer import Rvo2Peer
+
+__all__ = ["EngineReport", "EngineSizes", "measure_engines"]
+
+PROTOCOL = (
+    "People on a jittered grid, 0.5 per square metre, with random goals; both engines walk on from the same state with"
+    " the same time step, 2 s or 300 000 steps of people from the start in each repetition. The engines alternate, so"
+    " that other work on the machine slows both; a ratio is the median over the repetitions, with the 10th and 90th"
+    " percentile. Above 1, crowdbot is faster."
+)
+WALK, LARGEST = 2.0, 300_000
+"""Time that people walk in a repetition [s], and its largest number of people times steps."""
+CELL = 3.0
+"""Height [m] of the strips in which sorted people follow each other."""
+
+
+@dataclass(frozen=True)
+class EngineSizes:
+    """Sizes of the measurement.
+
+    Fields:
+        repeats: pairs of blocks.
+        people: largest number of people beside another engine.
+        million: number of people of the very large crowd, 0 for none.
+    """
+
+    repeats: int = 7
+    people: int = 100_000
+    million: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        if self.repeats < 1:
+            raise InputError(f"repeats {self.repeats} is below 1")
+
+    @classmethod
+    def quick(cls, repeats: int) -> EngineSizes:
+        """Return sizes that test the command, not the speed."""
+        return cls(repeats, 1000, 2000)
+
+
+@dataclass(frozen=True)
+class EngineReport:
+    """Result of the benchmark of engines.
+
+    Fields:
+        machine: processor, system and versions.
+        load: load averages over one minute before and after, None where the system has none.
+        sizes: sizes of the measurement.
+        versions: versions of the engines by package.
+        protocols: what is compared, by engine.
+        missing: for each engine that is not installed, how to install it.
+        rows: times and ratios.
+        million: the very large crowd, None if it was not measured.
+    """
+
+    machine: str
+    load: tuple[float | None, float | None]
+    sizes: EngineSizes
+    versions: dict[str, str]
+    protocols: dict[str, str]
+    missing: dict[str, str]
+    rows: tuple[EngineRow, ...]
+    million: MillionRow | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as ``crowdbot bench engines --json`` prints it."""
+        return {"protocol": PROTOCOL, **asdict(self)}
+
+
+def measure_engines(
+    sizes: EngineSizes = EngineSizes(),
+    rvo2: Path | None = None,
+    report: Callable[[str, float], None] | None = None,
+) -> EngineReport:
+    """Measure steps of our models beside those of other engines.
+
+    Args:
+        sizes: sizes of the measurement.
+        rvo2: folder with the source of RVO2, compiled with optimisation (default: the package pyrvo).
+        report: called with the name and the completed fraction before each row.
+
+    Raises:
+        InputError: the source of RVO2 is not there or cannot be compiled.
+    """
+    before = _load()
+    makers: list[Callable[[], EnginePeer]] = [
+        lambda: Rvo2Peer(rvo2), JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer,
+    ]  # fmt: skip
+    peers, missing = [], {}
+    for make in makers:
+        try:
+            peers.append(make())
+        except MissingExtra as error:
+            missing[str(error).split(" needs ")[0].removeprefix("the comparison with ")] = str(error)
+    tasks = [(peer, *task) for peer in peers for task in _tasks(peer, sizes)]
+    rows = []
+    for number, (peer, people, order, threads) in enumerate(tasks):
+        if report is not None:
+            report(f"{peer.name} {people}", number / (len(tasks) + 1))
+        rows.append(_measure(peer, people, order, threads, sizes.repeats))
+    if report is not None and sizes.million:
+        report("a very large crowd", len(tasks) / (len(tasks) + 1))
+    million = _million(sizes.million) if sizes.million else None
+    versions = {package: version(package) for peer in peers for package in peer.packages}
+    protocols = {peer.describe(): peer.protocol for peer in peers}
+    return EngineReport(environment(), (before, _load()), sizes, versions, protocols, missing, tuple(rows), million)
+
+
+def _tasks(peer: EnginePeer, sizes: EngineSizes) -> Iterator[tuple[int, str, int]]:
+    """Yield people, order and threads."""
+    for people in peer.people:
+        if people <= sizes.people:
+            for threads in peer.threads():
+                for order in ("random", "sorted"):
+                    yield people, order, threads
+
+
+def _measure(peer: EnginePeer, people: int, order: str, threads: int, repeats: int) -> EngineRow:
+    model, scene = peer.model, crowd(people)
+    if order == "sorted":
+        scene = _sorted(scene)
+
+    def start() -> Callable[[], object]:
+        state = [scene]
+
+        def step() -> None:
+            state[0] = model.step(state[0], peer.dt)
+
+        return step
+
+    start()()  # compiles in all threads
+    steps = max(2, min(round(WALK / peer.dt), LARGEST // people))
+    with kernel_threads(threads):
+        a, b = time_steps(start, lambda: peer.step(scene, threads), steps, repeats)
+    ratios = b / a
+    low, middle, high = np.percentile(ratios, (10, 50, 90)).tolist()
+    times = (1e3 * float(np.median(a)), 1e3 * float(np.median(b)))
+    name = kebab_case(type(model).__name__)
+    return EngineRow(name, peer.name, people, order, threads, peer.dt, *times, middle, low, high)
+
+
+def _sorted(scene: Scene) -> Scene:
+    """Return the people in strips, from one end to the other."""
+    x, y = scene.position[0].T
+    order = np.lexsort((x, np.floor(y / CELL)))
+    return Scene.of(scene.position[:, order], scene.velocity[:, order], goal=scene.goal[:, order], max_speed=1.8)
+
+
+def _million(people: int) -> MillionRow:
+    """Measure the steps of a very large crowd in a child process, whose memory is told."""
+    program = (
+        "import time\n"
+        "from crowdbot.benchmark.speed.measurement import peak_memory\n"
+        "from crowdbot.benchmark.speed.workloads import crowd\n"
+        "from crowdbot.models import ORCA\n"
+        f"scene, model, best = crowd({people}), ORCA(), float('inf')\n"
+        "for _ in range(4):\n"
+        "    begin = time.perf_counter()\n"
+        "    scene = model.step(scene, 0.1)\n"
+        "    best = min(best, time.perf_counter() - begin)\n"
+        "print(best, peak_memory())"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+    seconds, megabytes = map(float, done.stdout.split())
+    return MillionRow("orca", people, seconds, megabytes)
+
+
+def _load() -> float | None:
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else None

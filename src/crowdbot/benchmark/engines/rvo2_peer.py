@@ -1,0 +1,145 @@
+"""RVO2, the C++ library of ORCA: compiled from a folder with its source, or the package ``pyrvo``."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import shutil
+import subprocess
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import InputError, Scene, cache_root, import_optional
+from crowdbot.models import ORCA
+
+from .engine_peer import EnginePeer
+
+__all__ = ["Rvo2Peer"]
+
+FLAGS = ("-O3", "-march=native", "-DNDEBUG", "-fopenmp")
+REACH, MOST, HORIZON = 5.0, 10, 2.0
+SLOWEST = 300.0
+"""Longest time [s] of the compiler."""
+
+
+class Rvo2Peer(EnginePeer):
+    """RVO2 without walls; the desired velocities are set once, by us they are computed in every step.
+
+    Args:
+        source: folder with the source of RVO2 (``Agent.cc`` or ``Agent.cpp`` in it or in ``src``), compiled with
+            ``g++ -O3 -march=native -fopenmp``; None uses the package ``pyrvo``, which has one thread.
+
+    Raises:
+        InputError: the folder has no such source, or it cannot be compiled.
+        MissingExtra: there is no folder, and pyrvo is not installed.
+    """
+
+    name = "RVO2"
+    people = (1000, 10_000, 100_000)
+    dt = 0.1
+    protocol = (
+        "ORCA of 10 neighbours within 5 m, horizon 2 s, no walls; RVO2 computes in single precision (ours in double)"
+        " and keeps the desired velocities of the start (ours come from goals in every step)"
+    )
+    packages: tuple[str, ...] = ("pyrvo",)
+
+    def __init__(self, source: Path | None = None) -> None:
+        self.library: Any = None
+        if source is None:
+            self._pyrvo = import_optional("pyrvo", "the comparison with RVO2", "peers")
+        else:
+            self.packages, self.library = (), _load(_compile(Path(source)))
+
+    @property
+    def model(self) -> ORCA:
+        """ORCA with the settings of RVO2."""
+        return ORCA(neighbor_distance=REACH, max_neighbors=float(MOST), time_horizon=HORIZON)
+
+    def threads(self) -> tuple[int, ...]:
+        """Return 1, and 2 with the compiled library where the machine has two cores."""
+        return (1, 2) if self.library is not None and (os.cpu_count() or 1) > 1 else (1,)
+
+    def describe(self) -> str:
+        """Return which build of the engine runs."""
+        return f"RVO2 from source, g++ {' '.join(FLAGS)}" if self.library is not None else "RVO2 of the package pyrvo"
+
+    def step(self, scene: Scene, threads: int = 1) -> Callable[[], object]:
+        """Return a function that makes one step of RVO2 from the people of environment 0."""
+        wish = scene.desired_velocity(self.dt)
+        columns = (scene.position, scene.velocity, wish, scene.radius, scene.max_speed)
+        values = [np.ascontiguousarray(one[0]) for one in columns]
+        if self.library is not None:
+            return _Simulator(self.library, self.dt, values, threads).step
+        simulator = self._pyrvo.RVOSimulator(self.dt, REACH, MOST, HORIZON, HORIZON, 0.25, 2.0)
+        for number, (place, velocity, wish, radius, top) in enumerate(zip(*(v.tolist() for v in values), strict=True)):
+            simulator.add_agent(tuple(place))
+            simulator.set_agent_velocity(number, tuple(velocity))
+            simulator.set_agent_pref_velocity(number, tuple(wish))
+            simulator.set_agent_radius(number, radius)
+            simulator.set_agent_max_speed(number, top)
+        return simulator.do_step  # type: ignore[no-any-return]
+
+
+class _Simulator:
+    """A simulator of the compiled library."""
+
+    def __init__(self, library: Any, dt: float, values: list[Any], threads: int) -> None:
+        self._library, self._threads = library, threads
+        self._pointer = ctypes.c_void_p(library.rvo2_new(dt, REACH, MOST, HORIZON))
+        library.rvo2_add(self._pointer, len(values[0]), *values)
+
+    def step(self) -> None:
+        self._library.rvo2_step(self._pointer, self._threads)
+
+    def __del__(self) -> None:
+        self._library.rvo2_delete(self._pointer)
+
+
+def _load(path: Path) -> Any:
+    library = ctypes.CDLL(str(path))
+    array = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
+    library.rvo2_new.restype = ctypes.c_void_p
+    library.rvo2_new.argtypes = [ctypes.c_float, ctypes.c_float, ctypes.c_size_t, ctypes.c_float]
+    library.rvo2_add.argtypes = [ctypes.c_void_p, ctypes.c_size_t, *[array] * 5]
+    library.rvo2_step.argtypes = [ctypes.c_void_p, ctypes.c_int]
+    library.rvo2_delete.argtypes = [ctypes.c_void_p]
+    return library
+
+
+def _compile(folder: Path) -> Path:
+    """Return the shared library of the source and our access to it, compiled once."""
+    source = next((one for one in (folder, folder / "src") if any(one.glob("Agent.c*"))), None)
+    if source is None:
+        raise InputError(
+            f"{folder} has no source of RVO2: there is no Agent.cc or Agent.cpp in it or in its folder src"
+        )
+    compiler = shutil.which("g++")
+    if compiler is None:
+        raise InputError("RVO2 cannot be compiled: there is no g++; install it, or leave out --rvo2")
+    files = sorted(one for one in source.glob("*.c*") if one.suffix in (".cc", ".cpp") and one.stem != "Export")
+    access = resources.files("crowdbot") / "assets" / "benchmark" / "rvo2_access.cc"
+    digest = hashlib.sha256(b"".join([access.read_bytes(), *(one.read_bytes() for one in files)])).hexdigest()[:16]
+    built = cache_root() / "rvo2" / f"{digest}.so"
+    if not built.exists():
+        built.parent.mkdir(parents=True, exist_ok=True)
+        _run_compiler(compiler, source, [str(access), *map(str, files)], built)
+    return built
+
+
+def _run_compiler(compiler: str, source: Path, files: list[str], built: Path) -> None:
+    headers = built.parent / "headers"
+    headers.mkdir(exist_ok=True)  # newer versions include a header that their build system writes
+    (headers / "Export.h").write_text("#pragma once\n#define RVO_EXPORT\n", encoding="utf-8")
+    include = [f"-I{source}", *([] if (source / "Export.h").exists() else [f"-I{headers}"])]
+    part = built.with_suffix(".part")
+    command = [compiler, *FLAGS, "-std=c++17", "-shared", "-fPIC", *include, *files, "-o", str(part)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SLOWEST)  # noqa: S603
+    if done.returncode:
+        lines = [line for line in done.stderr.splitlines() if "error" in line] or ["no message"]
+        raise InputError(f"the source of RVO2 in {source} cannot be compiled: {lines[0]}")
+    part.replace(built)

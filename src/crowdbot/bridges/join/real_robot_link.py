@@ -1,0 +1,236 @@
+"""RealRobotLink: the connection between any run and a real robot that takes the place of its robot."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import threading
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from crowdbot import navigation
+from crowdbot.bridges.clock import Pace
+from crowdbot.bridges.transport import Transport
+from crowdbot.bridges.transports import open_transport
+from crowdbot.core import InputError, Twist, find_class, from_attributes
+from crowdbot.navigation import ExternalNavigator, Navigator, RealRobotNavigator
+from crowdbot.simulation import JointOrder, Order, OrderSource, RobotPoseOrder, Simulation, VelocityOrder
+
+from .command_guard import CommandGuard, DrivingArea, GuardLimits
+from .join_port import PERIOD, JoinPort
+
+__all__ = ["RealRobotLink", "open_real_robot"]
+
+EVERYWHERE = DrivingArea(-1e6, -1e6, 1e6, 1e6)
+"""Area of a simulated robot without one."""
+LOOK = 0.02
+"""Real time [s] between two looks for the first pose."""
+
+
+class RealRobotLink:
+    """Brings the poses of a real robot into a run, as an :class:`crowdbot.simulation.OwnSource`.
+
+    Steps wait for real time. A thread lets guarded commands leave, at least 20 times a second, also while the run is
+    paused: without steps the latest wanted velocity becomes too old, and the robot stands.
+
+    Args:
+        navigator: the navigator of the robot.
+        robot: name of the robot.
+        simulation: a simulation of one environment.
+        transports: connections (default: those of the navigator).
+
+    Raises:
+        InputError: a connection cannot be opened, or the driver does not exist.
+    """
+
+    def __init__(
+        self,
+        navigator: RealRobotNavigator,
+        robot: str,
+        simulation: Simulation,
+        transports: Sequence[Transport] | None = None,
+    ) -> None:
+        self.navigator, self.robot = navigator, robot
+        self.remarks: list[str] = []
+        """What the guard has said, such as why the robot was stopped."""
+        self._driver = _driver(navigator)
+        self._memory: tuple[Any, ...] = ()
+        self._lock, self._ended = threading.RLock(), threading.Event()
+        self._pace = Pace(simulation.trial.step, 1.0)
+        self._latest = -math.inf
+        self._begun = False
+        self._capture: OrderSource | None = None
+        self._simulation: Simulation | None = None
+        spec = next(one for one in simulation.trial.robots if one.name == robot)
+        limits = GuardLimits(
+            navigator.max_speed, navigator.max_turn, navigator.max_acceleration, navigator.max_turn_acceleration,
+            navigator.link_timeout, navigator.timeout,
+        )  # fmt: skip
+        area = DrivingArea.of(navigator.area) if navigator.area else EVERYWHERE
+        opened = [open_transport(one) for one in navigator.bridge.split()] if transports is None else transports
+        self.port = JoinPort(
+            simulation.trial, opened, spec, CommandGuard(area, limits), navigator.odometry, navigator.command,
+            self.remarks.append,
+        )  # fmt: skip
+        self._thread = threading.Thread(target=self._keep_alive, name=f"crowdbot-{robot}", daemon=True)
+        try:
+            self.port.start()
+        except BaseException:
+            self.close()
+            raise
+        self._thread.start()
+
+    def orders(self, simulation: Simulation) -> list[Order]:
+        """Send the current instant, let a command leave, and return the pose of the robot.
+
+        Raises:
+            InputError: no pose comes.
+        """
+        self._simulation = simulation
+        if not self._begun:
+            self._begin(simulation)
+        else:
+            while (wait := self._pace.wait_time()) > 0.0:
+                time.sleep(min(wait, LOOK))
+            self._pace.note_step()
+        with self._lock:
+            now = time.monotonic()
+            if now - self._latest > self.navigator.timeout:
+                self.port.inbox.take_orders()  # wanted before a pause
+            self._latest = now
+            self._track()
+            self.port.publish(simulation)
+            if not self.navigator.odometry:
+                return self._velocities(simulation)
+            self._decide(simulation)
+            self.port.serve(simulation)
+            found = self.port.take_orders(simulation)
+        kinds = (RobotPoseOrder, JointOrder)
+        return [one for one in found if isinstance(one, kinds) and one.robot == self.robot]
+
+    def _begin(self, simulation: Simulation) -> None:
+        with self._lock:
+            self.port.begin(simulation)
+        end = time.monotonic() + self.navigator.start
+        while self.navigator.odometry and not self.port.has_pose:
+            if time.monotonic() > end:
+                raise InputError(
+                    f"robot {self.robot!r}: no pose came on {self.navigator.odometry} within {self.navigator.start:g} s"
+                )
+            time.sleep(LOOK)
+            with self._lock:
+                self._track()
+        self._begun, self._latest = True, time.monotonic()
+        self._pace.restart()
+
+    def _velocities(self, simulation: Simulation) -> list[Order]:
+        """Return the velocity that the robot tells; 0 while it is stopped here."""
+        for one in self.port.transports:
+            one.poll()
+        found = [one for one in self.port.inbox.take_orders() if isinstance(one, VelocityOrder)]
+        return [one for one in found if one.robot == self.robot]
+
+    def _decide(self, simulation: Simulation) -> None:
+        """Let the driver decide at its control period."""
+        control = next((one for one in simulation.robots if one.robot.name == self.robot), None)
+        if self._driver is None or control is None:
+            return
+        due = simulation.world.clock.schedule(control.robot.control_period).is_due(simulation.ticks)
+        if not bool(due[0]) or bool(simulation.may_end()[0]):
+            return
+        seen = simulation.observation(self.robot)
+        if not self._memory:
+            self._memory = (self._driver.begin(seen),)
+        action, memory = self._driver.decide(seen, *self._memory)
+        self._memory = (memory,)
+        forward, turn, left = action.twist
+        self.port.want(Twist(float(forward), float(turn), float(left)))
+
+    def _keep_alive(self) -> None:
+        """Let commands leave while no steps are taken, and hear the robot."""
+        while not self._ended.wait(PERIOD):
+            with self._lock, contextlib.suppress(InputError):
+                for one in self.port.transports:
+                    one.poll()
+                if self.navigator.odometry and not self._ended.is_set():
+                    self._track()
+                    self.port.send_command(0)
+
+    def use_capture(self, capture: OrderSource) -> None:
+        """Take the poses of the robot from motion capture, and ignore its odometry, from now on."""
+        with self._lock:
+            self._capture, self.port.tracked = capture, True
+
+    def _track(self) -> None:
+        """Take the newest pose of motion capture, also while the run is paused."""
+        if self._capture is None or self._simulation is None:
+            return
+        for one in self._capture.orders(self._simulation):
+            if isinstance(one, RobotPoseOrder) and one.robot == self.robot:
+                self.port.note_pose(one.x, one.y, one.heading)
+
+    def hold(self, stop: bool, reason: str) -> str:
+        """Stop the robot at once, or release it; return why it is not released."""
+        if not self.navigator.odometry:
+            return f"robot {self.robot!r} drives itself: stop it at itself" if stop else ""
+        problem = self.port.request_stop(stop, reason)
+        if stop:
+            with self._lock:
+                self.port.send_command(0)
+        return problem
+
+    def problems(self) -> list[str]:
+        """Return why the robot is stopped."""
+        reason = self.port.guard.reason
+        return [f"robot {self.robot!r} is stopped: {reason}"] if reason else []
+
+    def close(self) -> None:
+        """Let the robot stand and close the connections; without effect the second time."""
+        if self._ended.is_set():
+            return
+        self._ended.set()
+        with self._lock:
+            if self._thread.ident is not None:
+                self.port.stop()
+                return
+            for one in self.port.transports:  # one of them could not be opened
+                one.stop()
+
+
+def _driver(navigator: RealRobotNavigator) -> Navigator | None:
+    if not navigator.driver:
+        return None
+    kind = find_class(navigator.driver, navigation, Navigator, trust=False)
+    if issubclass(kind, ExternalNavigator):
+        raise InputError(f"RealRobotNavigator: driver {navigator.driver!r} decides nothing; name another navigator")
+    values = dict(word.split("=", 1) for word in navigator.parameters.split())
+    found: Navigator = from_attributes(kind, values, "RealRobotNavigator: parameters")
+    return found
+
+
+def open_real_robot(navigator: Any, robots: Sequence[str], simulation: Simulation) -> RealRobotLink:
+    """Return the link of a run to a real robot.
+
+    Args:
+        navigator: ``RealRobotNavigator``.
+        robots: the name of the robot.
+        simulation: a simulation of one environment.
+
+    Raises:
+        InputError: several robots share the navigator, or the connection cannot be opened.
+
+    >>> import dataclasses
+    >>> from crowdbot.trials import load_trial
+    >>> trial = load_trial("frontal")
+    >>> robot = dataclasses.replace(trial.robots[0], navigator=RealRobotNavigator(driver="straight"))
+    >>> simulation = Simulation(dataclasses.replace(trial, robots=(robot,)), 0)
+    >>> link = open_real_robot(robot.navigator, ["robot"], simulation)
+    >>> link.hold(True, "the operator"), link.problems()
+    ('', ["robot 'robot' is stopped: the operator"])
+    >>> link.close()
+    """
+    if len(robots) != 1:
+        names = ", ".join(map(repr, robots))
+        raise InputError(f"robots {names} have the same bridge {navigator.bridge!r}; each real robot needs one")
+    return RealRobotLink(navigator, robots[0], simulation)

@@ -1,0 +1,58 @@
+"""``crowdbot track`` on recorded scans with annotated people: files of DROW and FROG, folders of L-CAS."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from crowdbot.cli.output import print_json, print_table
+
+from .tracker_choice import chosen_detectors, chosen_trackers
+
+if TYPE_CHECKING:
+    from crowdbot.evaluation import AnnotatedScan
+
+__all__ = ["is_annotated", "read_annotated", "score_annotated"]
+
+FROG_SUFFIXES = (".h5", ".hdf5")
+
+
+def is_annotated(source: str) -> bool:
+    """Return whether a source is a file or a folder of recorded scans."""
+    return source.endswith((".csv", *FROG_SUFFIXES)) or any(Path(source).glob("*.pcd"))
+
+
+def score_annotated(options: argparse.Namespace) -> int:
+    """Print precision, recall and error of the detectors, and of the trackers behind them."""
+    from crowdbot.core import InputError
+    from crowdbot.evaluation import score_positions
+
+    if options.by or options.predictor or options.plot or options.trial:
+        raise InputError("--by, --predictor, --plot and --trial are for trials and episodes, not for recorded scans")
+    options.detector = options.detector or ["cloud-clusters" if Path(options.source).is_dir() else "lidar-clusters"]
+    detectors, trackers = chosen_detectors(options), chosen_trackers(options)
+    scores = score_positions(read_annotated(options.source), detectors, trackers, options.reach)
+    name, first = Path(options.source).name, next(iter(scores.values()))
+    if options.json:
+        print_json({"source": name, "people": first.people,
+            "scores": {key: one._asdict() for key, one in scores.items()}})  # fmt: skip
+        return 0
+    table = [
+        [key, f"{one.precision:.3f}", f"{one.recall:.3f}", f"{one.f1:.3f}", f"{one.error:.3f}", str(one.detections)]
+        for key, one in scores.items()
+    ]
+    caption = f"{first.people} annotated people without identities; no map, no odometry; reach {options.reach:g} m"
+    head = ("detector, tracker", "precision", "recall", "F1", "error [m]", "positions")
+    print_table(f"{name}, recorded scans", head, table, caption)
+    return 0
+
+
+def read_annotated(source: str) -> Iterable[AnnotatedScan]:
+    """Return the recorded scans of a file or a folder."""
+    from crowdbot.evaluation import read_drow, read_frog, read_lcas
+
+    if Path(source).is_dir():
+        return read_lcas(source)
+    return read_frog(source) if source.endswith(FROG_SUFFIXES) else read_drow(source)

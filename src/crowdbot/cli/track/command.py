@@ -1,0 +1,196 @@
+"""``crowdbot track SOURCE``: find and track people in the readings of a sensor, and score the tracks."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.cli.output import add_json, print_json, print_table, progress
+
+from .annotated_scans import is_annotated, score_annotated
+from .downstream import print_downstream, score_downstream
+from .reading_logs import add_runs, reading_logs
+from .statistics import print_statistics
+from .tracker_choice import add_choice, chosen_detectors, chosen_trackers
+from .video import add_video, track_from_video
+
+if TYPE_CHECKING:
+    from crowdbot.evaluation import Estimate, ReadingLog, TrackingRun
+
+    Table = dict[str, dict[str, Estimate]]
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add = parser.add_argument
+    add("source", metavar="SOURCE", nargs="?", help="trial file, name of a built-in trial,"
+        " episode (.mcap), or recorded scans with annotated people (DROW .csv, FROG .h5, folder of L-CAS)")  # fmt: skip
+    add("--scenes", action="store_true", help="five scenes instead of SOURCE: low density, high density, occlusion,"
+        " noise, moving robot")  # fmt: skip
+    add_choice(parser)
+    add("--seed", type=int, metavar="N", help="first seed of a trial (default: the seed of the trial)")
+    add_runs(parser)
+    add("--reach", type=float, metavar="METRES", help="largest distance of a person and the matching track (default:"
+        " 0.5, or 1 for a video)")  # fmt: skip
+    add("--by", metavar="PART", help="divide the scores by distance, density or occlusion (default: not)")
+    add("--predictor", nargs="+", metavar="NAME", help="predictors whose forecasts from tracks and from the true past"
+        " are compared; for a video the predictor of the tracks (default: none, or constant-velocity)")  # fmt: skip
+    add("--statistics", action="store_true", help="count the returns of people in the scans, by distance, instead of"
+        " tracking them")  # fmt: skip
+    add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
+    add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker (default: none)")
+    add_video(parser)
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Track people in all runs, print the scores and draw the plot."""
+    from crowdbot.core import InputError
+
+    if options.reach is not None and not options.reach > 0.0:
+        raise InputError(f"--reach {options.reach} m must be above 0")
+    if (options.video is not None) + (options.source is not None) + options.scenes != 1:
+        raise InputError("give a SOURCE, --scenes or --video, and only one of them")
+    if options.video is not None:
+        return track_from_video(options)
+    options.reach = options.reach or REACH
+    if options.starts < 1:
+        raise InputError(f"--starts {options.starts} must be at least 1")
+    if options.statistics and not options.scenes:
+        return print_statistics(options)
+    if not options.scenes:
+        return score_annotated(options) if is_annotated(options.source) else _track_source(options)
+    if options.plot is not None or options.trial or options.json or options.statistics:
+        raise InputError(
+            "--scenes has no --plot, --trial, --json or --statistics; track the scenes one by one for these"
+        )
+    for name, (source, trial) in SCENES.items():
+        print(f"scene {name}: crowdbot track {source} " + (f"--trial '{trial[0]}'" if trial else ""))
+        options.source, options.trial = source, trial
+        _track_source(options)
+    return 0
+
+
+def _track_source(options: argparse.Namespace) -> int:
+    """Track people in a trial or an episode, print the scores and draw the plot."""
+    from crowdbot.core import explain_write_errors
+    from crowdbot.evaluation import plot_tracks
+
+    options.detector = options.detector or ["lidar-clusters"]
+    runs, logs = _runs(options)
+    tables = _tables(options, runs)
+    downstream = score_downstream(options, runs) if options.predictor else {}
+    if options.plot is not None:
+        with explain_write_errors(options.plot):
+            plot_tracks(next(iter(runs.values()))[0], options.plot)
+    if options.json:
+        print_json(_summary(options, logs, tables) | ({"prediction": _prediction(downstream)} if downstream else {}))
+        return 0
+    for part, table in tables.items():
+        _print(options, logs, part, table)
+    print_downstream(downstream)
+    if options.plot is not None:
+        print(options.plot)
+    return 0
+
+
+def _prediction(downstream: dict[str, Any]) -> dict[str, Any]:
+    """Return the scores of predictors for the output of ``--json``."""
+    return {
+        label: {name: {given: _as_json(one) for given, one in inputs.items()} for name, inputs in predictors.items()}
+        for label, predictors in downstream.items()
+    }
+
+
+def _runs(options: argparse.Namespace) -> tuple[dict[str, list[TrackingRun]], list[ReadingLog]]:
+    """Return the runs of each detector with each tracker, and the readings of the first detector."""
+    from crowdbot.evaluation import track_people
+
+    detectors, trackers = chosen_detectors(options), chosen_trackers(options)
+    runs: dict[str, list[TrackingRun]] = {}
+    first: list[ReadingLog] = []
+    read: dict[tuple[type, ...], list[ReadingLog]] = {}
+    with progress(options.json) as report:
+        for name, detector in detectors.items():
+            if detector.reads not in read:
+                read[detector.reads] = reading_logs(options, options.source, detector, report)
+            logs = read[detector.reads]
+            first = first or logs
+            for label, tracker in trackers.items():
+                key = label if len(detectors) == 1 else f"{name}, {label}"
+                runs[key] = [track_people(log, detector, tracker, not options.no_map) for log in logs]
+    return runs, first
+
+
+def _tables(options: argparse.Namespace, runs: dict[str, list[TrackingRun]]) -> dict[str, Table]:
+    """Return the scores by part of the people, then by tracker; the part of all people is empty."""
+    from crowdbot.evaluation import estimate_scores, estimate_strata
+
+    if options.by is None:
+        return {"": {name: estimate_scores(some, options.reach) for name, some in runs.items()}}
+    tables: dict[str, Table] = {}
+    for name, some in runs.items():
+        for part, scores in estimate_strata(some, options.by, options.reach).items():
+            tables.setdefault(part, {})[name] = scores
+    return tables
+
+
+def _as_json(scores: dict[str, Any]) -> dict[str, Any]:
+    found = {}
+    for name, one in scores.items():
+        is_record = dataclasses.is_dataclass(one) and not isinstance(one, type)
+        found[name] = dataclasses.asdict(one) if is_record else one._asdict()
+    return found
+
+
+def _summary(options: argparse.Namespace, logs: list[ReadingLog], tables: dict[str, Table]) -> dict[str, Any]:
+    parts = {part: {name: _as_json(one) for name, one in table.items()} for part, table in tables.items()}
+    return {
+        "source": logs[0].name,
+        "seeds": [log.seed for log in logs],
+        "sensor": logs[0].sensor,
+        "readings": sum(len(log.rows) for log in logs),
+        "detector": ", ".join(options.detector),
+        "map": not options.no_map,
+        "reach": options.reach,
+        "scores": parts if options.by else parts[""],
+    }
+
+
+def _print(options: argparse.Namespace, logs: list[ReadingLog], part: str, table: Table) -> None:
+    """Print one table; with many trackers, each is a row."""
+    from crowdbot.metrics import TRACKING_SCORES
+
+    count = sum(len(log.rows) for log in logs)
+    title = f"{logs[0].name}, {logs[0].sensor}: {', '.join(options.detector)}, {count} readings"
+    title += f"; {options.by} {part}" if options.by else ""
+    caption = f"mean over {len(logs)} runs"
+    caption += " and 95 % interval by bootstrap over runs" if len(logs) > 1 else ""
+    words = {name: name.replace("_", " ") for name in TRACKING_SCORES}
+    if len(table) > MOST_COLUMNS:
+        units = {name: f" [{unit}]" if unit else "" for name, unit in TRACKING_SCORES.items()}
+        head = ["tracker", *(words[name] + units[name] for name in MAIN_SCORES)]
+        rows = [[name, *(str(scores[one]) for one in MAIN_SCORES)] for name, scores in table.items()]
+    else:
+        head = ["score", *table, "unit"]
+        rows = [[words[one], *(str(scores[one]) for scores in table.values()), unit]
+                for one, unit in TRACKING_SCORES.items()]  # fmt: skip
+    print_table(title, head, rows, f"{caption}; reach {options.reach:g} m")
+
+
+SCENES: dict[str, tuple[str, list[str]]] = {
+    "1 low density": ("two-way", ["density=0.15"]),
+    "2 high density": ("two-way", ["density=0.6"]),
+    "3 occlusion": ("block", ["people=30"]),
+    "4 noise": ("crossing-flows", ["robot[1]/sensor[1]/noise=gaussian(0.05)"]),
+    "5 moving robot": ("crossing-flows", []),
+}
+"""Trials of the tables of results, with their parameters."""
+REACH = 0.5
+"""Largest distance of a person and the matching track [m], by default."""
+MOST_COLUMNS = 4
+"""Number of trackers up to which all scores are shown, as rows of the table."""
+MAIN_SCORES = ("mota", "motp", "idf1", "hota", "switches", "latency", "kept_through_occlusion")
+"""Scores of a table of many trackers."""

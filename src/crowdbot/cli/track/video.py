@@ -1,0 +1,119 @@
+"""``crowdbot track --video FILE``: people in the video of a robot's camera, tracked and predicted in metres."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.cli.output import print_json, print_table, progress
+
+from .tracker_choice import chosen_detectors, chosen_trackers
+
+if TYPE_CHECKING:
+    from crowdbot.evaluation import VideoRun
+
+__all__ = ["add_video", "track_from_video"]
+
+REACH, FAR = 1.0, 10.0
+"""Largest distance of a person and a track [m], and of people who must be found [m], by default."""
+
+
+def add_video(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    group = parser.add_argument_group("video of a camera, instead of SOURCE")
+    add = group.add_argument
+    add("--video", type=Path, metavar="FILE", help="video of a camera on a robot")
+    add("--camera", type=Path, metavar="FILE", help="calibration: camera_info of ROS as YAML, with the place on the"
+        " robot under mount: x, y, z, roll, pitch, yaw")  # fmt: skip
+    add("--odometry", type=Path, metavar="FILE", help="CSV of the robot: time, x, y, heading")
+    add("--start", type=float, metavar="SECONDS", help="time of the first frame (default: first time of --odometry)")
+    add("--steps", type=int, default=8, metavar="N", help="rows of 0.4 s of a forecast (default: 8)")
+    add("--truth", type=Path, metavar="FILE", help="CSV of true people: id, time, x, y (default: no scores)")
+    add("--out", type=Path, metavar="DIR", help="folder for tracks.csv and forecasts.csv (default: none)")
+
+
+def track_from_video(options: argparse.Namespace) -> int:
+    """Track and predict the people in a video, print the scores and write the files."""
+    from crowdbot.cli.schemes import build_predictor
+    from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.evaluation import plot_video_run, read_camera, read_odometry, read_true_paths, track_video
+
+    if options.camera is None or options.odometry is None:
+        raise InputError("--video needs --camera and --odometry")
+    options.detector = options.detector or ["lidar-clusters"]
+    if (
+        len(options.tracker) > 1
+        or len(options.detector) > 1
+        or len(options.motion) > 1
+        or len(options.predictor or []) > 1
+    ):
+        raise InputError("--video takes one detector, tracker, motion model and predictor")
+    if options.steps < 1:
+        raise InputError(f"--steps {options.steps} must be at least 1")
+    detector: Any = next(iter(chosen_detectors(options).values()))
+    tracker = next(iter(chosen_trackers(options).values()))
+    truth = None if options.truth is None else read_true_paths(options.truth)
+    with progress(options.json) as report:
+        run = track_video(
+            options.video, read_camera(options.camera), read_odometry(options.odometry), detector, tracker,
+            build_predictor((options.predictor or ["constant-velocity"])[0], None, {}), options.steps, options.start,
+            lambda share: report("track video", share),
+        )  # fmt: skip
+    if options.out is not None:
+        with explain_write_errors(options.out):
+            _write(run, options.out)
+    if options.plot is not None:
+        with explain_write_errors(options.plot):
+            plot_video_run(run, options.plot, truth)
+    scores = {} if truth is None else run.scores(truth, options.reach or REACH, FAR)
+    summary = {
+        "video": options.video.name,
+        "frames": len(run.time),
+        "detections": sum(len(one) for one in run.detections),
+        "tracks": len({who for one in run.tracks for who in one.ids.tolist()}),
+        "scores": scores,
+    }
+    if options.json:
+        print_json(summary)
+    else:
+        _print(options, summary)
+    return 0
+
+
+def _print(options: argparse.Namespace, summary: dict[str, Any]) -> None:
+    print(
+        f"{summary['video']}: {summary['frames']} frames, {summary['detections']} detections of"
+        f" {options.detector[0]}, {summary['tracks']} tracks"
+    )
+    if summary["scores"]:
+        rows = [[name.replace("_", " "), f"{value:.3g}"] for name, value in summary["scores"].items()]
+        caption = (
+            f"people up to {FAR:g} m who are in the image and not behind others; reach {options.reach or REACH:g} m;"
+        )
+        print_table("scores", ("score", "value"), rows, f"{caption} errors in m")
+    for file in (options.plot, None if options.out is None else options.out / "forecasts.csv"):
+        if file is not None:
+            print(file)
+
+
+def _write(run: VideoRun, folder: Path) -> None:
+    """Write tracks and forecasts."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "tracks.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["id", "time", "x", "y", "vx", "vy", "sd_x", "sd_y"])
+        for one in run.tracks:
+            for k, who in enumerate(one.ids.tolist()):
+                spread = [float(one.covariance[k, i, i]) ** 0.5 for i in (0, 1)]
+                values = [*one.position[k], *one.velocity[k], *spread]
+                table.writerow([who, f"{one.time:.3f}", *(f"{value:.3f}" for value in values)])
+    with (folder / "forecasts.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["time", "id", "ahead", "x", "y"])
+        for forecast in run.forecasts:
+            for row, ahead in enumerate(forecast.ahead):
+                for a, who in enumerate(forecast.ids.tolist()):
+                    place = forecast.position[row, a]
+                    table.writerow([f"{forecast.time:.3f}", who, f"{ahead:g}", f"{place[0]:.3f}", f"{place[1]:.3f}"])

@@ -1,0 +1,27 @@
+"""Programs that trials name: a server for other machines refuses to start them."""
+
+from __future__ import annotations
+
+import os
+
+from .errors import InputError
+
+__all__ = ["PROGRAMS", "check_programs"]
+
+PROGRAMS = "CROWDBOT_PROGRAMS"
+"""Variable of the environment; ``refuse`` for processes that start no programs named by trials. Children inherit it."""
+
+
+def check_programs(what: str) -> None:
+    """Raise :class:`InputError` if this process must not start programs that a trial names.
+
+    Args:
+        what: who needs the program, for the message.
+
+    >>> check_programs("navigator mine")
+    """
+    if os.environ.get(PROGRAMS) == "refuse":
+        raise InputError(
+            f"{what} is a program, and this server starts no programs named by trials;"
+            " the person who runs it can allow them with --programs"
+        )

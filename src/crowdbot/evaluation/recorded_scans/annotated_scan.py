@@ -1,0 +1,50 @@
+"""AnnotatedScan: a recorded scan, and the people in it."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Pose
+from crowdbot.sensors import Reading, Scan
+
+__all__ = ["AnnotatedScan", "planar_scan"]
+
+Floats = NDArray[np.float64]
+
+NO_BOXES: Floats = np.zeros((0, 4))
+"""Default of the boxes that do not count."""
+
+
+class AnnotatedScan(NamedTuple):
+    """A recorded scan, and the people in it.
+
+    Fields:
+        scan: the scan; its pose is that of the scanner at the origin.
+        people: ``[N, 2]`` positions in the frame of the scanner [m]; None if nobody has annotated the scan.
+        ignored: ``[B, 4]`` boxes x, y, x, y [m] in which detections are neither right nor wrong, such as groups.
+    """
+
+    scan: Reading
+    people: Floats | None
+    ignored: Floats = NO_BOXES
+
+
+def planar_scan(time: float, ranges: Floats, angles: Floats, max_range: float, pose: Pose | None = None) -> Scan:
+    """Return a recorded planar scan; ground truth of a simulation is empty, and its arrays are shared.
+
+    Args:
+        time: time [s].
+        ranges: ``[R]`` [m]; values that are not above 0 are unknown.
+        angles: ``[R]`` [rad].
+        max_range: ranges from here on are no returns [m].
+        pose: pose of the scanner; default: the origin.
+    """
+    known = np.isfinite(ranges) & (ranges > 0.0)
+    shown = np.where(known, np.where(ranges < max_range, ranges, math.inf), math.nan)[None]
+    nothing = np.broadcast_to(np.int64(-1), shown.shape)
+    cosine = np.broadcast_to(np.float64(1.0), shown.shape)
+    return Scan(time, Pose.of((0.0, 0.0), 0.0) if pose is None else pose, shown, angles, nothing, cosine, nothing)

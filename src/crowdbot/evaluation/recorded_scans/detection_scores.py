@@ -1,0 +1,149 @@
+"""DetectionScores: detectors and trackers on recorded scans with annotated people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import DataError
+from crowdbot.metrics import match_nearest
+from crowdbot.perception import Detector, Tracker
+
+from .annotated_scan import AnnotatedScan
+
+__all__ = ["DetectionScores", "score_detections", "score_positions"]
+
+Floats = NDArray[np.float64]
+
+LONGEST_GAP = 1.0
+"""After a longer time without a scan [s], trackers begin again."""
+
+
+class DetectionScores(NamedTuple):
+    """Scores of the positions of a detector or a tracker, at its own threshold; NaN without people or positions.
+
+    Fields:
+        precision, recall, f1: of the pairs within reach.
+        error: mean distance of the pairs [m].
+        people, detections: numbers in all annotated scans.
+    """
+
+    precision: float
+    recall: float
+    f1: float
+    error: float
+    people: int
+    detections: int
+
+
+@dataclass
+class _Count:
+    """Counts of one detector or tracker."""
+
+    reach: float
+    people: int = 0
+    detections: int = 0
+    right: int = 0
+    distance: float = 0.0
+
+    def add(self, place: Floats, row: AnnotatedScan) -> None:
+        """Count the positions in an annotated scan."""
+        assert row.people is not None
+        away = np.linalg.norm(row.people[:, None] - place[None], axis=-1)
+        a, b = match_nearest(away, self.reach)
+        box = row.ignored[:, None]
+        inside = ((place >= box[..., :2]) & (place <= box[..., 2:])).all(axis=-1)
+        left_out = np.asarray(inside.any(axis=0), dtype=np.bool_)
+        left_out[b] = False
+        self.right += len(a)
+        self.distance += float(away[a, b].sum())
+        self.people += len(row.people)
+        self.detections += int((~left_out).sum())
+
+    def scores(self) -> DetectionScores:
+        """Return the scores."""
+        both = self.people + self.detections
+        return DetectionScores(
+            self.right / self.detections if self.detections else math.nan,
+            self.right / self.people if self.people else math.nan,
+            2.0 * self.right / both if both else math.nan,
+            self.distance / self.right if self.right else math.nan,
+            self.people,
+            self.detections,
+        )
+
+
+@dataclass
+class _Following:
+    """A tracker behind a detector, with its state."""
+
+    tracker: Tracker
+    count: _Count
+    state: Any = field(init=False)
+    time: float = -math.inf
+
+    def __post_init__(self) -> None:
+        self.state = self.tracker.begin()
+
+
+def score_positions(
+    rows: Iterable[AnnotatedScan], detectors: Mapping[str, Detector], trackers: Mapping[str, Tracker],
+    reach: float = 0.5,
+) -> dict[str, DetectionScores]:  # fmt: skip
+    """Return the scores of each detector, and of each tracker behind each detector, in one pass over the scans.
+
+    Trackers follow all scans; scans without annotations do not count. The scanner stands still for them: without
+    odometry its motion adds to that of people. They begin again if the time steps back or by more than 1 s.
+
+    Args:
+        rows: scans in the order of their recording.
+        detectors: detectors by name.
+        trackers: trackers by name.
+        reach: largest distance of a person and a position [m]; 0.5 m as in the work on DROW and FROG.
+
+    Returns:
+        Scores by ``detector`` and by ``detector, tracker``.
+
+    Raises:
+        DataError: no scan is annotated.
+        InputError: a detector does not read such scans.
+    """
+    counts = {name: _Count(reach) for name in detectors}
+    following = {
+        (name, label): _Following(tracker, _Count(reach)) for name in detectors for label, tracker in trackers.items()
+    }
+    annotated = 0
+    for row in rows:
+        annotated += row.people is not None
+        time = float(np.max(row.scan.time))
+        for name, detector in detectors.items():
+            if row.people is None and not trackers:
+                continue
+            found = detector.detect(row.scan)
+            if row.people is not None:
+                counts[name].add(found.position, row)
+            for label in trackers:
+                one = following[name, label]
+                if not one.time < time <= one.time + LONGEST_GAP:
+                    one.state = one.tracker.begin()
+                tracks, one.state = one.tracker.update(found, time, one.state)
+                one.time = time
+                if row.people is not None:
+                    one.count.add(tracks.position, row)
+    if not annotated:
+        raise DataError("no scan has annotated people")
+    scores = {}
+    for name, count in counts.items():
+        scores[name] = count.scores()
+        scores |= {f"{name}, {label}": following[name, label].count.scores() for label in trackers}
+    return scores
+
+
+def score_detections(rows: Iterable[AnnotatedScan], detector: Detector, reach: float = 0.5) -> DetectionScores:
+    """Return the scores of one detector, see :func:`score_positions`."""
+    return score_positions(rows, {"": detector}, {}, reach)[""]

@@ -1,0 +1,205 @@
+"""Calibration, odometry and frames of a robot's camera, read from files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import DataError, InputError, Pose, SpatialPose, import_optional, parse_yaml
+from crowdbot.sensors import Lens
+
+__all__ = [
+    "CameraCalibration",
+    "RobotOdometry",
+    "TruePaths",
+    "iterate_frames",
+    "read_camera",
+    "read_odometry",
+    "read_true_paths",
+]
+
+Floats = NDArray[np.float64]
+
+LARGEST = 1_000_000
+"""Largest size of a file of calibration [bytes]."""
+MOST_ROWS = 10_000_000
+"""Largest number of rows of odometry."""
+MOUNT = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+@dataclass(frozen=True)
+class CameraCalibration:
+    """A camera on a robot.
+
+    Fields:
+        lens: the intrinsics.
+        mount: x, y, z [m], roll, pitch, yaw [rad] of the camera on the robot; x of the camera points ahead.
+    """
+
+    lens: Lens
+    mount: tuple[float, float, float, float, float, float]
+
+    def pose(self, robot: Pose) -> SpatialPose:
+        """Return the pose of the camera in the world."""
+        return robot.to_spatial(0.0).offset(*self.mount)
+
+
+@dataclass(frozen=True)
+class RobotOdometry:
+    """Poses of a robot: ``time [N]`` [s], ``position [N, 2]`` [m], ``heading [N]`` [rad], not wrapped."""
+
+    time: Floats
+    position: Floats
+    heading: Floats
+
+    def at(self, time: float) -> Pose:
+        """Return the pose at a time [s], interpolated; the first or the last one outside."""
+        x, y, turn = (float(np.interp(time, self.time, one)) for one in (*self.position.T, self.heading))
+        return Pose.of((x, y), turn)
+
+
+@dataclass(frozen=True)
+class TruePaths:
+    """Rows of time [s], x and y [m] of each person, in the order of time."""
+
+    rows: dict[int, Floats]
+
+    def at(self, time: float) -> dict[int, tuple[float, float]]:
+        """Return the places of those who are there at a time [s], interpolated between their rows."""
+        found = {}
+        for who, rows in self.rows.items():
+            if rows[0, 0] - 1e-6 <= time <= rows[-1, 0] + 1e-6:
+                found[who] = tuple(float(np.interp(time, rows[:, 0], rows[:, k])) for k in (1, 2))
+        return found  # type: ignore[return-value]
+
+
+def read_camera(file: Path | str) -> CameraCalibration:
+    """Read a calibration of ROS (``camera_info`` as YAML) with the pose of the camera on the robot under ``mount``.
+
+    Raises:
+        DataError: the file cannot be read, or a value is missing or wrong.
+    """
+    path = Path(file)
+    try:
+        if path.stat().st_size > LARGEST:
+            raise DataError(f"{path}: a calibration has at most {LARGEST / 1e6:g} MB")
+        whole = parse_yaml(path.read_text(encoding="utf-8"), path.name)
+    except (OSError, UnicodeDecodeError, InputError) as error:
+        raise DataError(f"{path} cannot be read as a calibration: {error}") from None
+    if not isinstance(whole, dict):
+        raise DataError(f"{path}: a calibration must be a mapping with image_width, image_height and camera_matrix")
+    model = whole.get("distortion_model", "plumb_bob")
+    if model != "plumb_bob":
+        raise DataError(f"{path}: distortion_model = {model!r} is not supported, it must be plumb_bob")
+    matrix = _numbers(path, whole, "camera_matrix", 9)
+    bend = _numbers(path, whole, "distortion_coefficients", 5) if "distortion_coefficients" in whole else [0.0] * 5
+    width, height = (_number(path, whole, name) for name in ("image_width", "image_height"))
+    mount = whole.get("mount")
+    if not isinstance(mount, dict) or not {"x", "y", "z"} <= set(mount) <= set(MOUNT):
+        raise DataError(f"{path}: mount must have x, y, z [m], and may have roll, pitch and yaw [rad]")
+    place: Any = tuple(_number(path, mount, name) if name in mount else 0.0 for name in MOUNT)
+    if not place[2] > 0.0:
+        raise DataError(f"{path}: mount z = {place[2]} m must be above 0, the camera is above the floor")
+    distortion: Any = tuple(bend)
+    try:
+        lens = Lens(int(width), int(height), matrix[0], matrix[4], matrix[2], matrix[5], distortion)
+    except InputError as error:
+        raise DataError(f"{path}: {error}") from None
+    return CameraCalibration(lens, place)
+
+
+def read_odometry(file: Path | str) -> RobotOdometry:
+    """Read the poses of a robot, a CSV file with the columns time [s], x, y [m] and heading [rad].
+
+    Raises:
+        DataError: the file cannot be read, a column is missing, or times do not grow.
+    """
+    rows = _read_rows(Path(file), ("time", "x", "y", "heading"), "odometry")
+    if not (np.diff(rows[:, 0]) > 0.0).all():
+        raise DataError(f"{file}: the times of odometry must grow")
+    return RobotOdometry(rows[:, 0], rows[:, 1:3], np.unwrap(rows[:, 3]))
+
+
+def read_true_paths(file: Path | str) -> TruePaths:
+    """Read the true paths of people, a CSV file with the columns id, time [s], x and y [m].
+
+    Raises:
+        DataError: the file cannot be read, or a column is missing.
+    """
+    rows = _read_rows(Path(file), ("id", "time", "x", "y"), "true paths")
+    rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
+    return TruePaths({int(who): rows[rows[:, 0] == who, 1:] for who in np.unique(rows[:, 0])})
+
+
+def _read_rows(path: Path, names: tuple[str, ...], what: str) -> Floats:
+    """Return the columns ``names`` of a CSV file, ``[N, C]``."""
+    try:
+        with path.open(encoding="utf-8-sig") as lines:
+            head = [word.strip().lower() for word in lines.readline().split(",")]
+            missing = [name for name in names if name not in head]
+            if missing:
+                raise DataError(f"{path} has no column {missing[0]!r}; {what} need {', '.join(names)}")
+            columns = [head.index(name) for name in names]
+            rows = np.loadtxt(lines, delimiter=",", usecols=columns, ndmin=2, max_rows=MOST_ROWS)
+    except (OSError, ValueError) as error:
+        raise DataError(f"{path} cannot be read as {what}: {error}") from None
+    if not len(rows) or not np.isfinite(rows).all():
+        raise DataError(f"{path}: {what} need rows of finite numbers")
+    return rows
+
+
+def iterate_frames(file: Path | str, lens: Lens, start: float) -> Iterator[tuple[float, NDArray[np.uint8]]]:
+    """Yield time [s] and colours ``[H, W, 3]`` of the frames of a video.
+
+    Args:
+        file: the video, in a format of OpenCV.
+        lens: the intrinsics; the images must have their size.
+        start: time of the first frame [s].
+
+    Raises:
+        DataError: the video cannot be read, or has images of another size.
+        MissingExtra: OpenCV is not installed.
+    """
+    cv2 = import_optional("cv2", "reading videos", "perception")
+    if not Path(file).is_file():
+        raise DataError(f"{file} does not exist")
+    video = cv2.VideoCapture(str(file))
+    try:
+        rate = float(video.get(cv2.CAP_PROP_FPS))
+        if not video.isOpened() or not (math.isfinite(rate) and rate > 0.0):
+            raise DataError(f"{file} cannot be read as a video")
+        count = 0
+        while True:
+            there, image = video.read()
+            if not there:
+                break
+            if image.shape[:2] != (lens.height, lens.width):
+                size = f"{image.shape[1]} x {image.shape[0]}"
+                raise DataError(f"{file} has images of {size} pixels, the camera has {lens.width} x {lens.height}")
+            yield start + count / rate, np.ascontiguousarray(image[..., ::-1])
+            count += 1
+        if not count:
+            raise DataError(f"{file} has no images")
+    finally:
+        video.release()
+
+
+def _number(path: Path, table: dict[str, Any], name: str) -> float:
+    value = table.get(name)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise DataError(f"{path}: {name} = {value!r} must be a number")
+    return float(value)
+
+
+def _numbers(path: Path, table: dict[str, Any], name: str, count: int) -> list[float]:
+    inner = table.get(name)
+    row = inner.get("data") if isinstance(inner, dict) else None
+    if not isinstance(row, list) or len(row) != count:
+        raise DataError(f"{path}: {name} must have data with {count} numbers")
+    return [_number(path, {name: value}, name) for value in row]

@@ -1,0 +1,112 @@
+"""Labels of a recorded episode in the formats of COCO and KITTI: its trial runs again with labels."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from crowdbot.core import InputError, explain_write_errors
+from crowdbot.recording import open_rerun, read_episode
+from crowdbot.simulation import Simulation, SimulationRun
+
+from .formats.coco import join_annotations, write_images
+from .formats.kitti import write_kitti
+from .plan import with_masks
+from .sample_log import SampleLog, Table
+
+__all__ = ["LABEL_FORMATS", "LabelFiles", "export_labels"]
+
+LABEL_FORMATS = ("coco", "kitti")
+
+
+class LabelFiles(NamedTuple):
+    """What was written: the folder, and the numbers of images, scans and files."""
+
+    folder: Path
+    images: int
+    scans: int
+    files: int
+
+
+def export_labels(
+    episode: str | Path,
+    to: str | Path,
+    kind: str,
+    force: bool = False,
+    trust: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> LabelFiles:
+    """Write images, point clouds and labels of an episode to a folder.
+
+    The trial of the episode runs again with its seed and its orders, with masks, boxes and keypoints in all colour
+    cameras: the recording itself has no labels.
+
+    Args:
+        episode: the episode, which is not a branch.
+        to: the folder to make.
+        kind: ``coco``: PNG files, and ``coco.json`` with boxes, masks and keypoints; ``kitti``: the folders
+            ``image_2``, ``label_2``, ``calib``, ``velodyne`` and ``labels`` of each sensor.
+        force: whether an existing folder is replaced.
+        trust: whether code outside the folder of the trial may run.
+        progress: called with the completed share, 0 to 1.
+
+    Raises:
+        InputError: the folder exists, the format is unknown, or the robots have no sensor with such labels.
+        EpisodeError: the episode cannot be read or run again.
+    """
+    folder = Path(to)
+    if kind not in LABEL_FORMATS:
+        raise InputError(f"there is no format {kind!r} of labels; choose {' or '.join(LABEL_FORMATS)}")
+    if folder.exists() and not (force and folder.is_dir()):
+        raise InputError(f"{folder} already exists; give a new folder, or --force to replace it")
+    tables = _labelled(Path(episode), trust, progress)
+    draft = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    try:
+        with explain_write_errors(folder):
+            draft.mkdir(parents=True)
+            files = _written(tables, draft, kind, Path(episode).name)
+            if not files:
+                what = "colour camera" if kind == "coco" else "colour camera or 3-D laser scanner"
+                raise InputError(f"{episode}: its robots have no {what} that measured anything")
+            if folder.exists():
+                shutil.rmtree(folder)
+            draft.replace(folder)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+    images = sum(len(table["rgb"]) for table in tables.values() if "rgb" in table)
+    return LabelFiles(folder, images, sum(file.suffix == ".bin" for file in files), len(files))
+
+
+def _labelled(episode: Path, trust: bool, progress: Callable[[float], object] | None) -> Mapping[str, Table]:
+    """Return the tables of all sensors of an episode."""
+    steps = read_episode(episode).steps
+    with open_rerun(episode, trust=trust) as rerun:
+        trial = dataclasses.replace(rerun.trial, robots=tuple(with_masks(robot) for robot in rerun.trial.robots))
+        simulation = Simulation(trial, rerun.seed)
+        rerun.prepare(simulation)
+        columns = {robot.robot.name: robot.agent for robot in simulation.robots}
+        log = SampleLog(simulation.world.scene.walls, columns)
+        run = SimulationRun(simulation, [log], sources=rerun.sources, ticks=steps)
+        while run.outcome is None:
+            log.walls = simulation.world.scene.walls
+            run.step()
+            if progress is not None:
+                progress(simulation.tick / max(1, steps))
+        return log.tables()
+
+
+def _written(tables: Mapping[str, Table], folder: Path, kind: str, name: str) -> list[Path]:
+    if kind == "kitti":
+        return write_kitti(tables, folder)
+    files = write_images(tables, folder / "images")
+    if files:
+        joined = join_annotations(files[-1:], {"description": f"labels of {name}"})
+        files[-1].unlink()
+        files[-1] = folder / "coco.json"
+        files[-1].write_text(json.dumps(joined), encoding="utf-8")
+    return files

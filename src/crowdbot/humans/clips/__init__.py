@@ -1,0 +1,1 @@
+"""Motion beside the gait: poses of activities, and clips from motion capture."""

@@ -1,0 +1,1 @@
+"""Postures of people who lose their balance."""

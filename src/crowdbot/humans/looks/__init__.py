@@ -1,0 +1,1 @@
+"""What people look like: pictures of skin and cloth, carried things, and keypoints."""

@@ -1,0 +1,1 @@
+"""Bodies made of rigged characters of other programs."""

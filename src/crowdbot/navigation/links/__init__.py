@@ -1,0 +1,1 @@
+"""Navigators that open a connection of their own: to robot software, or to a real robot."""

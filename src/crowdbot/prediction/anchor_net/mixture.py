@@ -1,0 +1,73 @@
+"""Covariances of a mixture of futures around one trajectory, widened for places and trackers that no training saw."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.data import Windows
+from crowdbot.prediction.kalman import Kalman
+
+from .agent_frame import PREDICTED_ROWS, rotate
+from .anchors import resample_paths
+
+__all__ = ["future_covariances", "total_covariances"]
+
+Floats = NDArray[np.float64]
+
+HORIZON = 4.8
+"""Horizon of the training [s]; beyond it standard deviations grow in proportion to time."""
+WIDENED, FILTERED = 3.0, 0.2
+"""Factors of the covariance of the mixture and of that of the Kalman filter in their sum. The training recordings are
+interpolated and have hardly any noise, so the mixture alone is overconfident elsewhere."""
+
+
+def future_covariances(
+    basis: Floats, probability: Floats, spread: Floats, away: Floats, heading: Floats, steps: int, dt: float
+) -> Floats:
+    """Return covariances ``[N, T, 2, 2]`` [m^2] of the mixture of futures of N people around one trajectory.
+
+    Args:
+        basis: ``[D, 24]`` residuals of the coefficients.
+        probability: ``[N, K]`` of the futures.
+        spread: ``[N, K, D]`` standard deviations of the coefficients around each future.
+        away: ``[N, K, T, 2]`` [m] from the trajectory to each future.
+        heading: ``[N, 2]`` directions of the people.
+        steps, dt: number of rows and their time step [s].
+    """
+    D = len(basis)
+    shape = resample_paths(basis.reshape(1, D, PREDICTED_ROWS, 2), np.zeros((1, 2)), steps, dt)[0]
+    time = dt * np.arange(1, steps + 1)
+    found = np.zeros((len(probability), steps, 2, 2))
+    for d in range(D):  # summation order independent of the batch
+        variance = np.zeros(len(probability))
+        for k in range(probability.shape[1]):
+            variance += probability[:, k] * spread[:, k, d] ** 2
+        arm = np.broadcast_to(shape[d], (len(probability), 1, steps, 2))
+        arm = rotate(arm, heading, back=True)[:, 0]
+        found += variance[:, None, None, None] * arm[..., :, None] * arm[..., None, :]
+    for k in range(probability.shape[1]):
+        gap = away[:, k]
+        found += probability[:, k, None, None, None] * gap[..., :, None] * gap[..., None, :]
+    found *= (np.maximum(time / HORIZON, 1.0) ** 2)[:, None, None]
+    return found
+
+
+def total_covariances(past: Windows, mixture: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
+    """Return covariances ``[W, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
+
+    They are the weighted sum of those of the mixture ``[N, T, 2, 2]`` and of the Kalman filter. People observed once
+    have that of the filter, whose velocity is unknown then.
+    """
+    W, A = past.present.shape[0], past.present.shape[2]
+    filtered = Kalman().predict(past, mixture.shape[1]).covariance
+    assert filtered is not None
+    own = np.zeros((W, mixture.shape[1], A, 2, 2))
+    own[window, :, slot] = mixture
+    once = (past.present.sum(axis=1) == 1)[:, None, :, None, None]
+    found = np.where(once, filtered, WIDENED * own + FILTERED * filtered)
+    if past.plan is not None:
+        for step in range(mixture.shape[1]):
+            known = ~np.isnan(past.plan_at(step + 1)).any(axis=-1)
+            found[:, step][known] = 0.0
+    return found

@@ -1,0 +1,102 @@
+"""Weights of AnchorNet from files: shipped arrays, or checkpoints of ``crowdbot train``."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core import DataError
+from crowdbot.prediction.pretrained_weights import ALL, FOLDS, OPEN, Numbers, load_pretrained, read_weights
+from crowdbot.prediction.training.checkpoint import load_checkpoint
+
+from .network_shapes import wrong_array
+from .plan_reaction import SHAPES, PlanReaction
+
+__all__ = ["load_own_weights", "load_reaction", "load_start_weights"]
+
+NO_REACTION = "none"
+
+
+def load_own_weights(file: str) -> Numbers:
+    """Return the arrays of a file of weights; files that did not change are read once.
+
+    Raises:
+        DataError: the file is missing or damaged, or has other arrays than those of AnchorNet.
+    """
+    changed = Path(file).stat().st_mtime_ns if Path(file).is_file() else 0
+    known = _KNOWN.get(file)
+    if known is None or known[0] != changed:
+        numbers = read_weights(Path(file))
+        if "content" in numbers:  # a checkpoint of crowdbot train
+            numbers = _checkpoint_weights(file)
+        wrong = wrong_array(numbers)
+        if wrong:
+            raise DataError(f"{file} is not a file of AnchorNet weights: {wrong}")
+        _KNOWN[file] = known = changed, numbers
+    return known[1]
+
+
+def load_start_weights(name: str) -> Numbers:
+    """Return the weights from which a training starts.
+
+    Args:
+        name: a file, or the fold of shipped weights: ``open``, ``all`` or a place.
+
+    Raises:
+        DataError: see :func:`load_own_weights`; or the weights learned from unbounded features of near neighbors, which
+            no training has.
+
+    >>> sorted(load_start_weights("open"))[:3]
+    ['alone', 'basis', 'both_1_bias']
+    """
+    numbers = load_pretrained("anchor-net", name) if name in (OPEN, ALL, *FOLDS) else load_own_weights(name)
+    if "unbounded" in numbers:
+        raise DataError(f"a training cannot start from the weights {name}; start from {OPEN}, a place or a file")
+    return numbers
+
+
+def load_reaction(name: str) -> Numbers:
+    """Return the coefficients of the reaction to the plan of a robot: ``open``, ``none``, or those of a file.
+
+    Raises:
+        DataError: the file is missing or damaged, or has other arrays.
+
+    >>> load_reaction("none"), sorted(load_reaction("open"))[-1]
+    ({}, 'reaction_room')
+    """
+    if name == NO_REACTION:
+        return {}
+    if name == OPEN:
+        return load_pretrained("plan-reaction", OPEN)
+    changed = Path(name).stat().st_mtime_ns if Path(name).is_file() else 0
+    return _reaction_of(name, changed)
+
+
+@functools.lru_cache(maxsize=16)
+def _reaction_of(name: str, changed: int) -> Numbers:
+    """Return the coefficients in a file; ``changed`` is its time stamp."""
+    del changed
+    numbers = read_weights(Path(name))
+    wanted = {f"reaction_{field}": (SHAPES,) for field in PlanReaction._fields} | {"reaction_room": ()}
+    shapes = {key: values.shape for key, values in numbers.items()}
+    if shapes != wanted:
+        raise DataError(f"{name} is not a file of a reaction to plans: it has {shapes}, it must have {wanted}")
+    return numbers
+
+
+_KNOWN: dict[str, tuple[int, Numbers]] = {}
+
+
+def _checkpoint_weights(file: str) -> Numbers:
+    """Return the weights in a checkpoint."""
+    try:
+        weights = load_checkpoint(file, "anchor-net")["weights"]
+        numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise DataError(f"{file} has no AnchorNet weights; train again") from None
+    bad = next((name for name, values in numbers.items() if not np.all(np.isfinite(values))), None)
+    if bad is not None:
+        raise DataError(f"{file}: {bad} has values that are not finite; the file is damaged")
+    return numbers

@@ -1,0 +1,1 @@
+"""Fixed cameras of a trial, and what they see of the floor."""

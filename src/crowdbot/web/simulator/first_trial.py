@@ -1,0 +1,12 @@
+"""The trial that a new session shows."""
+
+from __future__ import annotations
+
+__all__ = ["FIRST"]
+
+FIRST: tuple[str, dict[str, str], int] = (
+    "two-way",
+    {"robot/type": "pepper", "robot/default-sensors": "false", "end/collision": "false"},
+    1,
+)
+"""Trial, values and seed that a new session shows: a robot among walking people."""

@@ -1,0 +1,1 @@
+"""Buildings in glTF: triangles with materials, and doors."""

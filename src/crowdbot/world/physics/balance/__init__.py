@@ -1,0 +1,1 @@
+"""Balance of people in the physics world: bracing, recovery steps and falls."""

@@ -1,0 +1,353 @@
+"""Visuals without a graphics library: shapes of a model and skins of people, drawn by the rasteriser."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import format_xml, stream
+from crowdbot.humans import LEVELS, People, RiggedBody, body_uv, paint_body, shapes, worn_parts
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.mjcf_model import MjcfModel
+from crowdbot.world.physics.people_motion import PeopleMotion
+from crowdbot.world.physics.stage import PhysicsStage
+
+from .camera import CameraImages, CameraView
+from .carried_objects import carried_parts, holds
+from .illumination import illumination
+from .labels import FLOOR, WALL, geom_code
+from .raster_kernels import place_shapes, vertex_normals
+from .rasterizer import DrawList, Rasterizer, TexturePool, pack_textures
+from .shape_meshes import ShapeMesh, box_mesh, flat_mesh, geom_mesh
+from .surfaces import FLOOR_SIZE, clouds, floor_texture, grain, wall_texture
+
+__all__ = ["SoftwareVisuals"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+PICTURES = (512, 256, 128)
+"""Side [pixels] of the picture of a person, by level of detail."""
+EDGE = (0.22, 0.22, 0.24)
+WALLS, GRAIN, FLOOR_TEXTURE = 2, 3, 1
+STEP = float(1 << 20)
+"""Positions are multiples of 2^-20 m, so that the last digits of a sine do not matter."""
+SMALL = (240.0, 110.0)
+"""Heights [pixels] of a person below which level 1 and level 2 is fine enough."""
+FACE_SOFT = 0.25
+"""Softness of the light on skin and cloth."""
+
+
+class _FixedRows(NamedTuple):
+    """Faces, texture coordinates, materials, closed and codes of all triangles, and the number of vertices."""
+
+    faces: Ints
+    uv: Floats
+    material: Ints
+    closed: NDArray[np.bool_]
+    code: Ints
+    points: int
+
+
+class _Skin(NamedTuple):
+    """Triangles that a person wears, and the vertices of the group to which they belong."""
+
+    span: slice
+
+    faces: Ints
+    uv: Floats
+    material: Ints
+    closed: NDArray[np.bool_]
+
+
+class _Part(NamedTuple):
+    """A shape at its place, with its paint and its label."""
+
+    mesh: ShapeMesh
+    turn: Floats
+    place: Floats
+    paint: int
+    code: int
+
+
+class SoftwareVisuals:
+    """Renders a world at one level of detail, with textures, shadows and antialiasing.
+
+    Args:
+        built: the MJCF model of the world.
+        motion: people.
+        stage: stage with lights and surfaces.
+        detail: finest level of detail of the skins, 0 to 2; small people in an image have coarser ones.
+
+    Attributes:
+        model, data: model and state for rendering; the caller sets ``data`` before requesting an image.
+        joints: start of each joint in ``data.qpos``, by name.
+    """
+
+    def __init__(self, built: MjcfModel, motion: PeopleMotion, stage: PhysicsStage, detail: int) -> None:
+        mj = engine()
+        self.detail, self._motion, self._stage = detail, motion, stage
+        self.model = mj.MjModel.from_xml_string(format_xml(built.root), built.files)
+        self.data = mj.MjData(self.model)
+        self.joints = {self.model.joint(k).name: int(self.model.jnt_qposadr[k]) for k in range(self.model.njnt)}
+        self._raster = Rasterizer()
+        looks = stage.appearance.draw(stream(motion.gait.seed, "appearance"))
+        self._light = illumination(looks, stage.lights)
+        self._images = [clouds(), floor_texture(looks.floor), wall_texture(looks.walls), grain()]
+        self._paints: list[tuple[float, ...]] = []
+        self._present: Any = None
+        self._fixed: _FixedRows | None = None
+        self._static_shapes()
+        self._people_looks()
+        self._building = self._building_parts()
+        self._pool: TexturePool = pack_textures(self._images)
+        floor = _linear(stage.floor_color)
+        self._ground = np.array([*(floor / _linear((0.80, 0.80, 0.78))), 1.0 / FLOOR_SIZE])
+        self._ground[:3] *= 0.72
+
+    def images(
+        self, view: CameraView, active: NDArray[np.bool_], rgb: bool, depth: bool, segmentation: bool, shadows: bool,
+        samples: int = 1,
+    ) -> CameraImages:  # fmt: skip
+        """Return images of the current state, with the people in ``active`` ``[A]``."""
+        drawn = self._drawn(view, active)
+        view = view._replace(place=_on_grid(view.place), forward=_on_grid(view.forward), up=_on_grid(view.up))
+        color, far, who = None, None, None
+        if rgb:
+            color = self._raster.image(drawn, view, self._light, self._pool, self._ground, samples, shadows)
+        if depth or segmentation:
+            far, who = self._raster.labels(drawn, view, FLOOR)
+        return CameraImages(color, far if depth else None, who if segmentation else None)
+
+    def _paint(self, color: Any, texture: int = -1, gloss: float = 0.0, soft: float = 0.0) -> int:
+        row = (*_linear(color), float(texture), gloss, soft)
+        if row not in self._paints:
+            self._paints.append(row)
+        return self._paints.index(row)
+
+    def _static_shapes(self) -> None:
+        """Make the triangles of all shapes of the model, in the frames of their shapes."""
+        model = self.model
+        shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
+        geoms, counts, meshes, materials, codes, uvs = [], [0], [], [], [], []
+        for geom in range(model.ngeom):
+            group, body = int(model.geom_group[geom]), int(model.geom_bodyid[geom])
+            bare = group == 3 and body not in shown
+            mesh = geom_mesh(model, geom) if group <= 2 or bare else None
+            name = model.geom(geom).name
+            hidden = self._stage.building is not None and name.startswith("wall/")
+            if mesh is None or not len(mesh.corner) or name == "floor" or hidden:
+                continue
+            if name.startswith(("wall/", "ground/")):
+                mesh = flat_mesh(mesh)
+            count = len(mesh.corner)
+            material, uv = self._material(geom, name, mesh)
+            geoms.append(geom)
+            counts.append(count)
+            meshes.append(mesh)
+            materials.append(np.full(count, material))
+            codes.append(np.full(count, geom_code(name)))
+            uvs.append(uv)
+        none = np.zeros((0, 3, 3))
+        self._geoms, self._starts = np.array(geoms, dtype=np.int64), np.cumsum(counts)
+        self._static_count = int(self._starts[-1])
+        self._corner = np.concatenate([none, *(mesh.corner for mesh in meshes)]).reshape(-1, 3)
+        self._slope = np.concatenate([none, *(mesh.normal for mesh in meshes)]).reshape(-1, 3)
+        self._uv = np.concatenate([*uvs, none[..., :2]])
+        self._material_rows = np.concatenate([*materials, np.zeros(0)]).astype(np.int64)
+        self._codes = np.concatenate([*codes, np.zeros(0)]).astype(np.int64)
+        self._closed = np.repeat(np.array([mesh.closed for mesh in meshes], dtype=np.bool_), counts[1:])
+
+    def _material(self, geom: int, name: str, mesh: ShapeMesh) -> tuple[int, Floats]:
+        """Return the paint of a shape and its texture coordinates."""
+        model = self.model
+        if name.startswith("wall/"):
+            return self._paint(self._stage.wall_color, WALLS), mesh.uv / FLOOR_SIZE
+        color = model.geom_rgba[geom][:3]
+        if name.startswith("ground/"):
+            return self._paint(color, FLOOR_TEXTURE), mesh.uv / FLOOR_SIZE
+        if not name.startswith("robot"):
+            return self._paint(color, GRAIN, 0.05), mesh.uv / 1.2
+        material = int(model.geom_matid[geom])
+        if material >= 0:
+            color = model.mat_rgba[material][:3]
+            texture = int(model.mat_texid[material, engine().mjtTextureRole.mjTEXROLE_RGB])
+            if texture >= 0:
+                self._images.append(_stored_texture(model, texture))
+                return self._paint(color, len(self._images) - 1, 0.15), mesh.uv * (1.0, -1.0) + (0.0, 1.0)
+        return self._paint(color, -1, 0.25), mesh.uv
+
+    def _people_looks(self) -> None:
+        """Paint all people, and select the triangles that they wear at each level of detail."""
+        people, wet = self._motion.people, list[int]()
+        paints, own_paints = list[int](), [self._own_picture(body) for body in people.own]
+        for k, (person, outfit) in enumerate(zip(people.persons, people.outfits, strict=True)):
+            own = int(people.own_body[k])
+            if own < 0:
+                self._images.append(paint_body(person, outfit, int(people.variation[k]), PICTURES[self.detail]))
+                paints.append(self._paint((1.0, 1.0, 1.0), len(self._images) - 1, 0.02, FACE_SOFT))
+                wet.append(self._paint((1.0, 1.0, 1.0), len(self._images) - 1, 0.4, FACE_SOFT))
+            else:
+                paints.append(own_paints[own])
+                wet.append(own_paints[own])
+        self._skins = {
+            level: [_skin_of(people, k, level, paints[k], wet[k]) for k in range(len(people))]
+            for level in range(self.detail, LEVELS)
+        }
+
+    def _building_parts(self) -> tuple[list[_Part], list[_Part]]:
+        """Return the triangles of a building below ceilings, and its ceilings and roofs."""
+        found: tuple[list[_Part], list[_Part]] = [], []
+        for part in () if self._stage.building is None else self._stage.building.parts:
+            color: tuple[float, ...] = part.color
+            texture = -1
+            if part.picture is not None:
+                self._images.append(part.picture)
+                color, texture = (1.0, 1.0, 1.0), len(self._images) - 1
+            mesh = flat_mesh(ShapeMesh(part.corner, part.corner, part.uv, part.closed))._replace(
+                uv=part.uv, closed=part.closed
+            )
+            code = FLOOR if part.kind == "floor" else WALL
+            own = _Part(mesh, np.eye(3), np.zeros(3), self._paint(color, texture), code)
+            found[part.kind == "ceiling"].append(own)
+        return found
+
+    def _own_picture(self, body: RiggedBody) -> int:
+        """Add the picture of an imported body, and return its paint."""
+        picture = body.picture
+        for _ in range(self.detail):
+            wide = picture.astype(np.uint16)
+            total = wide[::2, ::2] + wide[1::2, ::2] + wide[::2, 1::2] + wide[1::2, 1::2]
+            picture = ((total + 2) // 4).astype(np.uint8)
+        self._images.append(picture)
+        return self._paint((1.0, 1.0, 1.0), len(self._images) - 1, 0.02, FACE_SOFT)
+
+    def _drawn(self, view: CameraView, active: NDArray[np.bool_]) -> DrawList:
+        """Return all triangles at their current places."""
+        here = tuple(np.flatnonzero(active[self._motion.agents]).tolist())
+        levels = self._levels(view, np.array(here, dtype=np.int64))
+        parts = self._building[0] + ([] if view.wall_tops else self._building[1]) + self._carried(here)
+        parts += self._wall_tops(view.wall_tops) if view.wall_tops else []
+        key = here, tuple(levels.tolist()), tuple((part.paint, part.code, len(part.mesh.corner)) for part in parts)
+        if self._fixed is None or key != self._present:
+            self._present, self._fixed = key, self._fixed_rows(here, levels, parts)
+        fixed = self._fixed
+        vertex, normal = np.empty((fixed.points, 3)), np.empty((fixed.points, 3))
+        self._place_shapes(vertex, normal)
+        first = 3 * self._static_count
+        posture = self._motion.posture() if here else None
+        for level in np.unique(levels).tolist():
+            assert posture is not None
+            rows = np.array(here, dtype=np.int64)[levels == level]
+            skins = _on_grid(self._motion.people.skin(posture, level, rows))
+            for row, k in enumerate(rows.tolist()):
+                skin = self._skins[level][k]
+                own = skins[row, skin.span]
+                last = first + len(own)
+                vertex_normals(own, skin.faces, normal[first:last])
+                vertex[first:last] = own
+                first = last
+        begin = first
+        for part in parts:
+            last = first + 3 * len(part.mesh.corner)
+            np.matmul(part.mesh.corner.reshape(-1, 3), part.turn.T, out=vertex[first:last])
+            vertex[first:last] += part.place
+            np.matmul(part.mesh.normal.reshape(-1, 3), part.turn.T, out=normal[first:last])
+            first = last
+        vertex[begin:], normal[begin:] = _on_grid(vertex[begin:]), _on_grid(normal[begin:])
+        return DrawList(vertex, normal, *fixed[:5], np.array(self._paints).reshape(-1, 6))
+
+    def _levels(self, view: CameraView, rows: Ints) -> Ints:
+        """Return the level of detail of people, by their height in the image."""
+        motion = self._motion
+        away = np.sqrt(np.sum((motion.state.position[rows] - view.place[:2]) ** 2, axis=1))
+        tall = motion.people.height[rows] * view.height / (view.top - view.bottom) / np.maximum(away, 0.1)
+        return np.asarray(np.maximum(self.detail, np.select([tall > SMALL[0], tall > SMALL[1]], [0, 1], 2)))
+
+    def _carried(self, here: tuple[int, ...]) -> list[_Part]:
+        """Return what people hold, push and wear."""
+        motion, found = self._motion, []
+        holders = [k for k in here if holds(motion.people, motion.state.blend, k)]
+        posture = motion.posture() if holders else None
+        for k in holders:
+            assert posture is not None
+            for part in carried_parts(
+                motion.people, posture, motion.state.yaw, motion.state.blend, k, k < len(motion.afoot)
+            ):
+                paint = self._paint(part.color, -1, 0.08)
+                found.append(_Part(part.mesh, part.turn, part.place, paint, int(motion.agents[k])))
+        return found
+
+    def _fixed_rows(self, here: tuple[int, ...], levels: Ints, parts: list[_Part]) -> _FixedRows:
+        """Return what does not change while the same people are there with the same things."""
+        points = 3 * self._static_count
+        rows = [(np.arange(points).reshape(-1, 3), self._uv, self._material_rows, self._closed, self._codes)]
+        for n in np.argsort(levels, kind="stable").tolist():
+            k, skin = here[n], self._skins[int(levels[n])][here[n]]
+            code = np.full(len(skin.faces), int(self._motion.agents[k]))
+            rows.append((skin.faces + points, skin.uv, skin.material, skin.closed, code))
+            points += skin.span.stop - skin.span.start
+        for part in parts:
+            count = len(part.mesh.corner)
+            faces = points + np.arange(3 * count).reshape(-1, 3)
+            closed = np.full(count, part.mesh.closed)
+            rows.append((faces, part.mesh.uv, np.full(count, part.paint), closed, np.full(count, part.code)))
+            points += 3 * count
+        faces, uv, material, closed, code = (np.concatenate(columns) for columns in zip(*rows, strict=True))
+        return _FixedRows(faces, uv, material, closed, code, points)
+
+    def _place_shapes(self, vertex: Floats, normal: Floats) -> None:
+        geoms = self._geoms
+        turn = _on_grid(self.data.geom_xmat[geoms]).reshape(-1, 3, 3)
+        place_shapes(
+            self._corner, self._slope, self._starts, turn, _on_grid(self.data.geom_xpos[geoms]), vertex, normal
+        )
+
+    def _wall_tops(self, width: float) -> list[_Part]:
+        """Return strips of ``width`` [m] on walls of boards, so that thin walls show from above."""
+        paint, found = self._paint(EDGE), []
+        for geom in self._geoms.tolist():
+            board = self.model.geom_type[geom] == engine().mjtGeom.mjGEOM_BOX
+            if board and self.model.geom(geom).name.startswith("wall/"):
+                half = self.model.geom_size[geom]
+                strip = box_mesh(np.array([half[0], max(0.5 * width, half[1]), 0.005]))
+                place = self.data.geom_xpos[geom] + (0.0, 0.0, half[2] + 0.005)
+                found.append(_Part(strip, self.data.geom_xmat[geom].reshape(3, 3), place, paint, WALL))
+        return found
+
+
+def _skin_of(people: People, row: int, detail: int, paint: int, wet: int) -> _Skin:
+    """Return the triangles of a person at a level of detail; ``wet`` is the paint of eyes."""
+    own, mesh = int(people.own_body[row]), people.mesh(detail)
+    if own >= 0:
+        whole = people.own[own].levels[detail]
+        return _Skin(mesh.vertex_span(own), whole.faces, whole.uv, np.full(len(whole.faces), paint), whole.closed)
+    level, every = mesh.included, shapes()
+    worn = np.flatnonzero(np.isin(level.face_part, worn_parts(people.outfits[row])))
+    hair = [every.parts.index(part) for part in ("hair_short", "hair_long", "skirt")]
+    material = np.where(level.face_region[worn] == every.regions.index("eyes"), wet, paint)
+    closed = ~np.isin(level.face_part[worn], hair)
+    return _Skin(mesh.vertex_span(-1), level.faces[worn], body_uv(detail)[worn], material, closed)
+
+
+def _on_grid(values: Floats) -> Floats:
+    return np.asarray(np.rint(values * STEP) / STEP)
+
+
+def _linear(color: Any) -> Floats:
+    """Return the linear colour of one from 0 to 1."""
+    return np.asarray(color, dtype=np.float64)[:3] ** 2
+
+
+def _stored_texture(model: Any, texture: int) -> NDArray[np.uint8]:
+    """Return a texture of a robot with sides that are powers of two, at most 1024."""
+    from PIL import Image
+
+    first, channels = int(model.tex_adr[texture]), int(model.tex_nchannel[texture])
+    high, wide = int(model.tex_height[texture]), int(model.tex_width[texture])
+    data = np.asarray(model.tex_data[first : first + high * wide * channels], dtype=np.uint8)
+    image = data.reshape(high, wide, channels)[..., :3]
+    image = np.repeat(image[..., :1], 3, axis=-1) if channels < 3 else image
+    across, down = (1 << min(10, max(0, (side - 1).bit_length())) for side in (wide, high))
+    return np.asarray(Image.fromarray(np.ascontiguousarray(image)).resize((across, down), Image.Resampling.BILINEAR))
