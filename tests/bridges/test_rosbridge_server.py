@@ -118,7 +118,7 @@ def test_the_client_role_joins_a_server_and_comes_back_after_its_death():
         server.stop()
         again = RosbridgeServer(port=server.port)
         again.start(empty, Inbox(empty))
-        found = answer_of(start_client(again.port, "look"))
+        found = answer_of(start_client(again.port, "look"))  # it waits for the services
         assert joined.connections == 2
         assert found["x"] > -4.5
         again.stop()
@@ -150,12 +150,17 @@ def test_who_may_connect():
     server.start(interface, Inbox(interface))
     answers = [
         asyncio.run(connect(server.port, **options))
-        for options in ({}, {"origin": "http://localhost:8080"}, {"origin": "https://evil.example"})
+        for options in ({}, {"origin": "http://localhost:8080"}, {"origin": "http://[::1]:80"})
+    ]
+    refused = [
+        asyncio.run(connect(server.port, origin=origin))
+        for origin in ("https://evil.example", "null", "", "file://", "http://[", "http://localhost.evil.example")
     ]
     with pytest.raises(InputError, match="rosbridge cannot listen on 127.0.0.1"):
         RosbridgeServer(port=server.port).start(interface, Inbox(interface))
     server.stop()
-    assert answers == ["service_response", "service_response", 403]
+    assert answers == ["service_response"] * 3
+    assert refused == [403] * 6
     server = RosbridgeServer(port=0, host="0.0.0.0", token="abc")
     server.start(interface, Inbox(interface))
     bearer = {"headers": {"Authorization": "Bearer abc"}}

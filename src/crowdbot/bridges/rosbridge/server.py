@@ -42,8 +42,8 @@ BATCH = 64
 class RosbridgeServer:
     """A rosbridge v2 server over WebSocket in a thread of its own.
 
-    It listens on the loopback interface. On another interface it needs a token or a list of allowed topics. Pages of
-    other sites cannot connect from a browser without the token.
+    It listens on the loopback interface. On another interface it needs a token or a list of allowed topics. Without the
+    token, a page in a browser can connect only if a server of this machine serves it; a page from a file cannot.
 
     Args:
         port: TCP port; 0: any free one, see :attr:`port` after :meth:`start`.
@@ -222,8 +222,8 @@ class RosbridgeServer:
         given = request.query.get("token", "") or bearer
         if self.token:
             return "" if hmac.compare_digest(given.encode(), self.token.encode()) else "the token is missing or wrong"
-        origin = urllib.parse.urlsplit(request.headers.get("Origin", "")).hostname
-        if origin is not None and not _is_loopback(origin):
+        origin = request.headers.get("Origin")
+        if origin is not None and not _is_local_page(origin):
             return "pages of other sites need a token"
         return ""
 
@@ -246,6 +246,17 @@ async def _send(socket: web.WebSocketResponse, session: ClientSession, news: asy
         count += 1
         if count % BATCH == 0:
             await asyncio.sleep(0)
+
+
+def _is_local_page(origin: str) -> bool:
+    """Return whether a page comes from a server of this machine.
+
+    A browser says ``null`` for a file, and for a page that another site shows in a frame without rights.
+    """
+    try:
+        return _is_loopback(urllib.parse.urlsplit(origin).hostname or "")
+    except ValueError:
+        return False
 
 
 def _is_loopback(host: str) -> bool:
