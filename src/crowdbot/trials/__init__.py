@@ -11,7 +11,7 @@ from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
     from .agent import Agent, AgentParameter, Avatar
-    from .builtin import load_trial
+    from .builtin import load_builtin_trial, load_trial
     from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
     from .cameras.camera import OVERVIEW, Camera, overview
     from .cameras.camera_remarks import camera_remarks
@@ -82,7 +82,7 @@ __getattr__, __dir__ = lazy_exports(
     __name__,
     {
         "agent": ["Agent", "AgentParameter", "Avatar"],
-        "builtin": ["load_trial"],
+        "builtin": ["load_builtin_trial", "load_trial"],
         "builtin_names": ["FLOWS", "SIZES", "builtin_trials", "trial_titles"],
         "cameras.camera": ["OVERVIEW", "Camera", "overview"],
         "cameras.camera_remarks": ["camera_remarks"],
@@ -260,6 +260,7 @@ __all__ = [
     "is_code",
     "joint_positions",
     "kind_of",
+    "load_builtin_trial",
     "load_layout",
     "load_trial",
     "map_files",

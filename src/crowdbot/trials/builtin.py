@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.resources
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from .trial import Trial
 from .variants import apply_values
 from .xml.trial_text import read_trial_bytes
 
-__all__ = ["load_trial"]
+__all__ = ["load_builtin_trial", "load_trial"]
 
 MODEL = "crowd/type"
 """Path of the crowd model in trial files: ``model`` is a parameter of every built-in trial with one crowd."""
@@ -47,27 +48,45 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
     'physics'
     """
     path = Path(source)
-    known = builtin_trials()
-    if str(source) in known and not path.is_file():
-        return _builtin(str(source), trust, values)
-    if not path.exists() and not path.suffix and len(path.parts) == 1:
-        meant = did_you_mean(str(source), known)
-        names = "crowdbot list trials lists the built-in trials" if meant else f"built-in trials are {', '.join(known)}"
-        raise TrialError(f"there is no trial {str(source)!r}{meant}; it is neither a file nor a built-in name; {names}")
+    if not path.is_file() and (str(source) in builtin_trials() or _is_plain_name(path)):
+        return load_builtin_trial(str(source), trust=trust, **values)
     trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return apply_values(trial, values, place=trial.name, trust=trust)
 
 
-def _builtin(name: str, trust: bool, values: dict[str, Any]) -> Trial:
+def _is_plain_name(path: Path) -> bool:
+    return not path.exists() and not path.suffix and len(path.parts) == 1
+
+
+def load_builtin_trial(name: str, *, trust: bool = False, folder: Path | None = None, **values: Any) -> Trial:
+    """Load a built-in trial, and never a file of this name.
+
+    Args:
+        name: name of the trial.
+        trust: whether the values may name files and code outside the folder.
+        folder: folder of files and code that the values name (default: the working folder).
+        values: as for :func:`load_trial`.
+
+    Raises:
+        TrialError: there is no such trial, or a value is wrong.
+
+    >>> load_builtin_trial("frontal").name
+    'frontal'
+    """
+    known = builtin_trials()
+    if name not in known:
+        meant = did_you_mean(name, known)
+        names = "crowdbot list trials lists the built-in trials" if meant else f"built-in trials are {', '.join(known)}"
+        raise TrialError(f"there is no trial {name!r:.200}{meant}; it is neither a file nor a built-in name; {names}")
     preset = PRESETS.get(name)
     if preset is None:
         inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")
-        trial = parse_trial(inside.read_bytes(), place=f"{name}.xml", trust=trust)
+        trial = parse_trial(inside.read_bytes(), place=f"{name}.xml", folder=folder, trust=trust)
         if not crowd_names(trial.crowd):
             values = {MODEL if key == "model" else key: value for key, value in values.items()}
         return apply_values(trial, values, place=trial.name, trust=trust)
     plain = {part.word for part in outline(Trial) if part.role == "attribute"} - {*preset.options}
     paths = {key: value for key, value in values.items() if set("/.[") & set(key) or key.replace("_", "-") in plain}
     own = {key: value for key, value in values.items() if key not in paths}
-    trial = preset.trial(**own)
+    trial = dataclasses.replace(preset.trial(folder, **own), folder=folder)
     return apply_values(trial, paths, place=trial.name, trust=trust)

@@ -6,9 +6,11 @@ import contextlib
 import math
 import os
 from pathlib import Path
+from typing import Any
 from xml.parsers import expat  # expat loads no external entity; declarations of entities are refused below
 
 from crowdbot.core import InputError
+from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, load_trial
 
 __all__ = ["SESSIONS", "Workspace", "shown_path"]
 
@@ -81,6 +83,20 @@ class Workspace:
     def trials(self) -> list[str]:
         """Return the names of the trial files, and of those that are no XML, which a user can mend."""
         return [name for name in self.files("*.xml") if _root(self.folder / name) in ("trial", "")]
+
+    def trial(self, name: str, **values: Any) -> Trial:
+        """Load a built-in trial or a trial file that may be read; values can name files of the same folder only.
+
+        Args:
+            name: name of the trial, or of the file with ``.xml``.
+            values: as for :func:`crowdbot.trials.load_trial`.
+
+        Raises:
+            InputError: there is no such trial, it is outside the folders, or it has errors.
+        """
+        if name.endswith(".xml") and name not in builtin_trials():
+            return load_trial(self.readable(name), **values)
+        return load_builtin_trial(name, folder=self.folder, **values)
 
     def size(self) -> int:
         """Return the size of all files of the folder, without those of other sessions [B]."""

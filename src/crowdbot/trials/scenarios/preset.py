@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from crowdbot import models, navigation
@@ -95,10 +96,11 @@ class Preset:
         """All parameters by name."""
         return {**self.own, **COMMON, "model": dataclasses.replace(COMMON["model"], default=self.model)}
 
-    def trial(self, **given: Any) -> Trial:
+    def trial(self, folder: Path | None = None, /, **given: Any) -> Trial:
         """Return the trial.
 
         Args:
+            folder: folder of the code that the model and the navigator may come from (default: the working folder).
             given: parameters (default: the defaults of the preset).
 
         Raises:
@@ -120,7 +122,7 @@ class Preset:
             raise TrialError(*problems)
         trial = self.make(**{name: values[name] for name in self.own})
         try:
-            trial = _with_common_options(trial, self, values)
+            trial = _with_common_options(trial, self, values, folder)
         except InputError as error:
             raise TrialError(f"{self.name}: {error}") from None
         if given:
@@ -128,13 +130,13 @@ class Preset:
         return trial
 
 
-def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
+def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any], folder: Path | None) -> Trial:
     """Return a trial with the parameters of every preset: model, navigator, robot, seed."""
     changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
     if values["model"] != BUILT:
-        changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
+        changes["crowd"] = find_class(values["model"], models, models.CrowdModel, folder=folder, trust=False)()
     robots: Iterable[RobotSpec] = trial.robots if values["robot"] else ()
-    found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)
+    found = find_class(values["navigator"], navigation, navigation.Navigator, folder=folder, trust=False)
     robots = [
         one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
     ]

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from crowdbot.core import InputError
-from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles, trial_xml
+from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, trial_titles, trial_xml
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows
 from crowdbot.web.draft_file import DraftFile
@@ -86,16 +86,13 @@ class EditorDesk(Desk):
     @command
     def start(self, trial: str = "", file: str = "") -> dict[str, Any]:
         """Open a built-in trial, a file of the session, or an empty trial; undo goes back to the trial before."""
-        if trial and trial not in builtin_trials():
-            load_trial(trial)  # raises the sentence with near names
-            raise InputError(f"{trial!r} is not a built-in trial")
         if file:
             path = self.session.workspace.readable(file)
             if path.stat().st_size > MOST_TEXT:
                 raise InputError(f"{file} is larger than {MOST_TEXT} bytes, the limit of the editor")
             text = path.read_text(encoding="utf-8", errors="replace")
         else:
-            text = trial_xml(load_trial(trial)) if trial else EMPTY
+            text = trial_xml(load_builtin_trial(trial)) if trial else EMPTY
         self._file = file or f"{trial or 'new-trial'}.xml"
         return self._apply(text)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from crowdbot.core import InputError
 from crowdbot.evaluation import EvaluationPlan, families_of, parse_methods, parse_seeds, parse_statistic, with_safety
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import builtin_trials, load_trial
+from crowdbot.trials import builtin_trials, load_builtin_trial, load_trial
 from crowdbot.web.jobs.job_forms import check_text
 from crowdbot.web.workspace import shown_path
 
@@ -50,7 +50,10 @@ class EvaluationRequest:
         check_text(self.navigators, "navigators")
         if not self.trials:
             raise InputError("an evaluation needs a trial")
-        found = [load_trial(one if one in builtin_trials() else str(_inside(folder, one))) for one in self.trials]
+        found = [
+            load_builtin_trial(one) if one in builtin_trials() else load_trial(_inside(folder, one))
+            for one in self.trials
+        ]
         statistics = [parse_statistic(name) for name in self.metrics]
         families = (*LOG_FAMILIES, *families_of([one.metric for one in statistics]))
         methods = parse_methods(self.navigators)
@@ -127,6 +130,6 @@ for cell in result.cells:
 def _inside(folder: Path, name: str) -> Path:
     path = (folder / name).resolve()
     if not path.is_relative_to(folder.resolve()) or path.suffix != ".xml":
-        load_trial(name) if not path.suffix else None  # raises the sentence with near names
+        load_builtin_trial(name) if not path.suffix else None  # raises the sentence with near names
         raise InputError(f"{name!r} is neither a built-in trial nor a trial file in the folder of the app")
     return path

@@ -15,7 +15,7 @@ from crowdbot.evaluation import (
     parse_statistic,
     write_report,
 )
-from crowdbot.trials import builtin_trials, load_trial
+from crowdbot.trials import builtin_trials, load_builtin_trial, load_trial
 from crowdbot.web.workspace import Workspace
 
 __all__ = ["RESULT", "cell_of_result", "import_result"]
@@ -67,7 +67,7 @@ def cell_of_result(cell: CellResult, space: Workspace) -> EvaluationCell:
     """
     name = cell.base or cell.trial
     if name in builtin_trials():
-        trial = load_trial(name)
+        trial = load_builtin_trial(name)
     else:
         files = [one for one in space.trials() if Path(one).stem == name]
         if not files:

@@ -16,7 +16,6 @@ from crowdbot.trials import (
     Trial,
     add_element,
     expand_sweeps,
-    load_trial,
     trial_remarks,
     trial_titles,
 )  # fmt: skip
@@ -290,10 +289,7 @@ class SimulatorDesk(PictureDesk):
             self.session.tell("simulator.status", self._status())
 
     def _load(self, name: str, values: dict[str, str], variant: int) -> Trial:
-        source: Any = name
-        if name.endswith(".xml"):
-            source = self.session.workspace.readable(name)
-        trial = load_trial(source, **values)  # type: ignore[arg-type]
+        trial = self.session.workspace.trial(name, **values)
         if trial.sweeps:
             variants = expand_sweeps(trial)
             if not 1 <= variant <= len(variants):

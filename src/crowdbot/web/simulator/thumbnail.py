@@ -17,7 +17,7 @@ from crowdbot.core import (
     draw_svg,
     without_running_code,
 )
-from crowdbot.trials import Trial, load_trial, trial_titles
+from crowdbot.trials import Trial, load_builtin_trial, load_trial, trial_titles
 
 from .trial_preview import trial_preview
 
@@ -70,4 +70,4 @@ def thumbnail(name: str, file: Path | None) -> bytes:
 def _builtin(name: str) -> bytes:
     if name not in trial_titles():
         raise KeyError(name)
-    return trial_thumbnail(load_trial(name)).encode()
+    return trial_thumbnail(load_builtin_trial(name)).encode()
