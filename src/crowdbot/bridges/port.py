@@ -68,6 +68,9 @@ class BridgePort:
     True
     """
 
+    labelled = True
+    """Whether readings say which agent each beam met."""
+
     def __init__(
         self,
         trial: Trial,
@@ -106,7 +109,7 @@ class BridgePort:
     def begin(self, simulation: Simulation) -> None:
         """Send the map and the first instant of a simulation that has begun."""
         trial = simulation.trial
-        self._steps = StepMessages(trial, {}, simulation)
+        self._steps = StepMessages(trial, {}, simulation, labelled=self.labelled)
         self._skipped = {one.name for one in self.interface.inputs}
         self._scene_every = simulation.world.clock.schedule(trial.recording.period)
         make, now = self._steps.make, simulation.world.clock.nanoseconds

@@ -29,12 +29,14 @@ class MeasuredReading(NamedTuple):
         sensor: the sensor.
         robot: name of the robot.
         topic: ``robot/sensor``, also the name of its frame.
+        labelled: whether the standard messages say which agent each beam or sector met.
     """
 
     reading: Any
     sensor: Any
     robot: str
     topic: str
+    labelled: bool = True
 
     @property
     def nanoseconds(self) -> int:

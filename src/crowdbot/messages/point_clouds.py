@@ -26,12 +26,16 @@ CLOUD = np.dtype(
         "itemsize": 28,
     }
 )
+LABEL = "label"
+"""Field with the id of the agent that was met."""
 SECTORS = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("depth", "<f4"), ("label", "<i4"), ("sector", "<u4")])
 
 
 def _message(make: Messages, told: MeasuredReading, rows: NDArray[Any]) -> Any:
-    """Return a cloud of ``[H, W]`` structured rows."""
+    """Return a cloud of ``[H, W]`` structured rows; without labels the others stay at their places."""
     height, width = rows.shape
+    if not told.labelled:
+        rows = _without_labels(rows)
     places = rows.dtype.fields
     assert places is not None
     fields = [
@@ -69,6 +73,14 @@ def points_in(message: Any) -> NDArray[Any]:
         }
     )
     return np.frombuffer(bytes(message.data), dtype=kind).reshape(message.height, message.width)
+
+
+def _without_labels(rows: NDArray[Any]) -> NDArray[Any]:
+    """Return rows of the same size in which the bytes of the label are 0 and no field."""
+    rows = rows.copy()
+    rows[LABEL] = 0
+    assert rows.dtype.names is not None
+    return rows[[name for name in rows.dtype.names if name != LABEL]]
 
 
 def _write_cloud(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:

@@ -144,7 +144,7 @@ def _write_scan(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
         range_min=float(getattr(sensor, "range_min", 0.0)),
         range_max=float(getattr(sensor, "range_max", math.inf)),
         ranges=reading.ranges[0].astype(np.float32),
-        intensities=reading.hit[0].astype(np.float32),
+        intensities=reading.hit[0].astype(np.float32) if told.labelled else np.zeros(0, dtype=np.float32),
     )
     return [("", scan)]
 

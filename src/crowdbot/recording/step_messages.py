@@ -70,6 +70,7 @@ class StepMessages:
         names: names of the robots by id.
         simulation: the simulation of the records, for joints; None: robots are in their postures.
         begin: tick of the first step.
+        labelled: whether readings say which agent each beam met, as recordings do.
 
     >>> from crowdbot.trials import load_trial
     >>> trial = load_trial("frontal", duration=1.0)
@@ -81,11 +82,16 @@ class StepMessages:
     """
 
     def __init__(
-        self, trial: Trial, names: Mapping[int, str], simulation: Simulation | None = None, begin: int = 0
+        self,
+        trial: Trial,
+        names: Mapping[int, str],
+        simulation: Simulation | None = None,
+        begin: int = 0,
+        labelled: bool = True,
     ) -> None:
         self.make = Messages()
         self.robots = RobotMessages(self.make, simulation)
-        self.names = dict(names)
+        self.names, self._labelled = dict(names), labelled
         clock = FreeClock(trial.step)
         self._markers = clock.schedule(trial.recording.markers)
         self._next_markers = self._markers.index(self._markers.next_due(begin))
@@ -124,7 +130,7 @@ class StepMessages:
         for message in self.robots.transforms(frame):
             yield "/tf", message
         for robot, mount, reading in frame.readings:
-            told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
+            told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}", self._labelled)
             if wants(f"/{told.topic}/"):
                 for ending, message in encode_reading(make, told):
                     yield f"/{told.topic}{ending}", message

@@ -41,7 +41,7 @@ class StackPort(BridgePort):
         trial: the trial.
         transports: connections to the software.
         robots: names of its robots.
-        truth: whether the topics with the truth are sent, too.
+        truth: whether the topics with the truth are sent, too, and readings say which agent each beam met.
 
     >>> from crowdbot.trials import load_trial
     >>> port = StackPort(load_trial("frontal"), [], ["robot"])
@@ -53,6 +53,7 @@ class StackPort(BridgePort):
         self, trial: Trial, transports: Sequence[Transport], robots: Sequence[str], truth: bool = False
     ) -> None:
         self.robots, self.truth = tuple(robots), truth
+        self.labelled = truth
         self._goals: dict[str, tuple[float, float]] = {}
         self._make = Messages()
         super().__init__(trial, transports)
