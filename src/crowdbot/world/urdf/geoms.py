@@ -148,7 +148,7 @@ class Geoms:
         for vertices, faces in bodies:
             name = f"{self.prefix}mesh{len(self.files)}"
             drawn = shown.uv is not None and mesh.colors is None and not collision
-            file = f"{name}.obj" if drawn else f"{name}.stl"
+            file = _file_name(name, "obj" if drawn else "stl")
             self.files[file] = _obj(vertices, faces, shown.uv) if drawn else _stl(vertices, faces)
             values = {"name": name, "file": file, "inertia": "convex" if collision else "shell"}
             if collision:
@@ -163,11 +163,17 @@ class Geoms:
         key = (texture.image, texture.color)
         if key not in self._materials:
             name = f"{self.prefix}texture{len(self.files)}"
-            self.files[f"{name}.png"] = texture.image
-            self.meshes.append(Element("texture", {"name": name, "type": "2d", "file": f"{name}.png"}))
+            file = _file_name(name, "png")
+            self.files[file] = texture.image
+            self.meshes.append(Element("texture", {"name": name, "type": "2d", "file": file}))
             self.meshes.append(Element("material", {"name": name, "texture": name, "rgba": row(texture.color)}))
             self._materials[key] = name
         return self._materials[key]
+
+
+def _file_name(name: str, ending: str) -> str:
+    """Return a file name for MuJoCo, which leaves out what stands before a slash: the prefix of the robot must stay."""
+    return f"{name.replace('/', '-')}.{ending}"
 
 
 def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
