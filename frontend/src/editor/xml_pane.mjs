@@ -5,7 +5,7 @@ const PAUSE = 400;
 
 export class XmlPane {
   constructor(root, model) {
-    Object.assign(this, { model, timer: 0, base: "", offline: false });
+    Object.assign(this, { model, timer: 0, base: "", sent: "", sending: false, offline: false });
     this.numbers = h("pre", { class: "numbers", "aria-hidden": "true" });
     this.area = h("textarea", { spellcheck: "false", "aria-label": "XML of the trial", wrap: "off", oninput: () => this.wait() });
     this.area.addEventListener("scroll", () => (this.numbers.scrollTop = this.area.scrollTop));
@@ -28,7 +28,8 @@ export class XmlPane {
   /** After the server was away: sends what was typed meanwhile, or asks if the trial has changed. */
   resume() {
     this.offline = false;
-    if (this.model.state.text === this.base) return void this.send();
+    const { text } = this.model.state;
+    if (text === this.base || text === this.sent) return void this.send(); // the last text may have arrived unanswered
     this.timer = 0;
     this.model.emit("conflict");
   }
@@ -55,14 +56,23 @@ export class XmlPane {
     this.count();
   }
 
+  /** Sends the text; while one is on its way, the pane waits for the answer, since it brings the next revision. */
   async send() {
     if (!this.timer) return;
     clearTimeout(this.timer);
+    if (this.sending) return;
     if (!this.model.connection.open) return void (this.offline = true);
     const text = this.area.value;
-    const done = await this.model.edit("write", { text });
+    this.sent = text;
+    this.sending = true;
+    const done = await this.model.edit("write", { text }).finally(() => (this.sending = false));
     if (!done && !this.model.connection.open) return void (this.offline = true);
-    if (this.area.value !== text) return;
+    if (done) this.base = text;
+    if (this.area.value !== text) {
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => this.send(), PAUSE);
+      return;
+    }
     this.timer = 0;
     if (!done) {
       // The trial was changed elsewhere: the typed text stays in the pane until it is sent on top of that change.
