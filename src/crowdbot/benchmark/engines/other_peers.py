@@ -100,13 +100,15 @@ class PySocialForcePeer(EnginePeer):
         root = logging.getLogger()
         level, handlers = root.level, list(root.handlers)
         logging.disable()  # its import writes a file, and prints the messages of every package
-        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-            self._module = import_optional("pysocialforce", "the comparison with PySocialForce", "peers")
-        logging.disable(logging.NOTSET)
-        root.setLevel(level)
-        for handler in [one for one in root.handlers if one not in handlers]:
-            root.removeHandler(handler)
-            handler.close()
+        try:
+            with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+                self._module = import_optional("pysocialforce", "the comparison with PySocialForce", "peers")
+        finally:  # also if the package is missing
+            logging.disable(logging.NOTSET)
+            root.setLevel(level)
+            for handler in [handler for handler in root.handlers if handler not in handlers]:
+                root.removeHandler(handler)
+                handler.close()
 
     @property
     def model(self) -> GroupForce:
