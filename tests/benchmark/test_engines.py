@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 import time
 from pathlib import Path
@@ -84,6 +85,7 @@ def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_pa
     assert found["million"]["seconds"] > 0.0
     assert found["million"]["megabytes"] > 50.0
     assert set(found["missing"]) == {"JuPedSim", "navground", "PySocialForce"}
+    assert logging.root.manager.disable == logging.NOTSET  # messages of others are silent only while one is imported
     assert "crowdbot: the comparison with JuPedSim needs the extra [peers]" in printed.err
     assert "alternate" in found["protocol"]
     page = (tmp_path / "page.md").read_text(encoding="utf-8")

@@ -13,7 +13,8 @@ from trial_texts import SHY
 URDF = """<robot name="mine"><link name="base_link"><inertial><mass value="5"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><geometry><box size="0.4 0.4 0.4"/></geometry></collision></link></robot>"""
-ROBOT = '<robot name="mine" urdf="mine.urdf"><footprint radius="0.3"/><drive type="differential-drive" max-speed="0.8"/></robot>'
+ROBOT = """<robot name="mine" urdf="mine.urdf"><footprint radius="0.3"/>
+<drive type="differential-drive" max-speed="0.8"/></robot>"""
 TRIAL = """<trial name="met" duration="4"><stage/><crowd type="orca"/><agent x="2" y="0" goal="-6,0"/>
 <robot name="a" type="{type}" x="-2" y="0"><goal x="6" y="0"/><navigator type="{navigator}"/></robot></trial>"""
 

@@ -138,16 +138,18 @@ class AppServer:
         finally:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
-            connected = runner.server
+            connections = [] if runner.server is None else runner.server.connections
+            transports = [connection.transport for connection in connections]
             await runner.cleanup()
             closing = [asyncio.wrap_future(DeskThread("closing").call(one.close)) for one in self.sessions.values()]
             if closing:  # a desk that is still busy then ends with the program
                 await asyncio.wait(closing, timeout=CLOSING)
             self.sessions.clear()
-            for _ in range(50):  # connections that windows have cut are closed by the loop
-                await asyncio.sleep(0.1)
-                if connected is None or not connected.connections:
-                    break
+            for transport in transports:  # a window that reads no longer would keep its connection open
+                if transport is not None:
+                    transport.abort()
+            for _ in range(5):  # the loop closes the sockets in its next turns
+                await asyncio.sleep(0)
 
     def application(self) -> web.Application:
         """Return the aiohttp application."""
