@@ -1,6 +1,7 @@
 # make demo     install into .venv and run the main job on built-in input
 # make docs     build the documentation as a site into site/; warnings are errors
-# make test     install what the tests need, then lint, types, import layers, tests and doctests
+# make test     install what the tests need, then lint, types, import layers, tests and doctests: the gate of every change
+# make live     the tests that need a real clock, a browser, another program, a port or a kill; a failure is repeated once
 # make test-room ROOM=core   the tests and doctests of one room
 # make sweeps   the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
 # make soak     the tests that take longer than CI allows, and 2000 mutated files of every kind
@@ -14,25 +15,29 @@ WORKERS ?= auto
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test test-room sweeps soak lint docs picture dist smoke rehearse clean
+.PHONY: demo test live test-room sweeps soak lint docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
 
 test: $(VENV)/installed-dev
-	tests/system-packages
+	tests/system-packages gate
 	$(MAKE) lint
-	$(PYTEST) $(PARALLEL) --doctest-modules src/crowdbot tests
+	$(PYTEST) $(PARALLEL) --cache-clear -o cache_dir=.pytest_cache/gate --doctest-modules src/crowdbot tests
+
+live: $(VENV)/installed-dev
+	tests/system-packages live
+	$(BIN)/python tools/live.py --workers $(WORKERS)
 
 test-room: $(VENV)/installed-dev
 	$(PYTEST) $(PARALLEL) --doctest-modules src/crowdbot/$(ROOM) $(wildcard tests/$(ROOM))
 
 sweeps: $(VENV)/installed-dev
-	tests/system-packages
+	tests/system-packages live
 	$(PYTEST) $(PARALLEL) -m "sweep and not soak"
 
 soak: $(VENV)/installed-dev
-	tests/system-packages
+	tests/system-packages live
 	$(PYTEST) $(PARALLEL) -m soak || test $$? -eq 5 # 5: no test has the marker
 	$(BIN)/python tools/fuzz_readers.py --count 2000
 

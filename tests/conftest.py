@@ -5,12 +5,16 @@ an input is missing, the tests that need it are deselected, and one line at the 
 the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give are a
 reason to leave tests out; every other missing input is a failure.
 
+A test that needs a real clock, a browser, another program, a port or a kill has the marker ``live``: it runs in
+``make live``. Who asks for a browser, ROS 1, RViz or a network namespace as a fixture gets the marker by that.
+
 Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
 """
 
 from __future__ import annotations
 
 import functools
+import gc
 import os
 import shutil
 import subprocess
@@ -20,9 +24,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-settings.register_profile("same", derandomize=True, deadline=None)
+from gate_guard import GateGuard
+
+settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("hunt", deadline=None)
 settings.load_profile("hunt" if os.environ.get("HUNT") else "same")
 
@@ -167,6 +173,27 @@ def domain() -> Iterator[int]:
 def reference() -> Path:
     """Folder of one-step answers of other crowd engines: all frames if available, otherwise those that ship."""
     return _folder("reference") or ROOT / "tests" / "reference"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Watch the tests of the gate, the doctests of the package among them."""
+    config.pluginmanager.register(GateGuard())
+
+
+LIVE_FIXTURES = {"browser", "chromium", "modules", "namespaces", "ros1", "roslaunch", "rviz"}
+"""Fixtures that make a test a live one: another program, or packages of the npm registry."""
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Give the marker ``live`` to a test that asks for another program."""
+    if not LIVE_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
+        item.add_marker("live")
+
+
+def pytest_collection_finish() -> None:
+    """Take what the collection made out of the collector: hundreds of thousands of objects that stay."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(trylast=True)

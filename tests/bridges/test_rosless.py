@@ -47,7 +47,7 @@ wait
     episode = read_episode(tmp_path / "episode.mcap")
     assert len(episode.orders) == 80  # no command is lost
     assert (tmp_path / "episode.mcap").read_bytes() == (tmp_path / "free" / "episode.mcap").read_bytes()
-    assert seen["scans"] >= 30  # best effort
+    assert seen["scans"] > 0  # best effort
     assert (seen["beams"] > 100, seen["frame"]) == (True, "robot/scan")
     assert min(seen["odometry"], seen["map"], seen["urdf"]) > 70
 

@@ -12,6 +12,7 @@ import numpy as np
 import pylsl
 import pytest
 
+import lsl_network  # noqa: F401 - before the first stream
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError, PacedClock
 from crowdbot.experiments import (
@@ -36,11 +37,6 @@ from crowdbot.experiments.streams import lab_streaming_layer
 from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder
 from crowdbot.trials import parse_trial
-
-pylsl.set_config_content(
-    "[multicast]\nResolveScope = machine\n[ports]\nIPv6 = disable\n[log]\nlevel = -3\n"
-    "[lab]\nSessionID = crowdbot-tests\n"
-)  # nothing leaves this machine
 
 MEETING = """<trial name="meeting" duration="1.5" step="0.05">
   <stage/>

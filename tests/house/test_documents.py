@@ -98,14 +98,14 @@ def test_commands_exist(page):
     assert named <= set(COMMANDS)
 
 
-def test_make_knows_the_two_commands():
-    for target in ("demo", "test"):
+def test_make_knows_the_commands_and_ci_runs_both_tiers():
+    for target in ("demo", "test", "live"):
         done = subprocess.run(
             ["make", "--dry-run", target], cwd=ROOT, capture_output=True, text=True, env={**os.environ, "MAKEFLAGS": ""}
         )
         assert done.returncode == 0, done.stderr
-        assert "crowdbot demo" in done.stdout or "pytest" in done.stdout
-    assert (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()[-2:] == ["make test", "exec make sweeps"]
+        assert {"demo": "crowdbot demo", "test": "pytest", "live": "tools/live.py"}[target] in done.stdout
+    assert "make test && make live && exit" in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
 
 
 def test_the_page_of_models_is_made_from_the_models():

@@ -24,13 +24,12 @@ from crowdbot.web import (
     command,
 )
 
-HANGS, GOES_ON = threading.Event(), threading.Event()
-
 
 class Counter(Desk):
     """Counts."""
 
     name = "counter"
+    hangs, goes_on = threading.Event(), threading.Event()
 
     def __init__(self, session):
         super().__init__(session)
@@ -59,8 +58,8 @@ class Counter(Desk):
 
     @command
     def hang(self) -> None:
-        HANGS.set()
-        GOES_ON.wait(180)
+        self.hangs.set()
+        self.goes_on.wait(180)
 
     @command
     def save(self, name: str, text: str) -> str:
@@ -289,18 +288,22 @@ def test_a_server_for_other_machines_takes_no_code(tmp_path):
     assert not (tmp_path / "files" / "mine.py").exists()
 
 
-def test_the_server_stops_while_a_command_runs(tmp_path):
+def test_the_server_stops_while_a_command_runs(tmp_path, monkeypatch):
+    hangs, goes_on = threading.Event(), threading.Event()
+    monkeypatch.setattr(Counter, "hangs", hangs)
+    monkeypatch.setattr(Counter, "goes_on", goes_on)
+
     async def talk(server, client):
         async with window(server, client) as (socket, _):
             await socket.send_json({"id": 1, "call": "counter.hang", "args": {}})
-            await asyncio.get_running_loop().run_in_executor(None, HANGS.wait)
+            await asyncio.get_running_loop().run_in_executor(None, hangs.wait)
             return True
 
     try:
         assert serve(tmp_path, talk)
         assert any(one.name == "crowdbot-counter" for one in threading.enumerate())
     finally:
-        GOES_ON.set()
+        goes_on.set()
 
 
 def test_a_port_in_use_is_told(tmp_path):

@@ -7,16 +7,14 @@ import time
 import pylsl
 import pytest
 
+import lsl_network  # noqa: F401 - before the first stream
 from crowdbot.cli import main
 from crowdbot.core import InputError
 from crowdbot.experiments import read_log, read_streams
 from crowdbot.web import AppSession, Workspace, with_streams
 from crowdbot.web.experiments import ExperimentDesk, StreamChoice
 
-pylsl.set_config_content(
-    "[multicast]\nResolveScope = machine\n[ports]\nIPv6 = disable\n[log]\nlevel = -3\n"
-    "[lab]\nSessionID = crowdbot-app-tests\n"
-)  # nothing leaves this machine
+pytestmark = [pytest.mark.live, pytest.mark.xdist_group("lsl")]
 
 
 @pytest.fixture

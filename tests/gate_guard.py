@@ -1,0 +1,103 @@
+"""Fails a test of the gate that depends on the machine it runs on, with the marker that it lacks.
+
+``make test`` is deterministic because its tests need no clock, port, network or other program. A process that the test
+waits for, such as a command of crowdbot, is allowed if the test says so with the marker ``program``.
+"""
+
+from __future__ import annotations
+
+import multiprocessing.util
+import socket
+import sys
+import threading
+import time
+import types
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+LONGEST_SLEEP = 0.1
+"""Longest sleep [s] in the thread of a test of the gate."""
+PROCESSES = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")
+ADDRESSES = ("socket.bind", "socket.connect", "socket.sendto")
+OUTSIDE = ("live", "sweep", "soak")
+
+
+class GateGuard:
+    """Plugin of pytest that watches processes, network addresses and sleeps."""
+
+    def __init__(self) -> None:
+        self._watching = False
+        self._program: list[str] = []
+        self._live: list[str] = []
+        sys.addaudithook(self._audit)  # stays to the end of the process
+        self._replace_sleep()
+        self._replace_spawn()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
+        """Begin to watch the test with its fixtures."""
+        self._program, self._live = [], []
+        self._watching = not any(item.get_closest_marker(name) for name in OUTSIDE)
+        return (yield)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Iterator[None]:
+        """Fail the test if it did what its markers do not say."""
+        try:
+            result = yield
+        finally:
+            self._watching = False
+        if self._live:
+            pytest.fail(missing("live", self._live), pytrace=False)
+        if self._program and not item.get_closest_marker("program"):
+            pytest.fail(missing("program", self._program), pytrace=False)
+        return result
+
+    def _audit(self, event: str, values: tuple[Any, ...]) -> None:
+        if not self._watching:
+            return
+        if event in PROCESSES and not is_importing():
+            words = list(values[1]) if event == "subprocess.Popen" else []
+            if words[:1] != ["uname"]:  # platform.processor(), once in a process
+                self._program.append(" ".join([event, *map(str, words)]))
+        elif event in ADDRESSES and values[0].family in (socket.AF_INET, socket.AF_INET6):
+            self._live.append(f"{event} {values[1]}")
+
+    def _replace_sleep(self) -> None:
+        sleep, main = time.sleep, threading.main_thread()
+
+        def watched_sleep(seconds: float) -> None:
+            if self._watching and seconds > LONGEST_SLEEP and threading.current_thread() is main:
+                self._live.append(f"time.sleep({seconds:g})")
+            sleep(seconds)
+
+        time.sleep = watched_sleep
+
+    def _replace_spawn(self) -> None:
+        """Processes of multiprocessing that are spawned raise no audit event."""
+        spawn = multiprocessing.util.spawnv_passfds
+
+        def watched_spawn(path: bytes, words: list[str], kept: list[int]) -> int:
+            if self._watching:
+                self._program.append("a process of multiprocessing")
+            return spawn(path, words, kept)
+
+        multiprocessing.util.spawnv_passfds = watched_spawn
+
+
+def is_importing() -> bool:
+    """Return whether a module is being imported: what a package does then comes with whichever test is first."""
+    frame: types.FrameType | None = sys._getframe(1)
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
+
+
+def missing(marker: str, seen: list[str]) -> str:
+    """Return the sentence that names the marker a test lacks and why it needs it."""
+    shown = "; ".join(dict.fromkeys(one[:200] for one in seen[:3]))
+    return f"a test of the gate needs @pytest.mark.{marker} for this: {shown} (see CONTRIBUTING.md, Tiers of tests)"
