@@ -180,7 +180,7 @@ def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(GateGuard())
 
 
-LIVE_FIXTURES = {"browser", "chromium", "modules", "namespaces", "ros1", "roslaunch", "rviz"}
+LIVE_FIXTURES = {"browser", "chromium", "domain", "modules", "namespaces", "ros1", "roslaunch", "rviz"}
 """Fixtures that make a test a live one: another program, or packages of the npm registry."""
 
 

@@ -12,6 +12,7 @@ def test_a_bridge_sends_scan_image_odometry_and_transforms_on_a_quarter_of_a_cor
     check(connection, bridge_load(connection, 5.0), 5.0)
 
 
+@pytest.mark.live
 def test_the_row_of_the_benchmark_is_the_share_of_a_core(monkeypatch):
     found = []
 

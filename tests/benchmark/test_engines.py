@@ -66,6 +66,7 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder.parent
 
 
+@pytest.mark.live
 @pytest.mark.usefixtures("no_packages")
 def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_path: Path, capsys) -> None:
     out = tmp_path / "engines.json"
@@ -95,6 +96,7 @@ def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_pa
     assert any("from source" in engine for engine in found["protocols"])
 
 
+@pytest.mark.live
 @pytest.mark.usefixtures("no_packages")
 def test_the_command_names_missing_engines_and_prints_a_table(capsys) -> None:
     assert main(["bench", "engines", "--quick", "--repeats", "1"]) == 0
@@ -139,6 +141,7 @@ def test_wrong_engine_options(capsys, words: list[str], message: str) -> None:
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.program
 def test_a_broken_source_is_told(source: Path) -> None:
     (source / "src" / "Agent.cc").write_text("void nothing( {", encoding="utf-8")
     with pytest.raises(InputError, match=r"cannot be compiled: .*error"):

@@ -91,6 +91,7 @@ def test_sizes_are_at_least_one():
         BenchmarkSizes(peer_worlds=0)
 
 
+@pytest.mark.live
 def test_a_rate_is_amount_by_time_and_prepare_is_not_timed():
     work = TimedWork(3.0, lambda: time.sleep(0.2), lambda state: time.sleep(0.02))
     rate = rates({"sleep": work}, repeats=3)["sleep"]

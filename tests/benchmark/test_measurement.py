@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 CODE = """
 import numpy as np
 from crowdbot.benchmark.speed.measurement import peak_memory
@@ -13,6 +15,7 @@ print(before, peak_memory())
 """
 
 
+@pytest.mark.program
 def test_peak_memory_counts_an_array_that_is_gone():
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)
     before, after = map(float, done.stdout.split())

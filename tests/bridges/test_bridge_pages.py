@@ -31,6 +31,7 @@ def test_every_transport_has_a_page():
     assert [one for one in titles if not one.startswith("# Your robot in a crowd in five minutes: ")] == []
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     "transport", ["rosbridge", "ros2", *(pytest.param(one, marks=pytest.mark.sweep) for one in ("foxglove", "tcp"))]
 )
@@ -38,6 +39,7 @@ def test_the_commands_of_a_page_drive_a_robot(transport, tmp_path):
     assert drive(transport, tmp_path) > 10
 
 
+@pytest.mark.live
 def test_the_commands_of_the_page_drive_a_robot_at_a_server_of_others(tmp_path):
     assert drive("rosbridge-client", tmp_path) > 10
 

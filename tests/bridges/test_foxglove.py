@@ -24,6 +24,8 @@ from crowdbot.messages import Messages
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
 
+pytestmark = pytest.mark.live
+
 TRIAL = load_trial("frontal", duration=2.0)
 SHORT = load_trial("frontal", duration=1.0)
 LONG = load_trial("frontal", **{"duration": 86400.0, "end/goal": "false", "end/collision": "false"})

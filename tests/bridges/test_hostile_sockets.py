@@ -17,6 +17,8 @@ from test_rosbridge_protocol import hostile_frame
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+pytestmark = pytest.mark.live
+
 PER_CLIENT = 1000
 """Frames of a client; then another one comes."""
 ENDLESS = ("--set", "duration=36000", "--set", "end/collision=false", "--set", "end/goal=false")

@@ -145,6 +145,7 @@ def join(tmp_path, bridge, *words):
     return main(["join", "frontal", "--area=-20,-20,20,20", "--bridge", bridge, "--out", str(tmp_path), *words])
 
 
+@pytest.mark.live
 def test_a_robot_with_a_rosbridge_server_drives_in_a_trial(tmp_path, capsys):
     robot = start_robot("rosbridge")
     port = robot.stdout.readline().strip()
@@ -163,6 +164,7 @@ def test_a_robot_with_a_rosbridge_server_drives_in_a_trial(tmp_path, capsys):
     assert replay(tmp_path / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_motion_capture_moves_the_avatar_of_a_robot_and_its_silence_stops_the_robot(tmp_path, capsys):
     run_bridge(
         load_trial("frontal", duration=0.2), [], clock=BridgeClock("free")
@@ -208,6 +210,7 @@ def end_after(motive, file, seconds):
     motive.join()
 
 
+@pytest.mark.live
 def test_a_lost_link_stops_the_robot(tmp_path, capsys):
     robot = start_robot("rosbridge", "1.5")
     port = robot.stdout.readline().strip()

@@ -71,6 +71,7 @@ def test_a_rigid_body_moves_a_robot_and_a_person_who_then_walks(tmp_path: Path) 
     assert captures[0].remarks()[0] == "twin: 9 samples, 10.0 Hz"
 
 
+@pytest.mark.live
 def test_a_live_stream_moves_a_person_in_real_time_and_the_episode_replays(tmp_path: Path) -> None:
     stream = open_stream("xsens:0")
     capture = MotionCapture(stream, [MotionBinding("guide", "Anna")])
@@ -90,6 +91,7 @@ def test_a_live_stream_moves_a_person_in_real_time_and_the_episode_replays(tmp_p
     assert replay(tmp_path / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_motive_moves_a_person_and_a_robot() -> None:
     with Motive() as motive:
         texts = [f"natnet:127.0.0.1:{motive.port}#{one}" for one in ("Anna=guide", "Cart=twin@1,0")]
@@ -106,6 +108,7 @@ def test_motive_moves_a_person_and_a_robot() -> None:
     assert robot.x == pytest.approx(1.0 + 0.5 * (person.x + 0.0), abs=0.05)
 
 
+@pytest.mark.live
 def test_the_example_sender_is_understood() -> None:
     script = Path(__file__).parents[2] / "examples" / "send_xsens.py"
     with open_stream("xsens:0") as stream:
@@ -148,6 +151,7 @@ def test_a_wrong_option_is_refused(
     assert message in str(caught.value)
 
 
+@pytest.mark.live
 def test_the_command_runs_a_trial_with_a_recording_and_with_a_live_stream(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

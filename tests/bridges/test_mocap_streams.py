@@ -105,6 +105,7 @@ def test_any_datagram_leaves_the_stream_working(data: bytes) -> None:
     assert "9" in stream.subjects()
 
 
+@pytest.mark.live
 def test_mutated_datagrams_leave_both_decoders_working_and_their_memory_bounded() -> None:
     rng = random.Random(3)
     motive = Motive()
@@ -140,6 +141,7 @@ def test_a_second_sender_is_refused_until_the_first_is_silent() -> None:
     assert stream.statistics().samples == 2
 
 
+@pytest.mark.live
 def test_a_port_in_use_is_an_error_and_the_stream_listens_on_loopback() -> None:
     with open_stream("xsens:0") as stream:
         assert isinstance(stream, XsensStream)
@@ -148,6 +150,7 @@ def test_a_port_in_use_is_an_error_and_the_stream_listens_on_loopback() -> None:
             XsensStream(port=stream.port).__enter__()
 
 
+@pytest.mark.live
 def test_samples_come_over_the_network_with_their_age() -> None:
     with open_stream("xsens:0") as stream:
         assert isinstance(stream, XsensStream)
@@ -207,6 +210,7 @@ def test_the_clock_offset_starts_anew_after_a_jump() -> None:
     assert offset.value == 6.0
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("version", [(3, 0), (3, 1), (4, 0), (4, 1), (4, 2)])
 @pytest.mark.parametrize("local", [False, True], ids=["global", "local"])
 def test_motive_streams_rigid_bodies_and_skeletons(version: tuple[int, int], local: bool) -> None:
@@ -221,6 +225,7 @@ def test_motive_streams_rigid_bodies_and_skeletons(version: tuple[int, int], loc
     assert np.arctan2(cart.rotation[0, 1, 0], cart.rotation[0, 0, 0]) == pytest.approx(0.5 * cart.time, abs=1e-4)
 
 
+@pytest.mark.live
 def test_motive_by_multicast_and_with_z_up() -> None:
     motive = Motive(multicast="239.255.42.99", up_axis=2)
     with motive, open_stream(f"natnet:127.0.0.1:{motive.port}") as stream:
@@ -230,6 +235,7 @@ def test_motive_by_multicast_and_with_z_up() -> None:
     np.testing.assert_allclose(cart.position[0], [1.0, 0.3, 0.5 * cart.time], atol=1e-5)
 
 
+@pytest.mark.live
 def test_a_server_that_does_not_answer_or_is_too_old_is_an_error() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as silent:
         silent.bind(("127.0.0.1", 0))
@@ -240,6 +246,7 @@ def test_a_server_that_does_not_answer_or_is_too_old_is_an_error() -> None:
         NatNetStream("127.0.0.1", motive.port, timeout=1.0).__enter__()
 
 
+@pytest.mark.live
 def test_the_fake_server_is_understood_by_an_independent_client() -> None:
     import natnet
 

@@ -95,6 +95,7 @@ def wait(reached, seconds=60.0):
         time.sleep(0.01)
 
 
+@pytest.mark.live
 def test_a_program_on_the_robot_sees_the_virtual_person_and_its_motion_moves_the_virtual_robot(tmp_path):
     with FakeRobot() as robot:
         bridge = NaoqiBridge(robot.url)
@@ -111,6 +112,7 @@ def test_a_program_on_the_robot_sees_the_virtual_person_and_its_motion_moves_the
     assert 0.6 < place[-1] < 2.2  # it has driven, and stopped before the person
 
 
+@pytest.mark.live
 def test_the_digest_in_odd_portions_is_that_of_a_free_run_and_all_sensors_are_written(tmp_path):
     with FakeRobot("still") as robot:
         driver = MemoryTransport([])
@@ -190,6 +192,7 @@ HELD = 0.08
 THIRTY, TEN_MINUTES = pytest.param(30, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
 def test_a_control_loop_of_20_hz_loses_no_command(seconds):
     """The program on the robot reads its memory and commands another velocity in each period."""
@@ -222,6 +225,7 @@ def test_a_control_loop_of_20_hz_loses_no_command(seconds):
     assert median < 0.05
 
 
+@pytest.mark.live
 def test_the_virtual_robot_is_where_the_odometry_of_the_real_one_ends():
     memory = OdometryMemory(TRUTH)
     with FakeRobot("idle") as robot:
@@ -312,6 +316,7 @@ def test_addresses_and_robots_that_do_not_fit():
         run_bridge(load_trial("frontal", duration=1.0), [NaoqiBridge("tcp://127.0.0.1:1")])
 
 
+@pytest.mark.live
 def test_a_robot_that_is_not_there_is_told(monkeypatch):
     monkeypatch.setattr("crowdbot.bridges.naoqi.bridge.STARTUP", 2.0)
     with pytest.raises(InputError, match="naoqi cannot connect to tcp://127.0.0.1:1"):

@@ -159,6 +159,7 @@ def check(seen):
     assert "commands" in seen["printed"]
 
 
+@pytest.mark.live
 @pytest.mark.usefixtures("local")
 @pytest.mark.parametrize(
     ("transport", "program"),
@@ -173,6 +174,7 @@ def test_a_node_drives_a_robot_around_a_pillar_to_its_goal(transport, program, t
     check(navigate(transport, program, tmp_path))
 
 
+@pytest.mark.live
 @pytest.mark.usefixtures("ros1")
 def test_a_node_of_ros1_drives_a_robot_around_a_pillar_to_its_goal(tmp_path):
     check(navigate("ros1", "navigate_ros1.py", tmp_path))

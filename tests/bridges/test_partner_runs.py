@@ -61,6 +61,7 @@ def check_kills(count, seen):
     assert (seen["outcome"], seen["equal"]) == ("interrupted", True)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("transport", HERE_ALONE)
 def test_time_in_odd_portions_gives_the_digest_of_a_free_run(transport, tmp_path):
     check_odd(odd(transport, 2, tmp_path))
@@ -80,6 +81,7 @@ def test_time_in_odd_portions_over_a_server_of_others(tmp_path):
     check_odd(odd("rosbridge-client", 2, tmp_path))
 
 
+@pytest.mark.live
 @LOOP
 @pytest.mark.parametrize("transport", HERE_ALONE)
 def test_a_control_loop_of_20_hz_loses_no_command(transport, seconds, tmp_path):
@@ -101,6 +103,7 @@ def test_a_control_loop_over_a_server_of_others_loses_no_command(seconds, tmp_pa
     check_loop("rosbridge-client", seconds, loop("rosbridge-client", seconds, tmp_path))
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("transport", ["rosbridge", "foxglove", "tcp", pytest.param("ros2", marks=pytest.mark.sweep)])
 def test_a_killed_program_leaves_a_robot_that_stops_and_a_whole_recording(transport, count, tmp_path):

@@ -60,6 +60,7 @@ class Driver(MemoryTransport):
             self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "ros1")
 
 
+@pytest.mark.live
 def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_is_that_of_a_free_run(master, tmp_path):
     with Running(TRIAL, [Ros1Node(master.url)], "commands", out=tmp_path) as running:
         process = master.open("ros1_robot.py", "60")
@@ -114,6 +115,7 @@ def test_the_tools_of_ros_see_topics_rates_and_parameters_and_call_the_services(
     assert [name for name, nodes in master.state()[0].items() if "/crowdbot" in nodes] == []
 
 
+@pytest.mark.live
 def test_a_bag_that_ros_records_holds_the_messages_with_their_types(master, tmp_path):
     bag, topics = tmp_path / "run.bag", ("/robot/scan", "/tf", "/map", "/people")
     recorder = master.open("rosbag", "record", "-O", str(bag), *topics)  # roscpp
@@ -170,6 +172,7 @@ def test_killed_programs_and_masters_are_noticed_and_connect_again(ros1, tmp_pat
     assert replay(tmp_path / "out" / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_another_trial_changes_the_topics(master):
     node, driver = Ros1Node(master.url), MemoryTransport([])
     with Running(load_trial("frontal", duration=1.0), [node, driver], "step"):
@@ -181,6 +184,7 @@ def test_another_trial_changes_the_topics(master):
         assert not node.wants("/robot/")
 
 
+@pytest.mark.live
 def test_hostile_connections_leave_the_node_working(master, capfd):
     rng = random.Random(3)
     node, driver = Ros1Node(master.url), MemoryTransport([])
@@ -208,6 +212,7 @@ def test_hostile_connections_leave_the_node_working(master, capfd):
     assert "Traceback" not in capfd.readouterr().err
 
 
+@pytest.mark.live
 def test_addresses_and_masters_that_are_not_there(monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")
     assert open_transport("ros1").master == "http://127.0.0.1:1"

@@ -38,6 +38,7 @@ def trial():
     return load_trial("frontal", duration=60.0)
 
 
+@pytest.mark.live
 def test_roslibpy_sees_topics_services_and_entities(trial):
     running, server = serve(trial)
     with running:
@@ -63,6 +64,7 @@ def control_loop(trial, count, out):
     return running, received, counts
 
 
+@pytest.mark.live
 def test_a_control_loop_of_roslibpy_loses_no_command(trial, tmp_path):
     running, received, counts = control_loop(trial, 100, tmp_path)
     assert (counts["sent"], received) == (100, 100)
@@ -105,6 +107,7 @@ def test_a_killed_client_leaves_a_robot_that_stops_and_a_whole_recording(trial, 
     assert replay(tmp_path / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_the_client_role_joins_a_server_and_comes_back_after_its_death():
     interface = RobotInterface.of(load_trial("frontal"))
     empty = RobotInterface(interface.trial, (), (), ())
@@ -124,6 +127,7 @@ def test_the_client_role_joins_a_server_and_comes_back_after_its_death():
         again.stop()
 
 
+@pytest.mark.live
 def test_a_client_needs_a_server():
     with pytest.raises(InputError, match="cannot join ws://127.0.0.1:9"):
         run_bridge(load_trial("frontal", duration=1.0), [RosbridgeClient("ws://127.0.0.1:9")])
@@ -142,6 +146,7 @@ async def connect(port, **options):
             return error.status
 
 
+@pytest.mark.live
 def test_who_may_connect():
     interface = RobotInterface.of(load_trial("frontal"))
     with pytest.raises(InputError, match="is open to everybody"):
@@ -170,6 +175,7 @@ def test_who_may_connect():
     assert answers == [403, 403, "service_response", "service_response"]
 
 
+@pytest.mark.live
 def test_a_client_that_does_not_read_holds_nobody_up():
     trial = load_trial("frontal", duration=20.0)
     server = RosbridgeServer(port=0)
@@ -202,6 +208,7 @@ def test_a_client_that_does_not_read_holds_nobody_up():
     assert max(waiting) <= 1
 
 
+@pytest.mark.live
 def test_a_frame_that_is_too_large_ends_only_its_own_connection():
     interface = RobotInterface.of(load_trial("frontal"))
     server = RosbridgeServer(port=0)

@@ -52,6 +52,7 @@ def failed(trial):
         return simulate(trial, 0)
 
 
+@pytest.mark.live
 def test_a_program_steps_the_run_and_the_replay_needs_none(tmp_path):
     trial = driven_trial(program("answer"))
     done = record(trial, 0, tmp_path)
@@ -63,6 +64,7 @@ def test_a_program_steps_the_run_and_the_replay_needs_none(tmp_path):
     assert simulate(trial, 0).digest == done.digest
 
 
+@pytest.mark.live
 def test_evaluate_scores_a_program_as_it_scores_a_navigator(tmp_path):
     fine, broken = driven_trial(program("answer"), 1.2), driven_trial(program("die"), 1.2)
     plan = EvaluationPlan(
@@ -77,6 +79,7 @@ def test_evaluate_scores_a_program_as_it_scores_a_navigator(tmp_path):
     assert more == {"decision_time", "decision_time_p99", "missed_deadlines"}  # orca has no deadline
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("mode", "values", "message"),
     [
@@ -91,6 +94,7 @@ def test_a_program_that_fails_fails_its_run(mode, values, message):
     assert 0.9 <= episode.failure.time <= 1.2
 
 
+@pytest.mark.live
 def test_a_program_that_never_comes_or_does_not_exist():
     episode = failed(driven_trial(RosbridgeNavigator(command="sleep 60", start=0.3)))
     assert "its program did not send a command within 0.3 s" in episode.failure.message
@@ -98,6 +102,7 @@ def test_a_program_that_never_comes_or_does_not_exist():
         simulate(driven_trial(RosbridgeNavigator(command="./nothing here")), 0)
 
 
+@pytest.mark.live
 def test_a_late_command_misses_the_deadline_and_the_replay_repeats_it(tmp_path):
     trial = driven_trial(program("late"), deadline=0.3)
     record(trial, 0, tmp_path)
@@ -106,6 +111,7 @@ def test_a_late_command_misses_the_deadline_and_the_replay_repeats_it(tmp_path):
     assert replay(tmp_path / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_evaluate_tells_compute_times_and_missed_deadlines_of_programs_and_navigators(tmp_path):
     trial = driven_trial(program("late"), 1.5, deadline=0.3)
     result = evaluate(EvaluationPlan([trial], parse_methods("own, orca"), seeds=[0]), tmp_path)
@@ -120,6 +126,7 @@ def test_evaluate_tells_compute_times_and_missed_deadlines_of_programs_and_navig
     }
 
 
+@pytest.mark.live
 def test_a_program_has_no_power_over_the_trial():
     episode = simulate(driven_trial(program("cheat"), 1.0), 0)
     assert (episode.outcome, episode.failure) == ("timeout", None)
@@ -132,6 +139,7 @@ def test_a_program_has_no_power_over_the_trial():
     assert {"/people", "/robot/ground_truth/odom"} <= {one.name for one in all_of_it.outputs}
 
 
+@pytest.mark.live
 def test_a_program_that_connects_by_itself_stays_for_several_runs():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -148,6 +156,7 @@ def test_a_program_that_connects_by_itself_stays_for_several_runs():
     assert first.failure is None
 
 
+@pytest.mark.live
 def test_the_reference_node_is_scored_over_rosbridge():
     command = f"{sys.executable} {EXAMPLES / 'navigate_rosbridge.py'} --port {{port}}"
     episode = simulate(driven_trial(RosbridgeNavigator(command=command), 3.0, control_period=0.1), 0)
@@ -155,6 +164,7 @@ def test_the_reference_node_is_scored_over_rosbridge():
     assert abs(episode.position[-1, episode.robots[0], 0] - episode.position[0, episode.robots[0], 0]) > 0.8
 
 
+@pytest.mark.live
 def test_the_reference_node_is_scored_over_ros2(monkeypatch, tmp_path):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     command = f"{sys.executable} {EXAMPLES / 'navigate_ros2.py'}"

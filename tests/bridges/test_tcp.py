@@ -55,6 +55,7 @@ def numbers(text):
     return [float(word) for word in text.replace("(", "").replace(")", "").split()]
 
 
+@pytest.mark.live
 def test_a_client_drives_in_lock_step(tmp_path):
     trial = load_trial("frontal", duration=2.5)
     running, server = run_server(trial, tmp_path)
@@ -82,6 +83,7 @@ def test_a_client_drives_in_lock_step(tmp_path):
     assert replay(tmp_path / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_a_reset_begins_again_and_robots_are_named():
     running, server = run_server(load_trial("frontal", duration=4.0))
     with running:
@@ -101,6 +103,7 @@ SEEING = """<trial name="seeing" duration="3"><stage><wall points="6,-4 6,4" /><
 </trial>"""
 
 
+@pytest.mark.live
 def test_the_picture_of_a_camera_is_a_jpeg_file_as_the_clients_read_it():
     running, server = run_server(parse_trial(SEEING, place="seeing"))
     with running:
@@ -114,6 +117,7 @@ def test_the_picture_of_a_camera_is_a_jpeg_file_as_the_clients_read_it():
     assert pictures[0].tobytes() != pictures[1].tobytes(), "the robot has moved"
 
 
+@pytest.mark.live
 def test_a_robot_without_a_camera_sends_what_the_challenge_sent_before_the_first_picture():
     running, server = run_server(load_trial("frontal", duration=1.0))
     with running:

@@ -55,6 +55,7 @@ def fed(*chunks: bytes) -> VrpnStream:
     return stream
 
 
+@pytest.mark.live
 def test_the_poses_of_a_tracker_come_with_their_time() -> None:
     with VrpnServer() as server, open_stream(f"vrpn:127.0.0.1:{server.port}") as stream:
         wait_for(lambda: stream.statistics("Cart").samples > 5)
@@ -78,6 +79,7 @@ while time.monotonic() < end:
 """
 
 
+@pytest.mark.live
 def test_the_sender_is_understood_by_the_library_of_vrpn() -> None:
     with VrpnServer() as server:
         words = [sys.executable, "-c", READ, str(server.port)]
@@ -88,6 +90,7 @@ def test_the_sender_is_understood_by_the_library_of_vrpn() -> None:
     assert 2.0 * math.atan2(turn_z, turn_w) == pytest.approx(x, abs=1e-4)  # it turns by x
 
 
+@pytest.mark.live
 def test_a_lost_connection_is_made_again() -> None:
     with VrpnServer() as server, open_stream(f"vrpn:127.0.0.1:{server.port}") as stream:
         wait_for(lambda: stream.statistics("Cart").samples > 5)
@@ -98,6 +101,7 @@ def test_a_lost_connection_is_made_again() -> None:
         assert "closed the connection" in stream.statistics().reason
 
 
+@pytest.mark.live
 def test_a_killed_server_and_another_one_at_its_place() -> None:
     with VrpnServer() as server:
         port = server.port
@@ -112,6 +116,7 @@ def test_a_killed_server_and_another_one_at_its_place() -> None:
         stream.__exit__(None, None, None)
 
 
+@pytest.mark.live
 def test_a_server_that_is_not_there_or_no_vrpn_is_an_error() -> None:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -178,6 +183,7 @@ def test_mutated_bytes_leave_the_stream_working_and_its_memory_bounded() -> None
     assert refused > 300
 
 
+@pytest.mark.live
 def test_the_command_moves_a_robot_by_a_vrpn_server_and_the_episode_replays(tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "led.xml").write_text(TEXT.format(1.0))

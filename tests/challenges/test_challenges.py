@@ -82,6 +82,7 @@ def crowdbot(*words: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
 
 
+@pytest.mark.live
 def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: Path) -> None:
     file = tmp_path / "small.toml"
     own = () if SANDBOX else ("--no-sandbox",)
@@ -113,6 +114,7 @@ def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: 
     assert "http" not in page
 
 
+@pytest.mark.live
 def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
     challenge = load_challenge(tmp_path / "small.toml")
     entry, _, _ = enter(challenge, load_submission(folder), sandbox=SANDBOX)
@@ -130,6 +132,7 @@ def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
     assert not load_entry(tmp_path / "again" / "entry.json").verified
 
 
+@pytest.mark.live
 def test_code_that_looks_for_the_seeds_fails(folder: Path, tmp_path: Path) -> None:
     write_description(folder, navigator="mine.py:Curious", name="curious")
     if not SANDBOX:

@@ -8,6 +8,7 @@ from crowdbot.recording import read_episode
 RUN = ["run", "frontal", "--set", "duration=1"]
 
 
+@pytest.mark.live
 def test_a_run_with_a_bridge_is_recorded(tmp_path, capsys):
     options = ["--bridge", "rosbridge:0", "--clock", "free", "--out", str(tmp_path), "--seed", "3"]
     assert main([*RUN, *options]) == 0

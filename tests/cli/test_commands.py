@@ -78,6 +78,7 @@ def test_run_records_and_replay_agrees(capsys, tmp_path):
 BRIEF = ["run", "crossing-flows", "--set", "duration=4", "--seed"]
 
 
+@pytest.mark.program
 def test_the_digest_is_the_same_in_another_process(capsys):
     here = _json(capsys, *BRIEF, "2")
     again = _json(capsys, *BRIEF, "2")
@@ -87,6 +88,7 @@ def test_the_digest_is_the_same_in_another_process(capsys):
     assert here["metrics"] == there["metrics"]
 
 
+@pytest.mark.program
 def test_one_thread_gives_the_same_digest(capsys):
     here = _json(capsys, *BRIEF, "2")
     alone = {**os.environ, "NUMBA_NUM_THREADS": "1"}
@@ -156,12 +158,14 @@ def test_a_user_adds_a_predictor_in_one_file(capsys, tmp_path, monkeypatch, reco
     assert (total["ade"], total["fde"]) == (pytest.approx(2.50, abs=0.01), pytest.approx(4.59, abs=0.01))
 
 
+@pytest.mark.program
 def test_output_may_end_early():
     done = subprocess.run(f"{sys.executable} -m crowdbot list | head -1", shell=True, capture_output=True, text=True)
     assert done.returncode == 0
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.program
 def test_json_is_all_that_stands_on_stdout(tmp_path):
     done = _program("run", "crossing-flows", "--json", "--out", str(tmp_path / "a b"), check=True)
     assert json.loads(done.stdout)["episode"] == str(Path(tmp_path / "a b" / "episode.mcap"))

@@ -58,6 +58,7 @@ def test_repair(capsys, episode, tmp_path):
     assert _json(capsys, "replay", str(cut))["equal"] is True
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("world", sample(["physics", "planar"], 1))
 def test_ctrl_c_keeps_what_is_done(capsys, tmp_path, world):
     words = ["run", "crossing-flows", "--world", world, "--out", str(tmp_path), "--pace", "2", "--json"]

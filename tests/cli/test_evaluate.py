@@ -81,6 +81,7 @@ def test_wrong_input_is_told_in_a_sentence(words: list[str], message: str, capsy
     assert "Traceback" not in error
 
 
+@pytest.mark.live
 def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = [
         "evaluate",

@@ -195,6 +195,7 @@ def _digests(out):
     return [record["digest"] for record in map(json.loads, lines) if record.get("event") == "finish"]
 
 
+@pytest.mark.live
 def test_ctrl_c_holds_a_trial_and_lets_it_go_on_unchanged(tmp_path):
     folder, out = _slow_experiment(tmp_path), tmp_path / "out"
     program = Program(folder, out)
@@ -228,6 +229,7 @@ def read_seed(out, name):
     return read_episode(out / "participant-001" / name / "episode.mcap").seed
 
 
+@pytest.mark.live
 def test_a_session_that_is_killed_and_left_comes_to_the_same_end(tmp_path, capsys):
     folder, out = _slow_experiment(tmp_path), tmp_path / "out"
     path = tmp_path / "answers.json"

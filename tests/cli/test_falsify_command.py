@@ -73,6 +73,7 @@ def _hear_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_ctrl_c_keeps_what_is_done_and_the_same_command_continues(
     cross: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], workers: str

@@ -34,6 +34,7 @@ def imported(*words: str) -> set[str]:
     return set(done.stdout.split())
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("words", [("list", "trials"), ("list", "trials", "--json"), ("--help",), ("--version",)])
 def test_names_are_printed_without_importing_what_they_name(words: tuple[str, ...]) -> None:
     modules = imported(*words)
@@ -41,6 +42,7 @@ def test_names_are_printed_without_importing_what_they_name(words: tuple[str, ..
     assert modules & {*HEAVY, *UNBUILT} == set()
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("word", ["--help", "--version"])
 def test_help_and_version_do_not_import_numpy(word: str) -> None:
     assert modules_of_numpy(imported(word)) == set()

@@ -100,6 +100,7 @@ def test_what_is_written_keeps_its_contract(lab, kind):
     assert check() is None
 
 
+@pytest.mark.program
 def test_the_contract_test_of_a_fresh_file_runs_by_the_printed_command(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(SOURCES)}
 
@@ -126,6 +127,7 @@ def test_the_printed_command_runs(steps, capsys, kind):
     assert "Traceback" not in err
 
 
+@pytest.mark.program
 def test_the_printed_command_of_a_challenge_runs_its_submission(steps, tmp_path, capsys):
     words = shlex.split(steps["challenge"].replace("SUBMISSION", f"{LAB}/quiet"))
     assert words == shlex.split(steps["submission"].replace("CHALLENGE", f"{LAB}/door.toml"))

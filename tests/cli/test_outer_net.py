@@ -36,6 +36,7 @@ def fail(error, words=("list",), **options):
     return run([sys.executable, "-c", BUG.format(error=error, words=list(words))], **options)
 
 
+@pytest.mark.program
 def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
     done = fail("ZeroDivisionError('nothing\\nto divide')", environment={"TMPDIR": str(tmp_path), "CROWDBOT_DEBUG": ""})
     assert done.returncode == 1
@@ -52,6 +53,7 @@ def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
     assert "ZeroDivisionError: nothing\nto divide" in trace.read_text()
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     ("words", "environment"),
     [(["--debug", "list"], {}), (["list", "--debug"], {}), (["list"], {"CROWDBOT_DEBUG": "1"})],
@@ -65,6 +67,7 @@ def test_debug_prints_the_trace(words, environment, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.program
 def test_without_a_temporary_folder_the_trace_is_printed():
     change = "__import__('tempfile').tempdir = '/nowhere/at/all'\n"
     program = change + BUG.format(error="KeyError('x')", words=["list"])
@@ -73,6 +76,7 @@ def test_without_a_temporary_folder_the_trace_is_printed():
     assert done.stderr.startswith("Traceback (most recent call last)")
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     ("error", "status", "message"),
     [
@@ -88,6 +92,7 @@ def test_errors_of_the_user_and_the_system_have_a_sentence_and_a_status(error, s
     assert (done.returncode, done.stderr) == (status, message)
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("words", [["list"], ["--help"], ["list", "--help"], ["--version"]])
 def test_a_reader_that_ends_early_is_no_error(words):
     reader, writer = os.pipe()
@@ -97,6 +102,7 @@ def test_a_reader_that_ends_early_is_no_error(words):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.program
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
 @pytest.mark.parametrize("closed", sample(["<&- >&- 2>&-", "<&-", ">&-", "2>&-"], 1))
 def test_closed_streams_are_no_error(closed):
@@ -105,6 +111,7 @@ def test_closed_streams_are_no_error(closed):
     assert ("orca" in done.stdout) == (">&-" not in closed.replace("2>&-", ""))
 
 
+@pytest.mark.program
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
 def test_files_are_not_written_into_closed_streams(tmp_path):
     trial = tmp_path / "t.xml"
@@ -113,6 +120,7 @@ def test_files_are_not_written_into_closed_streams(tmp_path):
     assert trial.read_text().startswith("<?xml")
 
 
+@pytest.mark.program
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a file of Linux")
 @pytest.mark.parametrize("words", [["list"], ["cite", "orca"]])
 def test_a_full_disk_behind_the_output_is_one_sentence(words):
@@ -121,6 +129,7 @@ def test_a_full_disk_behind_the_output_is_one_sentence(words):
     assert (done.returncode, done.stderr) == (2, "crowdbot: standard output: No space left on device\n")
 
 
+@pytest.mark.program
 def test_an_output_of_ascii_prints_question_marks():
     done = run(
         [sys.executable, "-c", BUG.format(error="SystemExit(print('Molnár'))", words=["list"])],
@@ -129,6 +138,7 @@ def test_an_output_of_ascii_prints_question_marks():
     assert (done.returncode, done.stdout, done.stderr) == (0, "half the output\nMoln?r\n", "")
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("words", [["list"], ["cite", "social-force"], ["--help"], ["validate", "--help"]])
 def test_commands_print_to_an_output_of_ascii(words):
     done = crowdbot(*words, environment={"PYTHONIOENCODING": "ascii"})

@@ -59,6 +59,7 @@ def written(folder):
     return {path.name for path in folder.rglob("*") if path.is_file()} - {"walk.txt"}
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("words", [["trial", "t.xml"], ["navigator", "t.py"], ["schema", "t.xsd"], ["robot", "t"]])
 def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
     done = run_limited(tmp_path, 200, "new", *words)
@@ -69,6 +70,7 @@ def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
+@pytest.mark.program
 def test_a_device_is_not_replaced(tmp_path):
     device = tmp_path / "device"
     os.mkfifo(device)
@@ -80,6 +82,7 @@ def test_a_device_is_not_replaced(tmp_path):
     assert stat.S_ISFIFO(device.stat().st_mode)
 
 
+@pytest.mark.program
 def test_a_copy_of_a_recording_on_a_full_disk_is_one_sentence_and_leaves_no_file(folder):
     (folder / "trials").mkdir()
     done = run_limited(folder, 200, "new", "trial", "trials/t.xml", "--recorded", "walk.txt")
@@ -96,6 +99,7 @@ FULL = {
 }
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("command", sample(FULL, 2))
 def test_a_full_disk_is_one_sentence_that_names_the_file(folder, command):
     limit, words, what = FULL[command]
@@ -141,6 +145,7 @@ def test_a_trial_in_a_place_that_cannot_be_written_is_one_sentence(folder, monke
     assert written(folder) == set()
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("streams", sample(["<&-", "</dev/null", "<&- >&-"], 1))
 def test_an_experiment_without_an_input_waits_in_one_sentence(folder, streams):
     command = f"{sys.executable} -m crowdbot experiment run robot-speed --participant 1 --out out {streams}"
@@ -151,6 +156,7 @@ def test_an_experiment_without_an_input_waits_in_one_sentence(folder, streams):
     assert "session.jsonl" in written(folder)
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("words", sample([PREDICT, ("run", "frontal", *SHORT)], 1), ids=["predict", "run"])
 @pytest.mark.parametrize("closed", sample(["<&- >&- 2>&-", ">&-"], 1))
 def test_commands_end_well_with_closed_streams(folder, words, closed):
@@ -162,6 +168,7 @@ def test_commands_end_well_with_closed_streams(folder, words, closed):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.program
 def test_questions_are_printed_to_an_output_of_ascii(folder):
     words = ("experiment", "run", "robot-speed", "--participant", "1", "--out", "out")
     done = run(folder, "-m", "crowdbot", *words, text="30\n", PYTHONIOENCODING="ascii")
@@ -182,6 +189,7 @@ def hear_ctrl_c():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("workers", sample(["1", "2"], 1))
 def test_predict_ends_soon_on_ctrl_c(folder, workers):
     rows = (f"{10 * k}\t{who}\t{0.5 * k + 0.01 * who}\t{0.7 * who}\n" for k in range(2000) for who in range(1, 40))

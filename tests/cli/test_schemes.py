@@ -77,6 +77,7 @@ def test_every_frame_is_a_line_and_the_table_comes_last(capsys, street):
     assert "kalman" in told.out
 
 
+@pytest.mark.program
 def test_workers_and_a_second_run_give_the_same_numbers(capsys, street, tmp_path):
     words = ["predict", "--data", street, "--predict", "3", "--predictor", "simulated", *SCHEME]
     one = _json(capsys, *words)
@@ -117,6 +118,7 @@ def plaza(tmp_path):
     return str(file)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("workers", sample(["2", "1"], 1))
 def test_a_stopped_run_goes_on_where_it_was(plaza, tmp_path, workers):
     words = ["predict", "--data", plaza, "--fps", "25", "--predictor", "simulated", "--cost", "progressive"]
@@ -161,6 +163,7 @@ def test_goals_priors_and_shared_parameters_are_learned_from_the_first_part(caps
     assert shared["total"]["ade"] < plain["total"]["ade"]
 
 
+@pytest.mark.program
 def test_calibrate_writes_parameters_and_a_prior_that_predict_takes(capsys, street, tmp_path):
     words = ["calibrate", "--data", street, "--model", "orca", "--search", "random-search", "--budget", "20"]
     found = _json(capsys, *words, "--out", str(tmp_path))

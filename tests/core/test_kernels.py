@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 PROGRAM = """
 import sys
 from crowdbot.core import kernels
@@ -39,11 +41,13 @@ def _run(folder, program=PROGRAM, *words):
     return done.stdout.split() if program == PROGRAM else done.stderr
 
 
+@pytest.mark.program
 def test_cold_then_warm(tmp_path):
     assert _run(tmp_path) == ["True", "False", "0"]
     assert _run(tmp_path) == ["False", "False", "1"]
 
 
+@pytest.mark.program
 def test_who_waits_for_kernels_of_ours_is_told_once_and_why(tmp_path):
     told = _run(tmp_path, TOLD, "plain")
     assert told.startswith("a first run: compiling kernels once, into " + str(tmp_path))

@@ -65,6 +65,7 @@ def results(*words, **environment):
     return {word: value for _, word, *value in lines}
 
 
+@pytest.mark.program
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 @pytest.mark.parametrize("layer", LAYERS)
 def test_forks_and_threads_get_the_same_bytes(layer):
@@ -82,12 +83,14 @@ def test_every_layer_and_number_of_threads_gives_the_same_bytes():
     assert all(other == found[0] for other in found)
 
 
+@pytest.mark.program
 def test_tbb_is_found_in_its_wheel_and_gives_the_bytes_of_one_thread():
     found = results("work", "layer")
     assert found["layer"] == ["tbb"]
     assert found["work"] == results("work", NUMBA_THREADING_LAYER="workqueue", NUMBA_NUM_THREADS="1")["work"]
 
 
+@pytest.mark.program
 def test_workqueue_is_taken_if_there_is_no_tbb(monkeypatch, tmp_path):
     program = tmp_path / "without_tbb.py"
     program.write_text(
@@ -105,6 +108,7 @@ def test_workqueue_is_taken_if_there_is_no_tbb(monkeypatch, tmp_path):
     assert len(done[0].split()) == 3
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("layer", sample(LAYERS, 1))
 def test_other_kernels_call_parallel_ones(layer, tmp_path):
     program = tmp_path / "nested.py"
@@ -113,12 +117,14 @@ def test_other_kernels_call_parallel_ones(layer, tmp_path):
     assert printed == ["[1.0, 3.0, 5.0, 7.0]", "[-1.0, 2.0, 4.0, 6.0] double None True"]
 
 
+@pytest.mark.program
 def test_without_the_compiler_a_kernel_is_the_function_itself(tmp_path):
     program = tmp_path / "nested.py"
     program.write_text(NESTED)
     assert run(program, NUMBA_DISABLE_JIT="1").startswith("[1.0, 3.0, 5.0, 7.0]\n")
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("given", sample(["omp workqueue tbb", None], 1))
 def test_an_order_of_layers_given_by_the_user_stays(given, tmp_path):
     program = tmp_path / "order.py"
@@ -148,6 +154,7 @@ def test_a_library_that_does_not_load_is_left_out(monkeypatch, tmp_path):
     assert tried == [broken.name]
 
 
+@pytest.mark.live
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 def test_a_fork_waits_for_kernels_of_other_threads_but_not_for_ever(monkeypatch):
     monkeypatch.setattr(threading_layer, "PATIENCE", 0.2)

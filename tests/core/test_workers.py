@@ -36,6 +36,7 @@ def refuses(number: int) -> int:
     raise InputError(f"{number} is refused")
 
 
+@pytest.mark.program
 def test_every_job_is_done_once_whatever_the_number_of_workers() -> None:
     jobs = list(range(7))
     expected = [(number, number * number) for number in jobs]
@@ -44,16 +45,19 @@ def test_every_job_is_done_once_whatever_the_number_of_workers() -> None:
     assert list(each(square, [], workers=2)) == []
 
 
+@pytest.mark.live
 def test_a_killed_process_loses_its_own_job_only_and_that_is_tried_again(tmp_path: Path) -> None:
     jobs = [str(tmp_path / name) for name in ("one", "victim", "three")]
     assert sorted(each(dies_once, jobs, workers=2)) == [(0, "one"), (1, "victim"), (2, "three")]
 
 
+@pytest.mark.live
 def test_a_job_that_always_kills_is_given_up() -> None:
     with pytest.raises(CrowdbotError, match=r"2 of 2 jobs were lost: their processes died 3 times"):
         list(each(dies, [1, 2], workers=2))
 
 
+@pytest.mark.live
 def test_errors_of_jobs_arrive() -> None:
     for count in (1, 2):
         with pytest.raises(InputError, match="is refused"):
@@ -163,6 +167,7 @@ def test_a_cluster_of_the_caller_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (ray.options["num_cpus"], ray.runs) == (3, True)
 
 
+@pytest.mark.live
 def test_an_address_where_nobody_answers_is_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     ray = FakeRay()
     monkeypatch.setattr(workers, "import_optional", lambda *words: ray)

@@ -76,6 +76,7 @@ def fuzz(count, seed, *kinds):
     return subprocess.run([*tool, "--only", *kinds], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.program
 @linux
 def test_a_sample_of_mutated_files_is_read_or_rejected():
     kinds = ("npz", "mcap", "maps", "sessions")
@@ -95,6 +96,7 @@ def test_mutated_files_are_read_or_rejected(kind):
     assert int(done.stdout.splitlines()[-1].split()[3]) > 0
 
 
+@pytest.mark.program
 @linux
 def test_a_run_continues_from_its_state_and_a_file_is_repeated(tmp_path):
     state = tmp_path / "state.json"

@@ -180,6 +180,7 @@ def test_exchanged_columns_are_noticed(tmp_path):
     assert (len(right.ids), right.frame_step, right.dt) == (8, 10, 0.4)
 
 
+@pytest.mark.program
 def test_importing_the_room_is_light():
     program = "import sys, crowdbot.data; print([m for m in sys.modules if '.' not in m])"
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True, text=True).stdout

@@ -167,6 +167,7 @@ def test_a_line_of_ndjson_has_a_limit(tmp_path, monkeypatch):
         load(path)
 
 
+@pytest.mark.program
 def test_an_hdf5_library_that_loops_without_end_is_stopped(tmp_path, monkeypatch):
     program = tmp_path / "program.py"
     program.write_text(

@@ -6,8 +6,12 @@ import subprocess
 import sys
 import tempfile
 
+import pytest
+
 from crowdbot.evaluation import EvaluationPlan, evaluate, load_evaluation, parse_methods
 from crowdbot.trials import load_trial
+
+pytestmark = pytest.mark.live
 
 FATAL = """
 import os, signal

@@ -43,6 +43,7 @@ def test_decisions_of_a_navigator_with_a_deadline_are_measured(deadline, missed)
         assert abs(len(episode.decision_times["robot"]) - decisions) <= 1
 
 
+@pytest.mark.live
 def test_a_navigator_in_a_process_is_measured_without_a_deadline(tmp_path):
     file = tmp_path / "slow.py"
     file.write_text(SLOW)

@@ -37,6 +37,7 @@ def plain(cells):
     )
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
 )

@@ -72,6 +72,7 @@ def test_each_row_is_that_of_a_single_run(trial: Trial, result: EvaluationResult
     assert result.cells[0].protocol["senses"] == ["Lidar2D"]
 
 
+@pytest.mark.program
 def test_an_evaluation_continues_and_does_not_depend_on_chunks_and_workers(
     trial: Trial, result: EvaluationResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -100,6 +100,7 @@ def test_the_process_answers_images_over_ros2(domain, tmp_path, monkeypatch):
     assert max(one.x for one in seen[0].points) - min(one.x for one in seen[0].points) == pytest.approx(200.0)
 
 
+@pytest.mark.program
 def test_a_message_whose_package_is_missing_is_named(tmp_path):
     environment = {**os.environ, "ROS_LOG_DIR": str(tmp_path)}
     words = [sys.executable, str(FOLDER / "detect_ros2.py")]

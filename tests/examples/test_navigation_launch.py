@@ -139,6 +139,7 @@ def test_topics_frames_and_limits_of_nav2_are_those_of_the_bridge(distribution, 
                     assert f"{one}.plugin" in rows, (node, one)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("distribution", NAV2_FILES)
 def test_ros_2_gives_the_parameters_to_the_nodes_of_the_launch_file(distribution, tmp_path):
     file = tmp_path / "parameters.yaml"

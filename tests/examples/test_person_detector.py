@@ -180,6 +180,7 @@ def test_an_image_of_another_encoding_is_refused():
         image_of(message | {"encoding": "mono8"})
 
 
+@pytest.mark.live
 @pytest.mark.usefixtures("drawing")
 def test_the_process_answers_images_over_rosbridge(tmp_path):
     network = write_network(tmp_path / "person.onnx", "yolov8")

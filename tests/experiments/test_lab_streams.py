@@ -76,6 +76,8 @@ def everything(inlet):
         samples += list(zip(stamps, values, strict=True))
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
     trial = parse_trial(MEETING)
     with StreamOutlets("test-poses") as outlets:
@@ -107,6 +109,8 @@ def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
     assert contact["time"] == pytest.approx(episode.contacts[0].time)
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_a_session_sends_its_answers_and_keeps_both_clocks(tmp_path):
     with StreamOutlets("test-session") as outlets:
         inlet = inlet_of("crowdbot-events")
@@ -153,6 +157,8 @@ def sender(name, kind="EEG", labels=("a", "b"), form=pylsl.cf_double64):
     return pylsl.StreamOutlet(info)
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_a_stream_is_recorded_with_both_clocks_and_its_offset(tmp_path):
     behind = 1000.0  # the sender stamps with a clock of its own
     outlet = sender("signal, left")
@@ -176,6 +182,8 @@ def test_a_stream_is_recorded_with_both_clocks_and_its_offset(tmp_path):
     assert before - behind - 0.01 < found.clock[0] < after - behind
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_a_second_part_does_not_replace_the_first(tmp_path):
     outlet = sender("pulse", labels=("rate",), form=pylsl.cf_int32)
     for value in (61, 62):
@@ -191,6 +199,8 @@ def test_a_second_part_does_not_replace_the_first(tmp_path):
     assert [one.values[0, 0] for one in read_streams(tmp_path)] == [62.0, 61.0]
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_missing_streams_and_texts_are_refused(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="no stream with the name 'nobody'"):
         StreamRecorder(tmp_path, ["nobody"], wait=0.2)
@@ -283,6 +293,8 @@ def test_a_gaze_that_is_no_direction_is_refused(gaze):
         AvatarOrder(avatar="guide", x=0.0, y=0.0, gaze=(1.0, 0.0, 0.0))
 
 
+@pytest.mark.live
+@pytest.mark.xdist_group("lsl")
 def test_the_command_sends_and_records_and_a_withdrawal_deletes_the_streams(tmp_path, capsys):
     outlet = sender("pulse", labels=("rate",))
     words = ["experiment", "run", "robot-speed", "--participant", "1", "--out", str(tmp_path), "--rehearse"]

@@ -9,6 +9,8 @@ import pytest
 
 from killed_runs import FEW, MANY, run_killed
 
+pytestmark = pytest.mark.live
+
 WORDS = [
     "falsify", "frontal", "--over", "spawner/speed=uniform(0.8,1.6)", "--over", "robot/y=normal(0,0.3)",
     "--set", "duration=4", "--failure", "min-clearance>0.5", "--keep", "3",

@@ -21,6 +21,7 @@ def crowdbot(*words: object, **more: object) -> subprocess.CompletedProcess[str]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
 
 
+@pytest.mark.program
 def test_it_writes_data_and_a_card(tmp_path: Path) -> None:
     done = crowdbot(*ARGUMENTS, "--seeds", "0:2", "--out", tmp_path / "data")
     assert done.returncode == 0, done.stderr
@@ -34,6 +35,7 @@ def test_it_writes_data_and_a_card(tmp_path: Path) -> None:
     assert told["wall"] > 0.0
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -9,6 +9,8 @@ import pytest
 
 from killed_runs import FEW, MANY, run_killed
 
+pytestmark = pytest.mark.live
+
 WORDS = ["generate", "crossing-flows", "--set", "duration=2", "--sensors", "sick-tim571@10", "--shard-size", "1"]
 
 

@@ -17,6 +17,7 @@ WORDS = [
 ]  # fmt: skip
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     "kills", [FEW, pytest.param(8, marks=pytest.mark.sweep), pytest.param(MANY, marks=pytest.mark.soak)]
 )

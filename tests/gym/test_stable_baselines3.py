@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "train_with_stable_baselines3.py"
 CHECK = """
 import sys
@@ -44,6 +46,7 @@ def run(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.program
 def test_the_first_2000_steps(tmp_path: Path) -> None:
     done = run(EXAMPLE, "--steps", 2000, "--environments", 16, "--out", "model.zip", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -52,6 +55,7 @@ def test_the_first_2000_steps(tmp_path: Path) -> None:
     assert done.stdout.startswith("2000 steps  success")
 
 
+@pytest.mark.program
 def test_its_environments_are_those_of_crowdbot(tmp_path: Path) -> None:
     done = run("-c", CHECK, EXAMPLE.parent, cwd=tmp_path)
     assert done.returncode == 0, done.stderr

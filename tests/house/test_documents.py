@@ -26,6 +26,7 @@ def _blocks(page, language):
 PYTHON = [(page.name, number, code) for page in PAGES for number, code in enumerate(_blocks(page, "python"))]
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(("page", "number", "code"), PYTHON, ids=[f"{p}-{n}" for p, n, _ in PYTHON])
 def test_python_blocks_run(page, number, code, tmp_path):
     program = tmp_path / "block.py"
@@ -98,6 +99,7 @@ def test_commands_exist(page):
     assert named <= set(COMMANDS)
 
 
+@pytest.mark.program
 def test_make_knows_the_commands_and_ci_runs_both_tiers():
     for target in ("demo", "test", "live"):
         done = subprocess.run(
@@ -108,6 +110,7 @@ def test_make_knows_the_commands_and_ci_runs_both_tiers():
     assert "make test && make live && exit" in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
 
 
+@pytest.mark.program
 def test_the_page_of_models_is_made_from_the_models():
     done = subprocess.run([sys.executable, ROOT / "tools" / "models.py"], capture_output=True, text=True, check=True)
     assert (ROOT / "docs" / "reference" / "crowd-models.md").read_text(encoding="utf-8") == done.stdout

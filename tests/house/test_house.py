@@ -116,12 +116,14 @@ def test_the_front_door_opens_on_every_name():
         crowdbot.nothing  # noqa: B018
 
 
+@pytest.mark.program
 def test_importing_crowdbot_is_light():
     program = "import sys, json, crowdbot; print(json.dumps([m for m in sys.modules if '.' not in m]))"
     loaded = set(json.loads(subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout))
     assert loaded.isdisjoint(HEAVY)
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     "words", [["--help"], ["--version"], ["run", "--help"], ["predict", "--help"], ["demo", "--help"]]
 )

@@ -42,6 +42,7 @@ def breaches(house, folder, **files):
     return {rule: found for rule, found in house.measure(folder / "made", RULES).items() if found}
 
 
+@pytest.mark.program
 def test_the_package_is_within_the_limits():
     done = subprocess.run([sys.executable, TOOL], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0, done.stdout + done.stderr

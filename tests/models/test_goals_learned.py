@@ -85,6 +85,7 @@ def test_on_real_streets_it_is_as_good_as_the_best_constant_velocity(recordings,
     assert np.min([error(ways[:, :, k] / goal.horizon) for k in range(3)], axis=0).mean() < 0.93 * one
 
 
+@pytest.mark.live
 def test_thirty_people_take_less_than_five_milliseconds():
     goal = LearnedDestinations.learn(street(people=200))
     past = crowd(W=1, A=30, holes=0.0)

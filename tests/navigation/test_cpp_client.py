@@ -28,6 +28,7 @@ def program(tmp_path_factory):
     return place
 
 
+@pytest.mark.program
 def test_it_drives_towards_the_goal_and_turns_away_from_people(program):
     trial = load_trial("frontal", duration=6.0)
     navigator = ProcessNavigator(command=str(program), sandbox=False)
@@ -40,6 +41,7 @@ def test_it_drives_towards_the_goal_and_turns_away_from_people(program):
     assert simulate(trial, 0).digest == episode.digest
 
 
+@pytest.mark.program
 def test_a_question_without_its_parts_is_answered_with_an_error(program):
     lines = '{"call":"begin"}\n{"call":"act","observation":{"goal":[1.0,0.0]}}\n{}\n'
     done = subprocess.run([program], input=lines, capture_output=True, text=True, timeout=20, check=True)

@@ -113,6 +113,7 @@ def own_counter(address: str) -> Any:
     return find_class(f"{address}:Counter", crowdbot.navigation, Navigator)()
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("sandbox", sorted({False, SANDBOX}))
 def test_a_run_is_that_of_the_navigator_in_this_process(mine: str, sandbox: bool) -> None:
     trial = load_trial("crossing-flows", duration="3")
@@ -121,6 +122,7 @@ def test_a_run_is_that_of_the_navigator_in_this_process(mine: str, sandbox: bool
     assert [one.digest for one in simulate_seeds(apart, [0, 1])] == here
 
 
+@pytest.mark.program
 def test_a_branch_continues_with_the_memory(mine: str) -> None:
     trial = load_trial("crossing-flows", duration="3")
     simulation = Simulation(with_navigator(trial, ProcessNavigator(address=f"{mine}:Counter", sandbox=SANDBOX)), 0)
@@ -134,6 +136,7 @@ def test_a_branch_continues_with_the_memory(mine: str) -> None:
     assert json.loads(simulation.robots[0].memories[0])["dict"]["n"] > 20
 
 
+@pytest.mark.program
 def test_parameters_reach_the_navigator(mine: str) -> None:
     navigator = ProcessNavigator(address=f"{mine}:Counter", parameters="speed=0.3", sandbox=SANDBOX)
     action, _ = navigator.act(observation(), navigator.begin(observation()))
@@ -149,12 +152,14 @@ def test_it_is_written_and_read_in_a_trial(mine: str) -> None:
     assert parse_trial(trial_xml(trial)).robots[0].navigator == trial.robots[0].navigator
 
 
+@pytest.mark.program
 def test_what_it_prints_does_not_matter(mine: str) -> None:
     assert ProcessNavigator(address=f"{mine}:Loud", sandbox=SANDBOX).act(observation(), "null")[0] == Action(
         Twist(0.25)
     )
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("what", "message"),
     [
@@ -189,6 +194,7 @@ def test_hostile_code_fails_alone(mine: str, what: str, message: str) -> None:
     assert [path.name for path in (folder / "own").iterdir() if path.name != "__pycache__"] == ["mine.py"]
 
 
+@pytest.mark.program
 def test_a_failure_is_a_counted_failure_of_its_run(mine: str) -> None:
     navigator = ProcessNavigator(address=f"{mine}:Wrong", parameters="what=exit", sandbox=SANDBOX)
     with pytest.warns(UserWarning, match="its process has ended"):
@@ -196,6 +202,7 @@ def test_a_failure_is_a_counted_failure_of_its_run(mine: str) -> None:
     assert episode.outcome == "error"
 
 
+@pytest.mark.program
 def test_the_truth_of_sensors_stays_out(mine: str) -> None:
     trial = with_navigator(
         load_trial("crossing-flows", duration="1"), ProcessNavigator(address=f"{mine}:Seen", sandbox=SANDBOX)
@@ -203,11 +210,13 @@ def test_the_truth_of_sensors_stays_out(mine: str) -> None:
     assert simulate(trial).failure is None
 
 
+@pytest.mark.program
 def test_memories_must_be_plain(mine: str) -> None:
     with pytest.raises(InputError, match=r"memory is a TextIOWrapper; store numbers, texts, lists"):
         ProcessNavigator(address=f"{mine}:Odd", sandbox=SANDBOX).act(observation(), "null")
 
 
+@pytest.mark.program
 def test_a_program_of_another_language_can_answer(tmp_path: Path) -> None:
     program = tmp_path / "other.py"
     program.write_text(
@@ -224,6 +233,7 @@ def test_a_program_of_another_language_can_answer(tmp_path: Path) -> None:
         assert navigator.act(observation(), navigator.begin(observation())) == (Action(Twist(0.4)), "1")
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
@@ -260,6 +270,7 @@ def test_wrong_settings_are_refused(values: dict[str, Any], message: str) -> Non
         ProcessNavigator(**({"sandbox": SANDBOX} | values))
 
 
+@pytest.mark.program
 def test_a_missing_file_or_program_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="nowhere.py"):
         ProcessNavigator(address=f"{tmp_path / 'nowhere.py'}:Mine", sandbox=SANDBOX).begin(observation())

@@ -80,6 +80,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Path, float]]
     return found
 
 
+@pytest.mark.live
 def test_every_file_opens_and_at_most_the_last_second_is_missing(killed: list[tuple[Path, float]]) -> None:
     for path, told in killed:
         read = read_episode(path)
@@ -176,6 +177,7 @@ def test_a_new_run_takes_the_place_of_an_old_file_only_when_it_has_something(tmp
     assert seen[-2] > 30
 
 
+@pytest.mark.live
 def test_the_program_keeps_the_file_when_it_is_killed(tmp_path: Path) -> None:
     trial = written(tmp_path / "in", LONG)
     process = subprocess.Popen(

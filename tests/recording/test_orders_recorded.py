@@ -122,6 +122,7 @@ class Slow(Navigator):
         return observation.towards_goal(0.1 + 0.05 * observation.time)
 
 
+@pytest.mark.live
 def test_a_missed_deadline_is_recorded_and_a_replay_measures_no_time(tmp_path: Path) -> None:
     trial = parse_trial(FLOW)
     robot = dataclasses.replace(trial.robots[0], navigator=Slow(), deadline=0.1)

@@ -112,6 +112,7 @@ def test_images_are_not_overwritten(tmp_path: Path, name: str) -> None:
     assert not list(tmp_path.rglob(".*"))
 
 
+@pytest.mark.live
 def test_two_runs_into_one_folder(tmp_path: Path) -> None:
     words = [
         sys.executable,
@@ -134,6 +135,7 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
     assert os.listdir(tmp_path / "out") == ["episode.mcap"]
 
 
+@pytest.mark.live
 def test_a_lock_is_taken_over_when_its_process_is_gone(tmp_path: Path) -> None:
     lock = tmp_path / ".episode.mcap.lock"
     code = "import os, sys; from pathlib import Path; from crowdbot.core import lock_output\n"

@@ -178,6 +178,7 @@ def test_ctrl_c_leaves_a_whole_file(tmp_path: Path) -> None:
     assert len(data.load(tmp_path / "out" / "episode.mcap")) == int(episode.active.sum())
 
 
+@pytest.mark.live
 def test_ctrl_c_from_the_keyboard_leaves_a_whole_file(tmp_path: Path) -> None:
     code = (
         "import sys; from crowdbot.recording import run; from crowdbot.trials import parse_trial\n"

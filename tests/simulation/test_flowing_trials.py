@@ -112,6 +112,7 @@ def test_a_flow_replays_to_the_same_bytes(recorded: tuple[Path, Episode]) -> Non
     assert done.replayed == episode.digest
 
 
+@pytest.mark.program
 def test_a_flow_is_the_same_in_another_process_with_one_thread(recorded: tuple[Path, Episode]) -> None:
     code = (
         "import sys; from crowdbot.recording import run; from crowdbot.trials import parse_trial;"

@@ -88,6 +88,7 @@ def with_navigator(navigator: Navigator, **values: Any) -> Trial:
     return dataclasses.replace(trial, robots=[dataclasses.replace(trial.robots[0], **values)])
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("way", ["loop", "sleep", "catch"])
 def test_a_navigator_that_hangs_ends_its_run_as_a_failure(way: str) -> None:
     with pytest.warns(RunFailureWarning, match="navigator Stuck of robot 'robot' did not return within 1 s"):
@@ -99,6 +100,7 @@ def test_a_navigator_that_hangs_ends_its_run_as_a_failure(way: str) -> None:
     assert episode.times[-1] == pytest.approx(0.5)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("navigator", "name"),
     [(StuckAtBegin(), "StuckAtBegin"), (StuckORCA(), "StuckORCA"), (StuckBatch(), "StuckBatch")],
@@ -122,6 +124,7 @@ class StuckNear(Navigator):
         return Twist(0.2)
 
 
+@pytest.mark.live
 def test_the_other_environments_go_on() -> None:
     def trial_with(distance: float) -> Trial:
         trial = load_trial("circle-crossing", duration=0.3)
@@ -157,6 +160,7 @@ def test_a_replay_does_not_wait_for_a_decision_that_hung(tmp_path: Path) -> None
     assert done.failures[0] == done.failures[1]
 
 
+@pytest.mark.live
 def test_a_failed_run_has_the_same_digest_alone_and_among_others() -> None:
     trial = with_navigator(Stuck(way="sleep"))
     with pytest.warns(RunFailureWarning):
@@ -177,6 +181,7 @@ def test_nobody_can_give_a_hung_decision() -> None:
         HungDecisionOrder(robot="robot", seconds=1.0).check(Simulation(load_trial("frontal"), 1))
 
 
+@pytest.mark.live
 def test_a_run_in_another_thread_ends_too() -> None:
     found: list[str] = []
 
@@ -191,6 +196,7 @@ def test_a_run_in_another_thread_ends_too() -> None:
     assert found == ["error"]
 
 
+@pytest.mark.live
 def test_threads_end_with_their_callers() -> None:
     def threads() -> int:
         return sum(one.name == "crowdbot-decisions" for one in threading.enumerate())
@@ -222,6 +228,7 @@ def _interrupt() -> None:
     raise KeyboardInterrupt
 
 
+@pytest.mark.live
 def test_a_forked_process_has_a_thread_of_its_own() -> None:
     assert call_within(30.0, lambda: 1, "this") == 1
     child = os.fork()

@@ -245,6 +245,7 @@ def test_the_digest_is_that_of_the_bytes() -> None:
     assert run(moved).digest != first.digest
 
 
+@pytest.mark.program
 @pytest.mark.parametrize("threads", sample(["1", "2"], 1))
 def test_another_process_gives_the_same_digest(threads: str) -> None:
     code = (

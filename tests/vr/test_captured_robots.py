@@ -70,6 +70,7 @@ def test_sets_of_motion_capture_say_what_is_wrong(table):
         with_captures(VR_DESKS, ["guest"])
 
 
+@pytest.mark.live
 def test_a_session_on_the_command_line_is_moved_by_motion_capture(table, tmp_path, capsys):
     home = tmp_path / "study"
     home.mkdir()
@@ -90,6 +91,7 @@ def test_a_session_on_the_command_line_is_moved_by_motion_capture(table, tmp_pat
     assert "--rate 2 does not fit live motion capture" in capsys.readouterr().err
 
 
+@pytest.mark.live
 def test_a_natnet_server_that_does_not_answer_is_a_problem_and_holds_nothing_up(tmp_path):
     text = TRIAL.replace(ROBOT, '<agent x="4" y="6" goal="-5,6"/>')
     with open_session(tmp_path / "files", {"meet.xml": text}) as session:

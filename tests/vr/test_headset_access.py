@@ -42,6 +42,7 @@ def test_tokens_belong_to_a_session_and_a_server():
     assert SECRET not in token
 
 
+@pytest.mark.live
 def test_a_headset_opens_its_page_and_nothing_of_the_operator(tmp_path):
     async def story(server, http, base):
         token = token_of_session(SECRET, "main")
@@ -78,6 +79,7 @@ def test_a_headset_opens_its_page_and_nothing_of_the_operator(tmp_path):
     play(story, tmp_path / "files")
 
 
+@pytest.mark.live
 def test_the_window_of_a_headset_may_look_answer_and_stop_only(tmp_path):
     async def story(server, http, base):
         token = token_of_session(SECRET, "main")

@@ -62,6 +62,7 @@ def speed_of(run):
     return float(np.hypot(*scene.velocity[0, run.simulation.robots[0].agent]))
 
 
+@pytest.mark.live
 def test_a_program_over_rosbridge_drives_the_robot_beside_a_headset(tmp_path):
     trial, state = run_visit(tmp_path / "files", PROGRAM)
     assert state["phase"] == "done"
@@ -75,6 +76,7 @@ def test_a_program_over_rosbridge_drives_the_robot_beside_a_headset(tmp_path):
     assert (trial / "guest.headset").is_file()
 
 
+@pytest.mark.live
 def test_the_stop_button_holds_a_robot_that_a_program_drives(tmp_path):
     def stop(desk, vr, guest):
         run = desk._run
@@ -95,6 +97,7 @@ def start_real_robot():
     return robot, f"rosbridge-client:ws://127.0.0.1:{robot.stdout.readline().strip()}"
 
 
+@pytest.mark.live
 def test_a_real_robot_drives_beside_a_headset_and_stops_with_the_pause(tmp_path):
     robot, bridge = start_real_robot()
     navigator = f'<navigator type="real-robot" bridge="{bridge}" area="-20,-20,20,20" link-timeout="5"/>'
@@ -162,6 +165,7 @@ def test_the_tab_of_the_operator_stops_a_linked_robot_of_the_simulator(tmp_path)
         guest.stop()
 
 
+@pytest.mark.live
 def test_a_real_robot_that_does_not_come_fails_the_trial_and_the_session_waits(tmp_path):
     navigator = '<navigator type="real-robot" bridge="rosbridge:0" area="-20,-20,20,20" start="0.5"/>'
     _, state = run_visit(tmp_path / "files", navigator)

@@ -7,12 +7,15 @@ import subprocess
 import sys
 
 import aiohttp
+import pytest
 from test_vr_server import Window, poses
 
 from crowdbot.cli import main
 from crowdbot.experiments import read_log
 from crowdbot.recording import read_episode, replay
 from crowdbot.vr import read_headset_recording
+
+pytestmark = pytest.mark.live
 
 EXPERIMENT = """<experiment name="visit"><instructions name="hello" text="Please stand."/>
 <block name="main"><trial name="meet" source="meet.xml"/></block></experiment>"""

@@ -119,6 +119,7 @@ def skeletons(path):
     ]
 
 
+@pytest.mark.live
 def test_one_trial_without_and_one_with_a_headset(tmp_path):
     """In the first trial the suit alone moves the person, and a sleeping headset is no loss; then both do together."""
     files = {

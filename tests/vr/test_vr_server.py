@@ -101,6 +101,7 @@ def play(story, folder, avatar=AVATAR):
     asyncio.run(main())
 
 
+@pytest.mark.live
 def test_two_headsets_silence_and_messages_that_are_none(tmp_path):
     async def story(server, http, window):
         async with http.ws_connect("/api/main/headset") as first:
@@ -126,6 +127,7 @@ def test_two_headsets_silence_and_messages_that_are_none(tmp_path):
     play(story, tmp_path / "files")
 
 
+@pytest.mark.live
 def test_commands_of_the_operator_and_their_errors(tmp_path):
     async def story(server, http, window):
         for name, arguments, text in (
@@ -163,6 +165,7 @@ def test_commands_of_the_operator_and_their_errors(tmp_path):
     play(story, tmp_path / "files")
 
 
+@pytest.mark.live
 def test_a_trial_without_an_avatar_gets_one_and_the_end_of_the_server_closes_the_headset(tmp_path):
     folder = tmp_path / "files"
     folder.mkdir()
@@ -183,6 +186,7 @@ def test_a_trial_without_an_avatar_gets_one_and_the_end_of_the_server_closes_the
     asyncio.run(main())
 
 
+@pytest.mark.live
 def test_https_with_an_own_certificate_and_a_token(tmp_path):
     certificate, key = certificate_files(tmp_path / "user", ("192.0.2.7",))
     again = certificate_files(tmp_path / "user", ("192.0.2.7",))

@@ -99,6 +99,7 @@ async def ask(socket, call, number=1, **arguments):
             return answer
 
 
+@pytest.mark.live
 def test_a_window_calls_commands_and_all_windows_get_the_events(tmp_path):
     async def talk(server, client):
         async with window(server, client) as (one, greeting), window(server, client) as (two, _):
@@ -115,6 +116,7 @@ def test_a_window_calls_commands_and_all_windows_get_the_events(tmp_path):
     assert other["data"]["desks"] == {"counter": {"count": 0}}  # a session has its own desks
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("call", "arguments", "sentence"),
     [
@@ -144,6 +146,7 @@ def test_wrong_calls_are_answered_with_a_sentence(tmp_path, call, arguments, sen
     assert right["result"] == 1  # the window goes on
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("text", ["", "[", "[]", "7", '"x"', '{"id": "1", "call": "counter.add"}', "[" * 100_000])
 def test_a_window_that_sends_other_text_is_closed(tmp_path, text):
     async def talk(server, client):
@@ -158,6 +161,7 @@ def test_a_window_that_sends_other_text_is_closed(tmp_path, text):
     assert answer == 1
 
 
+@pytest.mark.live
 def test_a_slow_window_gets_the_newest_frame_and_never_more_than_its_credit(tmp_path):
     async def talk(server, client):
         async with window(server, client) as (socket, _):
@@ -178,6 +182,7 @@ def test_a_slow_window_gets_the_newest_frame_and_never_more_than_its_credit(tmp_
     assert last.arrays["n"].tolist() == [199]
 
 
+@pytest.mark.live
 def test_files_of_desks_and_of_the_page(tmp_path):
     async def talk(server, client):
         answers = []
@@ -200,6 +205,7 @@ def test_files_of_desks_and_of_the_page(tmp_path):
     assert outside[0] == 404
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("headers", "sentence"),
     [
@@ -218,6 +224,7 @@ def test_other_sites_are_refused(tmp_path, headers, sentence):
     assert sentence in text
 
 
+@pytest.mark.live
 def test_beyond_loopback_a_token_is_needed(tmp_path):
     async def talk(server, client):
         base, _, token = server.url.partition("?token=")
@@ -239,6 +246,7 @@ def test_beyond_loopback_a_token_is_needed(tmp_path):
     assert answers == [403, 403, 200, 200]
 
 
+@pytest.mark.live
 def test_links_that_lead_outside_are_refused(tmp_path):
     (tmp_path / "secret.txt").write_text("secret")
     (tmp_path / "files").mkdir()
@@ -252,6 +260,7 @@ def test_links_that_lead_outside_are_refused(tmp_path):
     assert (tmp_path / "secret.txt").read_text() == "secret"
 
 
+@pytest.mark.live
 def test_uploads_are_kept_by_their_last_name(tmp_path):
     async def talk(server, client):
         async with client.post(server.url + "api/main/upload?name=../../tracks.csv", data=b"id,x") as answer:
@@ -261,6 +270,7 @@ def test_uploads_are_kept_by_their_last_name(tmp_path):
     assert (tmp_path / "files" / "tracks.csv").read_bytes() == b"id,x"
 
 
+@pytest.mark.live
 def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path):
     async def talk(server, client):
         async with client.post(
@@ -275,6 +285,7 @@ def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path):
     assert [one.name for one in (tmp_path / "files").iterdir()] == ["large.csv"]
 
 
+@pytest.mark.live
 def test_a_server_for_other_machines_takes_no_code(tmp_path):
     async def main():
         server = AppServer((Counter,), tmp_path / "files", "0.0.0.0", 0, AccessPolicy("0.0.0.0", "secret"))
@@ -288,6 +299,7 @@ def test_a_server_for_other_machines_takes_no_code(tmp_path):
     assert not (tmp_path / "files" / "mine.py").exists()
 
 
+@pytest.mark.live
 def test_the_server_stops_while_a_command_runs(tmp_path, monkeypatch):
     hangs, goes_on = threading.Event(), threading.Event()
     monkeypatch.setattr(Counter, "hangs", hangs)
@@ -306,6 +318,7 @@ def test_the_server_stops_while_a_command_runs(tmp_path, monkeypatch):
         goes_on.set()
 
 
+@pytest.mark.live
 def test_a_port_in_use_is_told(tmp_path):
     async def talk(server, client):
         port = int(server.url.rsplit(":", 1)[1].strip("/"))

@@ -2,7 +2,10 @@
 
 import time
 
+import pytest
 from test_camera_images import TRIAL
+
+pytestmark = pytest.mark.live
 
 VIEW = "window.crowdbot._views.get('simulator')"
 PIXELS = """(label) => {

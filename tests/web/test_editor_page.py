@@ -4,6 +4,8 @@ import pytest
 
 from crowdbot.trials import load_trial, parse_trial, trial_xml
 
+pytestmark = pytest.mark.live
+
 TAB = "#tab=editor"
 
 

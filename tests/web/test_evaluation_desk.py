@@ -33,6 +33,7 @@ def wait_for_end(desk):
     raise AssertionError("the evaluation did not end in five minutes")
 
 
+@pytest.mark.live
 def test_the_table_is_that_of_evaluate_and_a_run_can_be_watched(desk, capsys):
     desk.run("first", ["frontal"], "straight, orca", "0:3")
     assert wait_for_end(desk) == {
@@ -112,6 +113,7 @@ def test_another_file_is_no_result(desk):
     assert desk.greet()["evaluations"] == []
 
 
+@pytest.mark.live
 def test_a_cancelled_evaluation_continues(desk):
     desk.run("long", ["frontal", "circle-crossing"], "straight, orca", "0:64")
     state = desk.cancel()
@@ -140,6 +142,7 @@ def test_wrong_requests_are_refused_before_they_run(desk, arguments, sentence):
     assert desk.greet()["running"] == ""
 
 
+@pytest.mark.live
 def test_a_run_of_a_changed_trial_is_not_watched(desk):
     path = desk.session.workspace.writable("mine.xml")
     path.write_text(trial_xml(load_trial("frontal", duration=2.0)))

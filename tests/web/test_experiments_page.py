@@ -2,6 +2,8 @@
 
 import pytest
 
+pytestmark = pytest.mark.live
+
 TAB = "#tab=experiments"
 
 

@@ -46,6 +46,7 @@ def session(tmp_path):
     one.jobs.close()
 
 
+@pytest.mark.live
 def test_a_job_reports_and_is_listed_after_a_restart(session, tmp_path):
     seen, ended = [], threading.Event()
     session.jobs.submit(
@@ -61,6 +62,7 @@ def test_a_job_reports_and_is_listed_after_a_restart(session, tmp_path):
     wait(again.jobs)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize(
     ("target", "arguments", "problem"),
     [
@@ -83,6 +85,7 @@ def runs(process):
         return False
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("target", [fill_memory, fill_memory_of_a_child])
 def test_a_job_that_takes_too_much_memory_ends(tmp_path, target):
     session, seen = Windows(tmp_path, SessionLimits(memory=400e6)), []
@@ -100,6 +103,7 @@ def test_a_job_that_takes_too_much_memory_ends(tmp_path, target):
         assert not runs(child)
 
 
+@pytest.mark.live
 def test_jobs_wait_for_their_turn_and_are_cancelled(tmp_path):
     session = Windows(tmp_path, SessionLimits(jobs=1, waiting=2))
     for title in ("first", "second", "third"):
@@ -117,6 +121,7 @@ def test_jobs_wait_for_their_turn_and_are_cancelled(tmp_path):
     assert [one.state for one in Windows(tmp_path).jobs.records] == ["cancelled", "cancelled", "interrupted"]
 
 
+@pytest.mark.live
 def test_a_job_ends_when_the_processor_time_is_used(tmp_path):
     session = Windows(tmp_path, SessionLimits(cpu=1.0))
     session.jobs.submit(JobWork("burn", "burns", burn))
@@ -126,6 +131,7 @@ def test_a_job_ends_when_the_processor_time_is_used(tmp_path):
         session.jobs.submit(JobWork("count", "more", count, (1,)))
 
 
+@pytest.mark.live
 def test_a_job_ends_when_the_folder_is_full(tmp_path):
     session = Windows(tmp_path / "files", SessionLimits(disk=20e6))
     session.jobs.submit(JobWork("fill", "fills", fill_disk, (str(tmp_path / "files" / "large.bin"),)))
@@ -155,6 +161,7 @@ class TestDesk:
         call.desk = desk
         return call
 
+    @pytest.mark.live
     def test_generated_data_are_those_of_the_command_line(self, session, call, tmp_path):
         from crowdbot.generation import GenerationPlan, generate
         from crowdbot.trials import load_trial, trial_xml
@@ -178,6 +185,7 @@ class TestDesk:
         call("remove", number=number, results=True)
         assert not (session.workspace.folder / "generated" / "mine").exists()
 
+    @pytest.mark.live
     def test_a_trained_network_predicts(self, session, call):
         number = call("begin", kind="train", values={"data": ["example:bottleneck"], "epochs": 1, "name": "net"})
         assert wait(session.jobs, 300).problem == ""
@@ -205,6 +213,7 @@ class TestDesk:
         assert report.sandbox
         assert b"<html" in report.data
 
+    @pytest.mark.live
     def test_a_command_that_fails_says_why_and_runs_again(self, session, call):
         number = call("begin", kind="falsify", values={"trial": "frontal", "navigator": "orka", "name": "f"})
         assert "orka" in wait(session.jobs, 300).problem

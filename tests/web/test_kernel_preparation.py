@@ -10,6 +10,8 @@ from crowdbot.core import cache_folder
 from crowdbot.web.simulator import kernel_preparation
 from crowdbot.web.simulator.kernel_preparation import MARK, PROGRAM, prepare_kernels
 
+pytestmark = pytest.mark.live
+
 
 @pytest.fixture
 def cold(tmp_path, monkeypatch):

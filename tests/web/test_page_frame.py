@@ -3,6 +3,8 @@
 import subprocess
 from pathlib import Path
 
+import pytest
+
 FRONTEND = Path(__file__).parents[2] / "frontend"
 
 
@@ -22,6 +24,7 @@ def test_the_bundle_is_below_1_mb():
     assert (FRONTEND.parent / "src/crowdbot/assets/web/app.js").stat().st_size < 1_000_000
 
 
+@pytest.mark.live
 def test_theme_and_keys(page):
     before = page.evaluate("document.documentElement.dataset.theme")
     page.get_by_role("button", name="Theme").click()

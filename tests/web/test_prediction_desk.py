@@ -70,6 +70,7 @@ def test_an_example_opens_with_format_time_base_and_units(desk, name):
     assert found["walls"]
 
 
+@pytest.mark.live
 def test_a_run_gives_the_numbers_of_the_copied_command_and_python(desk, capsys):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "constant-velocity"})
@@ -90,6 +91,7 @@ def test_a_run_gives_the_numbers_of_the_copied_command_and_python(desk, capsys):
     assert [one.ade for one in space["found"]] == [one["ade"] for one in scores]
 
 
+@pytest.mark.live
 def test_each_frame_has_a_line_with_cost_iterations_and_time(desk):
     desk("example", name="bottleneck")
     key = desk("add", settings=ORCA)
@@ -104,6 +106,7 @@ def test_each_frame_has_a_line_with_cost_iterations_and_time(desk):
     assert desk("series", variable="cost")["rows"][0]["values"][5] == cost
 
 
+@pytest.mark.live
 def test_degraded_input_gives_the_numbers_of_crowdbot_degrade(desk, capsys):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "constant-velocity"})
@@ -133,6 +136,7 @@ def test_degraded_input_gives_the_numbers_of_crowdbot_degrade(desk, capsys):
     assert list(desk.desk.greet()["predictors"][0]["results"]) == ["clean"]
 
 
+@pytest.mark.live
 def test_a_calibration_gives_the_numbers_of_crowdbot_calibrate(desk, capsys):
     desk("example", name="bottleneck")
     key = desk("add", settings={**ORCA, "budget": 5})
@@ -146,6 +150,7 @@ def test_a_calibration_gives_the_numbers_of_crowdbot_calibrate(desk, capsys):
     ]
 
 
+@pytest.mark.live
 def test_a_person_has_errors_and_the_fit_of_the_frame(desk):
     desk("example", name="bottleneck")
     desk("add", settings=ORCA)
@@ -168,6 +173,7 @@ def test_a_person_has_errors_and_the_fit_of_the_frame(desk):
         desk("person", index=index, id=999)
 
 
+@pytest.mark.live
 def test_the_frame_of_a_window_has_people_and_paths(desk):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "sampled-constant-velocity", "samples": 3})
@@ -202,6 +208,7 @@ def test_time_base_units_and_rows_can_be_corrected(desk):
     )
 
 
+@pytest.mark.live
 def test_a_run_can_be_cancelled_and_keeps_its_results(desk):
     desk("example", name="crossing-flows")
     desk("add", settings={**ORCA, "budget": 3000})
@@ -224,6 +231,7 @@ def test_a_run_can_be_cancelled_and_keeps_its_results(desk):
     assert row["note"].endswith("frames")
 
 
+@pytest.mark.live
 def test_a_predictor_that_fails_says_why_and_the_others_go_on(desk):
     desk("example", name="bottleneck")
     desk("add", settings={**ORCA, "goal": "learned-destinations"})
@@ -234,6 +242,7 @@ def test_a_predictor_that_fails_says_why_and_the_others_go_on(desk):
     assert "no learning part" in states[0]["problem"]
 
 
+@pytest.mark.live
 def test_results_can_be_saved_as_tables(desk):
     desk("example", name="bottleneck")
     with pytest.raises(InputError, match="there is no result yet"):
@@ -347,6 +356,7 @@ def test_a_picture_is_put_on_the_ground(desk):
         desk("background", file="no.png", homography="0.1")
 
 
+@pytest.mark.live
 def test_numbers_that_are_not_finite_reach_the_page_as_gaps(desk):
     two_walkers(desk.folder / "two.csv")
     desk("open", file="two.csv")
@@ -370,6 +380,7 @@ def test_a_server_that_is_started_again_has_the_recording_and_the_predictors(des
     assert not after["stored"]
 
 
+@pytest.mark.live
 def test_a_server_that_is_started_again_has_the_results(desk):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "constant-velocity", "samples": 1})
@@ -394,6 +405,7 @@ def test_a_server_that_is_started_again_has_the_results(desk):
     assert again("command_line") == desk("command_line")
 
 
+@pytest.mark.live
 def test_results_that_do_not_fit_or_are_damaged_are_left_out(desk):
     desk("example", name="bottleneck")
     desk("add", settings={"predictor": "constant-velocity"})

@@ -10,6 +10,8 @@ from playwright.sync_api import expect
 
 from crowdbot.cli import main
 
+pytestmark = pytest.mark.live
+
 LONG = 180_000
 expect.set_options(timeout=180_000)
 

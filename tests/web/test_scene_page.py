@@ -85,6 +85,7 @@ def window(browser, serve, tmp_path):
         assert faults == []
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("flat", [False, True])
 def test_a_scene_is_drawn(window, flat):
     info = window.evaluate(DRAW, {"flat": flat, "theme": "dark"})
@@ -102,6 +103,7 @@ def test_a_scene_is_drawn(window, flat):
     assert cameras == ["free", "overview", *beside, "follow", *eyes, "robot:robot"]
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("flat", [False, True])
 def test_people_and_robots_are_picked_where_they_are_drawn(window, flat):
     window.evaluate(DRAW, {"flat": flat, "theme": "light"})
@@ -127,6 +129,7 @@ def test_people_and_robots_are_picked_where_they_are_drawn(window, flat):
     assert window.evaluate("scene.pick(240, 160)") == {"kind": "person", "id": 0}
 
 
+@pytest.mark.live
 def test_layers_and_cameras_change_the_picture(window):
     before = window.evaluate(DRAW, {"flat": False, "theme": "light"})
     window.evaluate("scene.setLayer('people', false)")
@@ -141,6 +144,7 @@ def test_layers_and_cameras_change_the_picture(window):
         window.evaluate("scene.setLayer('smell', true)")
 
 
+@pytest.mark.live
 def test_the_first_person_looks_around_and_is_not_seen(window):
     before = window.evaluate(DRAW, {"flat": False, "theme": "light"})
     window.evaluate("scene.setCamera('eyes', { kind: 'person', id: 0 })")
@@ -165,6 +169,7 @@ def test_the_first_person_looks_around_and_is_not_seen(window):
     assert window.evaluate(ahead)[2] > turned[2] + 0.15
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("layer", ["paths", "density", "ttc"])
 @pytest.mark.parametrize("flat", [False, True])
 def test_layers_of_the_crowd_are_drawn(window, layer, flat):
@@ -177,6 +182,7 @@ def test_layers_of_the_crowd_are_drawn(window, layer, flat):
         assert taken["triangles"] >= before["triangles"] + 2
 
 
+@pytest.mark.live
 def test_a_frame_of_another_description_is_not_drawn(window):
     window.evaluate(DRAW, {"flat": False, "theme": "light"})
     window.evaluate("scene.state.description.revision += 1")

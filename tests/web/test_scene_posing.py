@@ -5,12 +5,15 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from crowdbot.humans import shapes
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
 from crowdbot.web.scene import scene_description, scene_frame, scene_resource
 from crowdbot.world import worlds_of
+
+pytestmark = pytest.mark.live
 
 SOURCES = Path(__file__).parents[2] / "frontend" / "src"
 

@@ -192,6 +192,7 @@ def test_one_run_at_a_time_and_a_restart_has_another_seed(tmp_path):
                 desk.speed(speed)
 
 
+@pytest.mark.live
 def test_a_pause_is_not_made_up_for():
     ticks = []
     loop = PacedLoop(0.02, lambda: not ticks.append(time.monotonic()), paused=False)

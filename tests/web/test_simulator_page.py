@@ -13,6 +13,8 @@ from crowdbot.simulation import PushOrder
 from crowdbot.trials import load_trial
 from crowdbot.web.simulator import FIRST
 
+pytestmark = pytest.mark.live
+
 FRONTEND = Path(__file__).parents[2] / "frontend"
 VIEW = "window.crowdbot._views.get('simulator')"
 FIRST_RUN = 300_000

@@ -9,6 +9,8 @@ from crowdbot.experiments import SYMPTOMS, load_experiment, read_log, sickness_s
 from crowdbot.recording import read_episode, replay
 from crowdbot.vr import VrServer
 
+pytestmark = [pytest.mark.live, pytest.mark.xdist_group("headset")]
+
 TRIAL = """<trial name="meet" duration="{duration}"><stage/><crowd type="orca"/>
 <avatar name="guest" source="external" x="1" y="0.5" body="man-20"/><agent x="4" y="1.2" goal="-5,1.2"/>
 <robot name="robot" type="turtlebot2" x="4" y="-1"><goal x="-5" y="-1"/><navigator type="straight" speed="0.3"/></robot>

@@ -2,10 +2,13 @@
 
 import math
 
+import pytest
 from vr_headset import STATE, call, desks, emulated_headsets, enter, wait
 
 from crowdbot.recording import read_episode, replay
 from crowdbot.vr import VrServer, read_headset_clock, read_headset_recording
+
+pytestmark = [pytest.mark.live, pytest.mark.xdist_group("headset")]
 
 TRIAL = """<trial name="meet" duration="600" world="planar"><stage><wall points="-6,-4 6,-4 6,4 -6,4 -6,-4"/></stage>
 <crowd type="orca"/><avatar name="guest" source="external" x="1" y="0.5" heading="0.5" body="man-20"/>

@@ -7,6 +7,8 @@ from vr_headset import STATE, call, desks, emulated_headsets, enter, wait
 
 from crowdbot.vr import VrServer
 
+pytestmark = [pytest.mark.live, pytest.mark.xdist_group("headset")]
+
 AGENTS = "".join(  # slow, so that nobody reaches a goal before the first picture
     f'<agent x="{1.5 * i - 5.25:g}" y="{1.5 * j - 4.5:g}" speed="0.1" goal="{8 if i < 3 else -8:g},{4.5 - 1.5 * j:g}"/>'
     for i in range(7)

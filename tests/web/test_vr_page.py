@@ -11,6 +11,8 @@ from crowdbot.recording import read_episode, replay
 from crowdbot.vr import RigidTransform, VrServer, read_headset_clock, read_headset_recording
 from crowdbot.world import worlds_of
 
+pytestmark = [pytest.mark.live, pytest.mark.xdist_group("headset")]
+
 TRIAL = """<trial name="meet" duration="600" world="planar"><stage><wall points="-6,-4 6,-4 6,4 -6,4 -6,-4"/></stage>
 <crowd type="orca"/><avatar name="guest" source="external" x="1" y="0.5" heading="0.5" body="man-20"/>
 <agent x="4" y="1.2" goal="-5,1.2"/><robot name="robot" type="turtlebot2" x="3.5" y="0"><goal x="-5" y="-1"/>

@@ -146,6 +146,7 @@ print(hashlib.sha256(seen.tobytes()).hexdigest())
 """
 
 
+@pytest.mark.program
 def test_the_bytes_do_not_depend_on_the_compiler():
     """Compiled, and interpreted one operation after another by Python, the picture is the same."""
     program = PROGRAM.format(folder=os.path.dirname(__file__))

@@ -89,6 +89,7 @@ def check(serve, folder, count, caplog, capfd):
     }  # nothing is written elsewhere
 
 
+@pytest.mark.live
 def test_a_thousand_hostile_frames(serve, tmp_path, caplog, capfd):
     (tmp_path / "secret.xml").write_text("<trial/>")
     check(serve, tmp_path / "files", 1000, caplog, capfd)

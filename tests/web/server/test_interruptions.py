@@ -10,6 +10,8 @@ import pytest
 
 from crowdbot.trials import parse_trial
 
+pytestmark = pytest.mark.live
+
 START = 240
 
 

@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+pytestmark = pytest.mark.live
+
 TABS = ("prediction", "editor", "evaluation", "experiments", "jobs")
 CONTROLS = (
     "button:not([disabled]):not([tabindex='-1']), select:not([disabled]), input:not([disabled]):not([type=radio]), "

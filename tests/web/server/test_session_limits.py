@@ -51,6 +51,7 @@ async def ask(socket, call, **arguments):
     return answer
 
 
+@pytest.mark.live
 def test_thirty_students_share_a_server(tmp_path):
     async def student(server, client, number):
         async with client.ws_connect(server.url + f"api/student-{number}/socket") as socket:
@@ -76,6 +77,7 @@ def test_thirty_students_share_a_server(tmp_path):
     assert states == ["done"] * 30
 
 
+@pytest.mark.live
 def test_each_limit_is_refused_with_a_sentence(tmp_path):
     async def talk(server, client):
         async with client.ws_connect(server.url + "api/one/socket") as socket:
@@ -99,6 +101,7 @@ def test_each_limit_is_refused_with_a_sentence(tmp_path):
     assert texts[2][1].startswith("your folder is full: 0 of 0 MB are used; remove jobs")
 
 
+@pytest.mark.live
 def test_a_session_that_nobody_uses_ends_and_keeps_its_files(tmp_path):
     async def talk(server, client):
         async with client.ws_connect(server.url + "api/one/socket") as socket:
@@ -128,6 +131,7 @@ def test_the_first_session_does_not_see_the_files_of_others(tmp_path):
             act("sessions/anna/secret.xml")
 
 
+@pytest.mark.live
 def test_the_address_of_a_student_opens_no_other_session(tmp_path):
     access = AccessPolicy("0.0.0.0", "secret")
 
@@ -187,6 +191,7 @@ def test_limits_of_the_command_line_reach_the_server(monkeypatch, tmp_path):
     assert servers[1].limits.cpu == CLASSROOM.cpu
 
 
+@pytest.mark.program
 @pytest.mark.parametrize(
     ("words", "may"),
     [([], True), (["--host", "0.0.0.0"], False), (["--host", "0.0.0.0", "--programs"], True)],
