@@ -39,8 +39,7 @@ class GateGuard:
         self._program: list[str] = []
         self._live: list[str] = []
         sys.addaudithook(self._audit)  # stays to the end of the process
-        self._replace_sleep()
-        self._replace_spawn()
+        self._sleep, self._spawn = time.sleep, multiprocessing.util.spawnv_passfds
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
@@ -48,6 +47,9 @@ class GateGuard:
         self._program, self._live = [], []
         outside = any(item.get_closest_marker(name) for name in OUTSIDE)
         self._watching = not outside and not isinstance(item, pytest.DoctestItem)
+        if self._watching:
+            time.sleep = self._watched_sleep
+            multiprocessing.util.spawnv_passfds = self._watched_spawn  # a spawned process raises no audit event
         return (yield)
 
     @pytest.hookimpl(wrapper=True)
@@ -56,12 +58,25 @@ class GateGuard:
         try:
             result = yield
         finally:
-            self._watching = False
+            self._end()
         if self._live:
             pytest.fail(missing("live", self._live), pytrace=False)
         if self._program and not item.get_closest_marker("program"):
             pytest.fail(missing("program", self._program), pytrace=False)
         return result
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_teardown(self) -> Iterator[None]:
+        """Watch no longer, also after a fixture that failed, or a monkeypatch that puts back what it found."""
+        self._end()
+        try:
+            return (yield)
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        self._watching = False
+        time.sleep, multiprocessing.util.spawnv_passfds = self._sleep, self._spawn
 
     def _audit(self, event: str, values: tuple[Any, ...]) -> None:
         if not self._watching:
@@ -73,26 +88,14 @@ class GateGuard:
         elif event in ADDRESSES and reaches_network(event, values[0]):
             self._live.append(f"{event} {values[1]}")
 
-    def _replace_sleep(self) -> None:
-        sleep, main = time.sleep, threading.main_thread()
+    def _watched_sleep(self, seconds: float) -> None:
+        if seconds > LONGEST_SLEEP and threading.current_thread() is threading.main_thread():
+            self._live.append(f"time.sleep({seconds:g})")
+        self._sleep(seconds)
 
-        def watched_sleep(seconds: float) -> None:
-            if self._watching and seconds > LONGEST_SLEEP and threading.current_thread() is main:
-                self._live.append(f"time.sleep({seconds:g})")
-            sleep(seconds)
-
-        time.sleep = watched_sleep
-
-    def _replace_spawn(self) -> None:
-        """Processes of multiprocessing that are spawned raise no audit event."""
-        spawn = multiprocessing.util.spawnv_passfds
-
-        def watched_spawn(path: bytes, words: list[str], kept: list[int]) -> int:
-            if self._watching:
-                self._program.append("a process of multiprocessing")
-            return spawn(path, words, kept)
-
-        multiprocessing.util.spawnv_passfds = watched_spawn
+    def _watched_spawn(self, path: bytes, words: list[str], kept: list[int]) -> int:
+        self._program.append("a process of multiprocessing")
+        return self._spawn(path, words, kept)
 
 
 def reaches_network(event: str, end: socket.socket) -> bool:

@@ -76,10 +76,12 @@ def main():
     node.create_subscription(OccupancyGrid, "/map", note("map"), latched)
     node.create_subscription(String, "/robot/robot_description", note("urdf"), latched)
     end = time.monotonic() + 60.0
-    while time.monotonic() < end:  # both publishers and the clock are matched, and the first command can go
+    # Both publishers and the clock are matched, and the first command can go. Odometry is reliable and its reader is
+    # announced after that of the scans, which are best effort: once it comes, scans come, too.
+    while time.monotonic() < end:
         rclpy.spin_once(node, timeout_sec=0.02)
         counts = (plain.get_subscription_count(), stamped.get_subscription_count(), node.count_publishers("/clock"))
-        if all(counts) and seen["map"]:
+        if all(counts) and seen["map"] and seen["odometry"]:
             break
     seen["ready"] = True  # from now on, one command answers each tick; a tick without an answer is sent again
     end, last = time.monotonic() + seconds, 1e9 * float(sys.argv[3]) if len(sys.argv) > 3 else float("inf")
