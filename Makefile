@@ -12,6 +12,7 @@ BIN := $(VENV)/bin
 OUT ?= demo
 ROOM ?= core
 WORKERS ?= auto
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retries 5 -c constraints.txt
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
@@ -65,15 +66,19 @@ smoke: dist
 rehearse: dist
 	$(BIN)/python tools/release.py rehearse dist
 
-$(VENV)/installed: pyproject.toml constraints.txt
+$(VENV)/bin/python:
 	tests/system-packages --venv $(PYTHON)
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+
+$(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) -e .
 	touch $@
 
-$(VENV)/installed-dev: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev]"
-	touch $@
+# JuPedSim comes without its viewer, 1.3 GB of Qt and VTK.
+$(VENV)/installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) -e ".[dev]"
+	$(PIP) --no-deps jupedsim
+	touch $(VENV)/installed $@
 
 clean:
 	rm -rf $(VENV) build dist site $(OUT) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache src/*.egg-info
