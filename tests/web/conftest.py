@@ -100,8 +100,8 @@ def modules(tmp_path_factory):
     shutil.copytree(root / "frontend", folder / "frontend", ignore=shutil.ignore_patterns("node_modules"))
     shutil.copytree(root / "src/crowdbot/assets/web", folder / "src/crowdbot/assets/web")
     shutil.copytree(root / "tests/web", folder / "tests/web", ignore=shutil.ignore_patterns("*.py"))
-    command = ["npm", "ci", "--no-audit", "--no-fund"]
-    done = subprocess.run(command, cwd=folder / "frontend", capture_output=True, text=True)
+    command = ["npm", "ci", "--no-audit", "--no-fund", "--fetch-timeout=60000", "--fetch-retries=3"]
+    done = subprocess.run(command, cwd=folder / "frontend", capture_output=True, text=True, timeout=400)
     assert done.returncode == 0, done.stderr
     return folder / "frontend"
 
