@@ -18,6 +18,7 @@ import gc
 import os
 import shutil
 import subprocess
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -194,6 +195,14 @@ def pytest_collection_finish() -> None:
     """Take what the collection made out of the collector: hundreds of thousands of objects that stay."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """End the processes of navigators that the tests of a file have left to the end of Python."""
+    processes = sys.modules.get("crowdbot.navigation.process.child_process")
+    if processes is not None and (nextitem is None or nextitem.path != item.path):
+        processes.close_all()
 
 
 @pytest.hookimpl(trylast=True)
