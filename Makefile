@@ -16,15 +16,19 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retrie
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test live test-room sweeps soak lint docs picture dist smoke rehearse clean
+.PHONY: demo test doctests live test-room sweeps soak lint docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
 
 test: $(VENV)/installed-dev
 	tests/system-packages gate
-	$(MAKE) lint
-	$(PYTEST) $(PARALLEL) --cache-clear -o cache_dir=.pytest_cache/gate --doctest-modules src/crowdbot tests
+	$(MAKE) --jobs=2 --output-sync=target lint doctests
+	$(PYTEST) $(PARALLEL) --cache-clear -o cache_dir=.pytest_cache/gate tests
+
+# In one process beside the linters: the examples compile most kernels, which the workers of the tests would compile twice.
+doctests: $(VENV)/installed-dev
+	$(PYTEST) --cache-clear -o cache_dir=.pytest_cache/doctests --doctest-modules src/crowdbot
 
 live: $(VENV)/installed-dev
 	tests/system-packages live

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CACHES = {tier: f".pytest_cache/{tier}" for tier in ("gate", "live", "repeat")}
-"""Cache folders of pytest by tier: the gate, the live tests, and the repeat of a live test."""
+CACHES = {tier: f".pytest_cache/{tier}" for tier in ("doctests", "gate", "live", "repeat")}
+"""Cache folders of pytest by tier; ``doctests`` are part of the gate, ``repeat`` is the second run of a live test."""
 REPORT = ROOT / "live.json"
 MOST = 100
 
@@ -27,7 +27,8 @@ def failed_twice() -> list[str]:
 
 def main() -> None:
     """Print one line for each test."""
-    failed = [("make test", test) for test in failed_tests("gate")] + [("make live", test) for test in failed_twice()]
+    failed = [("make test", test) for tier in ("doctests", "gate") for test in failed_tests(tier)]
+    failed += [("make live", test) for test in failed_twice()]
     for command, test in failed[:MOST]:
         print(f"{command}: {test} failed")
     if len(failed) > MOST:
