@@ -21,8 +21,9 @@ def outside(tmp_path, monkeypatch):
         (tmp_path / name).write_text(text)
     (tmp_path / "shy.py").write_text(TRAP + SHY)
     (tmp_path / "plan.yaml").write_text("image: plan.png\nresolution: 0.05\norigin: [0, 0, 0]\n")
-    (tmp_path / "files").mkdir()
-    (tmp_path / "files" / "own.xml").write_text(text)
+    (tmp_path / "files" / "sub").mkdir(parents=True)
+    for name in ("own.xml", "sub/own.XML"):
+        (tmp_path / "files" / name).write_text(text)
     (tmp_path / "files" / "link.xml").symlink_to(tmp_path / "secret.xml")
     return tmp_path
 
@@ -30,6 +31,7 @@ def outside(tmp_path, monkeypatch):
 def test_built_in_trials_and_files_of_the_folder_are_loaded(outside):
     space = Workspace(outside / "files")
     assert space.trial("own.xml", duration=3.0).duration == 3.0
+    assert space.trial("sub/own.XML").name == "frontal"
     assert space.trial("own.xml").robots == load_trial("secret").robots
     assert space.trial("frontal").robots == load_builtin_trial("frontal").robots != load_trial("frontal").robots
     assert space.trial("frontal", gap=7).robots == load_trial("secret").robots

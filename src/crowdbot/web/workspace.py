@@ -88,13 +88,13 @@ class Workspace:
         """Load a built-in trial or a trial file that may be read; values can name files of the same folder only.
 
         Args:
-            name: name of the trial, or of the file with ``.xml``.
+            name: name of the trial, or of the file with its ending.
             values: as for :func:`crowdbot.trials.load_trial`.
 
         Raises:
             InputError: there is no such trial, it is outside the folders, or it has errors.
         """
-        if name.endswith(".xml") and name not in builtin_trials():
+        if name not in builtin_trials() and (Path(name).suffix or len(Path(name).parts) > 1):
             return load_trial(self.readable(name), **values)
         return load_builtin_trial(name, folder=self.folder, **values)
 
