@@ -38,6 +38,7 @@ class GateGuard:
         self._watching = False
         self._program: list[str] = []
         self._live: list[str] = []
+        self._fixtures: dict[object, tuple[list[str], list[str]]] = {}
         sys.addaudithook(self._audit)  # stays to the end of the process
         self._sleep, self._spawn = time.sleep, multiprocessing.util.spawnv_passfds
 
@@ -47,18 +48,37 @@ class GateGuard:
         self._program, self._live = [], []
         outside = any(item.get_closest_marker(name) for name in OUTSIDE)
         self._watching = not outside and not isinstance(item, pytest.DoctestItem)
-        if self._watching:
-            time.sleep = self._watched_sleep
-            multiprocessing.util.spawnv_passfds = self._watched_spawn  # a spawned process raises no audit event
+        time.sleep = self._watched_sleep
+        multiprocessing.util.spawnv_passfds = self._watched_spawn  # a spawned process raises no audit event
         return (yield)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: object) -> Iterator[object]:
+        """Note what a fixture does: it counts for each test that asks for it, not only for the first."""
+        watching, before = self._watching, (len(self._program), len(self._live))
+        self._watching = True
+        try:
+            return (yield)
+        finally:
+            self._watching = watching
+            self._fixtures[fixturedef] = self._program[before[0] :], self._live[before[1] :]
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Iterator[None]:
         """Fail the test if it did what its markers do not say."""
+        watched = self._watching
+        if not watched:
+            self._end()
         try:
             result = yield
         finally:
             self._end()
+        if not watched:
+            return result
+        for fixture in fixtures_of(item):
+            program, live = self._fixtures.get(fixture, ([], []))
+            self._program += program
+            self._live += live
         if self._live:
             pytest.fail(missing("live", self._live), pytrace=False)
         if self._program and not item.get_closest_marker("program"):
@@ -96,6 +116,12 @@ class GateGuard:
     def _watched_spawn(self, path: bytes, words: list[str], kept: list[int]) -> int:
         self._program.append("a process of multiprocessing")
         return self._spawn(path, words, kept)
+
+
+def fixtures_of(item: pytest.Item) -> list[object]:
+    """Return the fixtures that a test asks for, also through others."""
+    found = getattr(getattr(item, "_fixtureinfo", None), "name2fixturedefs", {})
+    return [fixture for fixtures in found.values() for fixture in fixtures]
 
 
 def reaches_network(event: str, end: socket.socket) -> bool:

@@ -46,6 +46,12 @@ def test_port_in_a_thread():
 def sender():
     with socket.socket(type=socket.SOCK_DGRAM) as one: one.sendto(b"1", ("127.0.0.1", 9))
 def test_network_of_a_fixture(sender): pass
+@pytest.fixture(scope="module")
+def shared(): subprocess.run(RUN)
+@pytest.mark.live
+def test_first_user_of_a_fixture(shared): pass
+def test_second_user_of_a_fixture(shared): pass
+def test_third_user_of_a_fixture(shared): pass
 def test_local_pair(): socket.socketpair()
 @pytest.mark.live
 def test_real_time(): subprocess.run(RUN), time.sleep(0.11), test_port()
@@ -59,6 +65,8 @@ NEEDS = {
     "test_sleep": ("live", "time.sleep(0.11)"),
     "test_port": ("live", "socket.bind ('127.0.0.1', 0)"),
     "test_port_in_a_thread": ("live", "socket.bind ('127.0.0.1', 0)"),
+    "test_second_user_of_a_fixture": ("program", "subprocess.Popen"),
+    "test_third_user_of_a_fixture": ("program", "subprocess.Popen"),
     "test_network_of_a_fixture": ("live", "socket.sendto ('127.0.0.1', 9)"),
 }
 
@@ -81,7 +89,7 @@ def test_a_test_that_depends_on_the_machine_fails_with_the_marker_that_it_lacks(
     for name, (marker, what) in NEEDS.items():
         assert told[name].startswith(f"a test of the gate needs @pytest.mark.{marker} for this: {what}")
         assert told[name].endswith("(see CONTRIBUTING.md, Tiers of tests)")
-    assert "7 failed, 5 passed" in done.stdout
+    assert "9 failed, 6 passed" in done.stdout
 
 
 @pytest.fixture

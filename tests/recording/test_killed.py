@@ -94,6 +94,7 @@ def test_every_file_opens_and_at_most_the_last_second_is_missing(killed: list[tu
         assert len(list(iterate_steps(path))) == len(read.times)
 
 
+@pytest.mark.live
 def test_other_tools_open_the_file_as_it_is(killed: list[tuple[Path, float]]) -> None:
     for path, _ in killed:
         count = len(read_episode(path).times)
@@ -105,12 +106,14 @@ def test_other_tools_open_the_file_as_it_is(killed: list[tuple[Path, float]]) ->
             assert sum(1 for _ in alone.iter_messages(topics=["/clock"])) == count
 
 
+@pytest.mark.live
 def test_what_is_left_replays_to_the_same_bytes(killed: list[tuple[Path, float]]) -> None:
     done = replay(killed[0][0])
     assert done.equal
     assert not done.complete
 
 
+@pytest.mark.live
 def test_repair_gives_the_file_that_an_interrupt_at_its_last_instant_gives(
     killed: list[tuple[Path, float]], tmp_path: Path
 ) -> None:

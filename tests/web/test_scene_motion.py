@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.live
 SOURCES = Path(__file__).parents[2] / "frontend" / "src"
 
 SCRIPT = """
@@ -52,7 +53,6 @@ def found(tmp_path_factory):
     return json.loads(done.stdout)
 
 
-@pytest.mark.live
 def test_a_stream_of_20_hz_moves_in_every_picture_and_stays_near(found):
     times = [row[1] for row in found["shown"]]
     steps = [b - a for a, b in itertools.pairwise(times)]
