@@ -23,7 +23,7 @@ LONGEST_SLEEP = 0.1
 """Longest sleep [s] in the thread of a test of the gate."""
 PROCESSES = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")
 ADDRESSES = ("socket.bind", "socket.connect", "socket.sendto")
-INNER = ("uname -p", "fc-list", "import mujoco.egl", str(PACKAGE / "data"))
+INNER = ("uname -p", "fc-list", "import mujoco.egl", "import compile_kernels", str(PACKAGE / "data"))
 """Processes that a library or the product starts for itself, some of them once, in whichever test comes first."""
 OUTSIDE = ("live", "sweep", "soak")
 
