@@ -30,11 +30,11 @@ def outside(tmp_path, monkeypatch):
 
 def test_built_in_trials_and_files_of_the_folder_are_loaded(outside):
     space = Workspace(outside / "files")
-    assert space.trial("own.xml", duration=3.0).duration == 3.0
+    assert space.trial("own.xml", {"duration": 3.0}).duration == 3.0
     assert space.trial("sub/own.XML").name == "frontal"
     assert space.trial("own.xml").robots == load_trial("secret").robots
     assert space.trial("frontal").robots == load_builtin_trial("frontal").robots != load_trial("frontal").robots
-    assert space.trial("frontal", gap=7).robots == load_trial("secret").robots
+    assert space.trial("frontal", {"gap": 7}).robots == load_trial("secret").robots
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,33 @@ def test_a_value_names_no_file_outside_the_folder(outside, name, path, value):
     desk.close()
 
 
+@pytest.mark.parametrize("word", ["trust", "folder", "source", "name", "given", "values", "self", "place"])
+@pytest.mark.parametrize("name", ["intersection", "frontal", "own.xml"])
+def test_no_setting_is_an_argument(outside, name, word):
+    settings = {word: str(outside), "robot/navigator/type": f"{outside}/shy.py:Shy"}
+    desk = SimulatorDesk(Windows(outside / "files"))
+    with pytest.raises(CrowdbotError):
+        call_command(desk, "open", {"name": name, "settings": settings})
+    call_command(desk, "open", {"name": name, "paused": True})
+    with pytest.raises(CrowdbotError):
+        call_command(desk, "restart", {"settings": settings})
+    if word != "name":  # a value of each trial
+        with pytest.raises(CrowdbotError, match=word):
+            call_command(desk, "open", {"name": name, "settings": {word: "1"}})
+    assert not (outside / "ran").exists()
+    desk.close()
+
+
+def test_a_value_of_a_running_trial_names_no_code_outside_the_folder(outside):
+    desk = SimulatorDesk(Windows(outside / "files"))
+    call_command(desk, "open", {"name": "own.xml", "paused": True})
+    with pytest.raises(CrowdbotError, match="outside"):
+        call_command(desk, "set_value", {"path": "robot/navigator/type", "text": f"{outside}/shy.py:Shy"})
+    assert not (outside / "ran").exists()
+    desk.close()
+
+
 def test_code_of_the_folder_runs(outside):
     (outside / "files" / "shy.py").write_text(SHY)
-    trial = Workspace(outside / "files").trial("intersection", navigator="shy.py:Shy")
+    trial = Workspace(outside / "files").trial("intersection", {"navigator": "shy.py:Shy"})
     assert type(trial.robots[0].navigator).__name__ == "Shy"

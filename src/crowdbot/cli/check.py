@@ -85,7 +85,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         if is_experiment(name):
             load_experiment(name, trust=options.trust)
             return {"problems": []}
-        trial = load_trial(name, trust=options.trust, **settings(options))
+        trial = load_trial(name, settings(options), trust=options.trust)
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:

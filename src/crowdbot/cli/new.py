@@ -142,7 +142,7 @@ def _trial(options: argparse.Namespace) -> Trial:
 def _copied_trial(options: argparse.Namespace) -> Trial:
     from crowdbot.trials import load_trial
 
-    return load_trial(options.source or "frontal", trust=options.trust, **settings(options))
+    return load_trial(options.source or "frontal", settings(options), trust=options.trust)
 
 
 def _place(trial: Trial, options: argparse.Namespace) -> Trial:

@@ -57,7 +57,7 @@ def main(options: argparse.Namespace) -> int:
 
     if options.trial.lower().endswith(".mcap"):
         return _render_episode(options)
-    trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    trial = select_variant(load_trial(options.trial, settings(options), trust=options.trust), options.variant)
     return _render(options, trial, trial.seed if options.seed is None else options.seed)
 
 

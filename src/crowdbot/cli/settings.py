@@ -49,8 +49,6 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
             raise InputError(f"--set {text!r} must be NAME=VALUE, such as density=0.5")
         if name.strip() in found:
             raise InputError(f"--set {name.strip()} is given twice")
-        if name.strip() in ("source", "trust"):
-            raise InputError(f"--set {name.strip()}: no trial has such a parameter")
         found[name.strip()] = value.strip()
     world = getattr(options, "world", None)
     if world is not None:

@@ -9,12 +9,11 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import Trial, expand_sweeps, load_trial, trial_xml
+from crowdbot.trials import Trial, expand_sweeps, trial_xml
 
 from .episode_metrics import check_families
 from .method import Method, own_method
@@ -185,8 +184,3 @@ def parse_seeds(text: str) -> tuple[int, ...]:
             raise InputError(f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} numbers")
         seeds += range(first, end)
     return tuple(seeds)
-
-
-def load_trials(names: Sequence[str], trust: bool = False, **values: Any) -> list[Trial]:
-    """Return trials from files or built-in names."""
-    return [load_trial(str(Path(name)) if Path(name).is_file() else name, trust=trust, **values) for name in names]

@@ -118,7 +118,7 @@ def make_task(
     posed: bool = False,
 ) -> CrowdTask:
     """Return the task of an environment from its arguments."""
-    chosen = load_trial(trial, **values) if isinstance(trial, str) else trial
+    chosen = load_trial(trial, values) if isinstance(trial, str) else trial
     return CrowdTask(
         chosen,
         ObservationForm(observation) if isinstance(observation, str) else observation,

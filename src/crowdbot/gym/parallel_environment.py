@@ -66,7 +66,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise InputError(f"render_mode = {render_mode!r} must be 'rgb_array' or None")
-        chosen = load_trial(trial, **values) if isinstance(trial, str) else trial
+        chosen = load_trial(trial, values) if isinstance(trial, str) else trial
         if not chosen.robots:
             raise InputError(f"trial {chosen.name!r} has no robot")
         seen = ObservationForm(observation) if isinstance(observation, str) else observation

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib.resources
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +25,17 @@ MODEL = "crowd/type"
 """Path of the crowd model in trial files: ``model`` is a parameter of every built-in trial with one crowd."""
 
 
-def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
+def load_trial(
+    source: str | Path, given: Mapping[str, Any] | None = None, /, *, trust: bool = False, **values: Any
+) -> Trial:
     """Load and check a trial.
 
     Args:
         source: a trial file or a built-in name; a file of this name in the working folder takes precedence.
+        given: parameters of a built-in trial, or values by path as in :class:`crowdbot.trials.Sweep`. Names that come
+            from outside belong here, so that none of them becomes an argument.
         trust: whether the trial may load code from outside its own folder, or read files there.
-        values: parameters of a built-in trial, or values by path as in :class:`crowdbot.trials.Sweep`, such as
-            ``world="physics"``.
+        values: more of ``given``, such as ``world="physics"``.
 
     Raises:
         TrialError: the trial does not exist or has errors; one sentence per error.
@@ -42,14 +46,15 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
     10
     >>> type(load_trial("intersection").crowd).__name__, type(load_trial("intersection", model="orca").crowd).__name__
     ('People', 'ORCA')
-    >>> load_trial("crossing-flows", **{"spawner[1]/count": 5}).people
+    >>> load_trial("crossing-flows", {"spawner[1]/count": 5}).people
     25
     >>> load_trial("frontal", world="physics", gap=5).world
     'physics'
     """
+    values = {**(given or {}), **values}
     path = Path(source)
     if not path.is_file() and (str(source) in builtin_trials() or _is_plain_name(path)):
-        return load_builtin_trial(str(source), trust=trust, **values)
+        return load_builtin_trial(str(source), values, trust=trust)
     trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return apply_values(trial, values, place=trial.name, trust=trust)
 
@@ -58,14 +63,22 @@ def _is_plain_name(path: Path) -> bool:
     return not path.exists() and not path.suffix and len(path.parts) == 1
 
 
-def load_builtin_trial(name: str, *, trust: bool = False, folder: Path | None = None, **values: Any) -> Trial:
+def load_builtin_trial(
+    name: str,
+    given: Mapping[str, Any] | None = None,
+    /,
+    *,
+    trust: bool = False,
+    folder: Path | None = None,
+    **values: Any,
+) -> Trial:
     """Load a built-in trial, and never a file of this name.
 
     Args:
         name: name of the trial.
+        given, values: as for :func:`load_trial`.
         trust: whether the values may name files and code outside the folder.
         folder: folder of files and code that the values name (default: the working folder).
-        values: as for :func:`load_trial`.
 
     Raises:
         TrialError: there is no such trial, or a value is wrong.
@@ -73,6 +86,7 @@ def load_builtin_trial(name: str, *, trust: bool = False, folder: Path | None = 
     >>> load_builtin_trial("frontal").name
     'frontal'
     """
+    values = {**(given or {}), **values}
     known = builtin_trials()
     if name not in known:
         meant = did_you_mean(name, known)

@@ -14,19 +14,23 @@ from .parser import parse_trial
 from .sweep import MOST_VARIANTS
 from .trial import Trial
 from .value_path import set_values, text_of
+from .xml.element_edit import needs_trust
 from .xml.writer import element_of
 
 __all__ = ["apply_values", "expand_sweeps"]
 
 
-def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool = True) -> Trial:
+def apply_values(
+    trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool | None = None
+) -> Trial:
     """Return a trial with other values at some paths, checked like a file.
 
     Args:
         trial: the original trial.
         values: texts, numbers or booleans by path, as in :class:`Sweep`.
         place: name for messages.
-        trust: whether code from outside the folder of the trial may be loaded.
+        trust: whether code and files outside the folder of the trial may be named (default: if the trial does so
+            already).
 
     Raises:
         TrialError: a path does not exist, or a value is not allowed.
@@ -39,6 +43,7 @@ def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "varia
     """
     if not values:
         return trial
+    trust = needs_trust(trial) if trust is None else trust
     root = element_of(trial)
     try:
         set_values(root, Trial, {path: text_of(value) for path, value in values.items()})
@@ -47,10 +52,10 @@ def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "varia
     return parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust)
 
 
-def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
+def expand_sweeps(trial: Trial, trust: bool | None = None) -> tuple[Trial, ...]:
     """Return a trial without sweeps for every combination of values; the trial itself if it has none.
 
-    The names contain the values: ``doors [door 1.2, seed 3]``.
+    The names contain the values: ``doors [door 1.2, seed 3]``; ``trust`` is that of :func:`apply_values`.
 
     Raises:
         TrialError: a path does not exist, a value is not allowed, or there are too many combinations.
@@ -65,6 +70,7 @@ def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
     """
     if not trial.sweeps:
         return (trial,)
+    trust = needs_trust(trial) if trust is None else trust
     rows = _combinations(trial)
     return tuple(_variant(trial, row, trust) for row in rows)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from xml.parsers import expat  # expat loads no external entity; declarations of entities are refused below
@@ -84,19 +85,19 @@ class Workspace:
         """Return the names of the trial files, and of those that are no XML, which a user can mend."""
         return [name for name in self.files("*.xml") if _root(self.folder / name) in ("trial", "")]
 
-    def trial(self, name: str, **values: Any) -> Trial:
+    def trial(self, name: str, values: Mapping[str, Any] | None = None) -> Trial:
         """Load a built-in trial or a trial file that may be read; values can name files of the same folder only.
 
         Args:
             name: name of the trial, or of the file with its ending.
-            values: as for :func:`crowdbot.trials.load_trial`.
+            values: parameters, or values by path, as for :func:`crowdbot.trials.load_trial`.
 
         Raises:
             InputError: there is no such trial, it is outside the folders, or it has errors.
         """
         if name not in builtin_trials() and (Path(name).suffix or len(Path(name).parts) > 1):
-            return load_trial(self.readable(name), **values)
-        return load_builtin_trial(name, folder=self.folder, **values)
+            return load_trial(self.readable(name), values)
+        return load_builtin_trial(name, values, folder=self.folder)
 
     def size(self) -> int:
         """Return the size of all files of the folder, without those of other sessions [B]."""

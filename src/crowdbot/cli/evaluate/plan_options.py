@@ -67,14 +67,14 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     trials, levels = [], {}
     for name in options.trials:
         if not factors:
-            trials.append(load_trial(name, trust=options.trust, **values))
+            trials.append(load_trial(name, values, trust=options.trust))
             continue
         again = [one.name for one in factors if one.name in values]
         if again:
             raise InputError(f"--sweep {again[0]} and --set {again[0]} conflict; give one of them")
-        base = load_trial(name, trust=options.trust, **values).name
+        base = load_trial(name, values, trust=options.trust).name
         for trial, row in sweep_trials(
-            lambda row, name=name: load_trial(name, trust=options.trust, **values, **row),  # type: ignore[misc]
+            lambda row, name=name: load_trial(name, {**values, **row}, trust=options.trust),  # type: ignore[misc]
             factors,
         ):
             trials.append(trial)

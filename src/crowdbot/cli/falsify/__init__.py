@@ -109,5 +109,5 @@ def _space(options: argparse.Namespace) -> SearchSpace:
     methods = parse_methods(options.navigator)
     if len(methods) != 1:
         raise InputError(f"--navigator {options.navigator!r} names {len(methods)} navigators; give one")
-    trial = load_trial(options.trial, trust=options.trust, **settings(options))
+    trial = load_trial(options.trial, settings(options), trust=options.trust)
     return SearchSpace(methods[0].put_into(trial), tuple(parse_factor(text) for text in options.over))

@@ -107,7 +107,7 @@ def _load(options: argparse.Namespace, name: str, values: dict[str, str]) -> Tri
     hint = did_you_mean(name, RECIPES)
     if hint and name not in builtin_trials() and not Path(name).exists():
         raise InputError(f"there is no trial or recipe {name!r}{hint}")
-    return load_trial(name, trust=options.trust, **(values | settings(options)))
+    return load_trial(name, values | settings(options), trust=options.trust)
 
 
 def _print(card: DataCard, out: Path, wall: float) -> None:

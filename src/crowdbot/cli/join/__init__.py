@@ -70,7 +70,7 @@ def main(options: argparse.Namespace) -> int:
     if options.clock not in (None, "paced"):
         raise InputError(f"--clock {options.clock} does not fit a real robot, which needs real time")
     options.pace = None
-    trial = load_trial(options.trial, trust=options.trust, **settings(options))
+    trial = load_trial(options.trial, settings(options), trust=options.trust)
     guard = _guard(options)
     begin = time.perf_counter()
     with contextlib.ExitStack() as stack:

@@ -39,7 +39,7 @@ def reading_logs(options: argparse.Namespace, source: str, detector: Detector, r
             raise InputError("--duration is for trials and folders of recorded scans; an episode is one run")
         check_plain_runs(options, "an episode is one run")
         return [read_readings(source, detector, options.sensor)]
-    trial = load_trial(source, trust=options.trust, **given)
+    trial = load_trial(source, given, trust=options.trust)
     first = trial.seed if options.seed is None else options.seed
     logs = []
     for k in range(options.starts):

@@ -69,7 +69,7 @@ def _runs(options: argparse.Namespace, report: Progress) -> list[list[tuple[Scan
     found = []
     for k in range(options.runs):
         for n, (name, given) in enumerate(TRIALS):
-            log = log_readings(load_trial(name, duration=DURATION, **given), options.seed + k, ScanNetwork())
+            log = log_readings(load_trial(name, {"duration": DURATION, **given}), options.seed + k, ScanNetwork())
             found.append([(cast("Scan", row.reading), {**row.people, **row.others}) for row in log.rows])
             report("run trials", (k * len(TRIALS) + n + 1) / (options.runs * len(TRIALS)))
     return found

@@ -34,7 +34,7 @@ def score_policy(file: Path, tasks: Sequence[TrainingTask], cases: int = 200) ->
     """
     rows: list[dict[str, str | float]] = []
     for task in tasks:
-        trial = load_trial(task.trial, **task.values)
+        trial = load_trial(task.trial, task.values)
         robots = tuple(dataclasses.replace(one, navigator=PolicyNavigator(file=str(file))) for one in trial.robots)
         simulation = Simulation(dataclasses.replace(trial, robots=robots), range(FIRST_CASE, FIRST_CASE + cases))
         outcomes, times = np.full(cases, "", dtype="U16"), np.zeros(cases)

@@ -75,7 +75,7 @@ class TrainingTask:
         Raises:
             InputError: the trial has no robot that moves in every direction.
         """
-        trial = load_trial(self.trial, **self.values)
+        trial = load_trial(self.trial, self.values)
         if not trial.robots or not trial.robots[0].holonomic:
             raise InputError(f'task {self.trial!r}: the first robot must have holonomic="true"')
         people = sum(one.count for one in trial.spawners) + len(trial.agents) + len(trial.robots) - 1

@@ -58,7 +58,7 @@ def sensor_images(simulation: Simulation) -> list[SensorImage]:
     """Return the images of all camera sensors; a colour camera has labels if its segmentation is requested.
 
     >>> from crowdbot.trials import load_trial
-    >>> trial = load_trial("frontal", **{"robot/type": "turtlebot2"})
+    >>> trial = load_trial("frontal", {"robot/type": "turtlebot2"})
     >>> [one.name for one in sensor_images(Simulation(trial))]
     ['robot/kinect_depth/depth', 'robot/kinect_depth/labels']
     """
@@ -126,7 +126,7 @@ def encode_image(reading: Reading, image: SensorImage, channel: str, revision: i
         InputError: the reading is not one of this camera.
 
     >>> from crowdbot.trials import load_trial
-    >>> simulation = Simulation(load_trial("frontal", **{"robot/type": "turtlebot2"}), 1)
+    >>> simulation = Simulation(load_trial("frontal", {"robot/type": "turtlebot2"}), 1)
     >>> simulation.advance()
     >>> depth = sensor_images(simulation)[0]
     >>> frame = encode_image(depth.sensor.reading(0), depth, "cam0")

@@ -76,7 +76,7 @@ def compile_kernels() -> None:
     from .live_values import live_values
 
     name, values, seed = FIRST
-    trial = load_trial(name, **values)  # type: ignore[arg-type]
+    trial = load_trial(name, values)
     with tempfile.TemporaryDirectory() as folder, open_run(trial, seed, Path(folder) / "first.mcap") as run:
         bodies = WalkingBodies(run.simulation)
         for _ in range(STEPS):

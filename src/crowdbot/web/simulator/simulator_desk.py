@@ -289,7 +289,7 @@ class SimulatorDesk(PictureDesk):
             self.session.tell("simulator.status", self._status())
 
     def _load(self, name: str, values: dict[str, str], variant: int) -> Trial:
-        trial = self.session.workspace.trial(name, **values)
+        trial = self.session.workspace.trial(name, values)
         if trial.sweeps:
             variants = expand_sweeps(trial)
             if not 1 <= variant <= len(variants):
