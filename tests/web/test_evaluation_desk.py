@@ -134,6 +134,8 @@ def test_a_cancelled_evaluation_continues(desk):
         (("a", ["frontal"], "orca", "two"), "two"),
         (("a", ["frontal"], "orca", "0:200000"), "at most 100000"),
         (("../a", ["frontal"], "orca", "0:2"), "name of an evaluation = '../a'"),
+        (("a", ["frontal"], "orca", "0:2", ["/x/mine.py:Near"]), "metrics: file '/x/mine.py' is outside the folder"),
+        (("a", ["frontal"], "orca", "0:2", ["median:a,../m.py:Near"]), "metrics: file '../m.py' is outside"),
     ],
 )
 def test_wrong_requests_are_refused_before_they_run(desk, arguments, sentence):

@@ -54,7 +54,7 @@ class EvaluationRequest:
             load_builtin_trial(one) if one in builtin_trials() else load_trial(_inside(folder, one))
             for one in self.trials
         ]
-        statistics = [parse_statistic(name) for name in self.metrics]
+        statistics = [parse_statistic(check_text(name, "metrics")) for name in self.metrics]
         families = (*LOG_FAMILIES, *families_of([one.metric for one in statistics]))
         methods = parse_methods(self.navigators)
         methods = with_safety(methods) if self.safety else methods
