@@ -2,20 +2,27 @@
 
 ``python tests/builtin_digests.py`` writes the runs that ``simulation/builtin_digests.json`` lacks. If a change of
 results is intended, delete the file first, and name the change in the commit.
+
+The last bit of a result depends on the vector instructions that NumPy and its linear algebra use, so each run has a
+digest for processors with AVX-512 and one for those without. The second one is written in another process, in which
+both do without AVX-512.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import platform
+import subprocess
+import sys
 import time
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import llvmlite.binding
 import numpy as np
+from numpy._core import _multiarray_umath as umath  # the only place that tells the features in use
 
 from crowdbot.recording import run
 from crowdbot.simulation import Episode
@@ -27,18 +34,39 @@ FORMS = ("planar/0/2", "physics/0/1", "planar/0/20")
 STATE_TIMES = {"planar": 2.0, "physics": 0.5}
 """Time of the compared state by world [s]: early, since crowds are chaotic."""
 PACKAGES = ("numpy", "scipy", "shapely", "numba", "llvmlite", "mujoco")
+LEVELS = {"x86-64-v4": "X86_V4", "x86-64-v3": "X86_V3"}
+"""NumPy's name of each level of the processor that it has code for, best first."""
+
+
+def level() -> str:
+    """Return the level of the processor that NumPy uses; empty for other processors."""
+    return next((name for name, feature in LEVELS.items() if umath.__cpu_features__.get(feature)), "")
+
+
+def level_environment(name: str) -> dict[str, str]:
+    """Return the environment of a process in which NumPy uses no more than this level."""
+    if name == level():
+        return dict(os.environ)
+    beyond = umath.__cpu_dispatch__[umath.__cpu_dispatch__.index(LEVELS[name]) + 1 :]
+    return {**os.environ, "NPY_DISABLE_CPU_FEATURES": " ".join(beyond), "OPENBLAS_CORETYPE": "Haswell"}
 
 
 def machine() -> dict[str, str]:
-    """Return what the last bit of a result depends on: processor, operating system, versions of libraries."""
+    """Return what the last bit of a result depends on, beside the level: operating system, versions of libraries."""
     return {
         "system": platform.system(),
         "machine": platform.machine(),
-        "processor": llvmlite.binding.get_host_cpu_name(),
         "libc": " ".join(platform.libc_ver()),
         "python": ".".join(platform.python_version_tuple()[:2]),
         **{name: version(name) for name in PACKAGES},
     }
+
+
+def differences(recorded: dict[str, str]) -> list[str]:
+    """Return why digests of another machine need not be those of this one; empty if they are equal at equal levels."""
+    here = machine()
+    found = [f"{name} {here[name]} instead of {recorded[name]}" for name in here if here[name] != recorded[name]]
+    return found if level() else [*found, f"NumPy has no code for {' or '.join(LEVELS)}"]
 
 
 def entry(key: str) -> dict[str, Any]:
@@ -60,24 +88,33 @@ def early_state(episode: Episode, latest: float) -> list[float]:
 
 
 def write(file: Path = FILE) -> None:
-    """Write all runs that the file lacks."""
+    """Write the digests that the file lacks for the level of this process."""
     here = machine()
-    found = json.loads(file.read_text("utf-8")) if file.exists() else {"machine": here, "runs": {}}
-    if found["machine"] != here:
-        raise SystemExit(f"{file} was written on another machine, {found['machine']}; delete it to write all runs")
+    whole = json.loads(file.read_text("utf-8")) if file.exists() else {"machine": here, "runs": {}}
+    if reasons := differences(whole["machine"]):
+        raise SystemExit(f"{file} was written on another machine ({', '.join(reasons)}); delete it to write all runs")
     for key in (f"{name}/{form}" for form in FORMS for name in sorted(builtin_trials())):
-        if key in found["runs"]:
+        digests = whole["runs"].get(key, {}).get("digest", {})
+        if level() in digests:
             continue
         begin = time.monotonic()
         row = entry(key)
         if row["outcome"] == "interrupted":
             raise KeyboardInterrupt
-        found["runs"][key] = row
-        print(f"{key} {found['runs'][key]['digest']} {time.monotonic() - begin:.1f} s", flush=True)
-        rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in sorted(found["runs"].items()))
-        head = f' "machine": {json.dumps(found["machine"])},\n "runs": '
+        print(f"{key} {level()} {row['digest']} {time.monotonic() - begin:.1f} s", flush=True)
+        if key in whole["runs"] and abs(np.subtract(row["state"], whole["runs"][key]["state"])).max() > 1e-6:
+            raise SystemExit(f"{key} is another run on {level()}: {row['state']}, not {whole['runs'][key]['state']}")
+        whole["runs"].setdefault(key, row)
+        whole["runs"][key]["digest"] = dict(sorted({**digests, level(): row["digest"]}.items(), reverse=True))
+        rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(one)}" for name, one in sorted(whole["runs"].items()))
+        head = f' "machine": {json.dumps(whole["machine"])},\n "runs": '
         file.write_text("{\n" + head + "{\n" + rows + "\n }\n}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
     write()
+    lower = list(LEVELS)[list(LEVELS).index(level()) + 1 :]
+    for name in lower:
+        subprocess.run([sys.executable, __file__], env=level_environment(name), check=True)
+    if level() != next(iter(LEVELS)) and "NPY_DISABLE_CPU_FEATURES" not in os.environ:
+        print(f"the digests of {next(iter(LEVELS))} are missing: this processor has no AVX-512")

@@ -1,7 +1,7 @@
 """Fixtures for inputs that are not part of the repository, and what happens to a test when its input is missing.
 
-A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``, ``ros1``, ``namespaces``. If
-an input is missing, the tests that need it are deselected, and one line at the end gives their number, the reason and
+A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``digests``, ``drawing``, ``ros1`` and
+others. If an input is missing, the tests that need it are deselected, and one line at the end gives their number, the reason and
 the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give are a
 reason to leave tests out; every other missing input is a failure.
 
@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import json
 import os
 import shutil
 import subprocess
@@ -98,12 +99,21 @@ def _namespaces() -> str | None:
     return command if subprocess.run([command, "--net", "true"], stderr=subprocess.DEVNULL).returncode == 0 else None
 
 
+@functools.cache
+def _digests() -> str | None:
+    """Return the level of the processor if digests of runs must be those of the files."""
+    from builtin_digests import FILE, differences, level
+
+    return None if differences(json.loads(FILE.read_text(encoding="utf-8"))["machine"]) else level()
+
+
 COPY = "tests/RECORDINGS.md"
 PACKAGES = "tests/system-packages"
 INPUTS = {
     "recordings": Input("recordings that cannot ship", COPY, lambda: _folder("data")),
     "urdf": Input("robot files that cannot ship", COPY, lambda: _folder("urdf")),
     "chromium": Input("Chromium", PACKAGES, lambda: shutil.which("chromium") or shutil.which("chromium-browser")),
+    "digests": Input("the system and libraries of the recorded digests", "constraints.txt", _digests),
     "drawing": Input("OpenGL without a screen", PACKAGES, _drawing),
     "namespaces": Input("network namespaces", "unshare --net true", _namespaces, right=True),
     "ros1": Input("ROS 1", PACKAGES, lambda: shutil.which("rosmaster") and shutil.which("rosbag")),
@@ -140,6 +150,12 @@ def roslaunch() -> str:
 def rviz() -> str:
     """Command of RViz 1; its X server without a screen is there, too."""
     return INPUTS["rviz"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def digests() -> str:
+    """Level of the processor; runs on this computer are equal to the recorded ones to the last bit."""
+    return INPUTS["digests"].get()  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="session")

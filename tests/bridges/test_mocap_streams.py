@@ -163,7 +163,7 @@ def test_samples_come_over_the_network_with_their_age() -> None:
                 for at, _ in stream.read("Anna", now, now + 0.02):
                     ages.append(now - at)
     assert ages  # how many and how old: tested with a simulated clock below
-    assert min(ages) > -0.001
+    assert min(ages) > -0.02  # no sample is later than the span that is read
     assert stream.statistics("Anna").rate == pytest.approx(240.0, rel=0.02)
     latency = stream.latency()
     assert latency is not None
