@@ -1,9 +1,9 @@
 """Fixtures for inputs that are not part of the repository, and what happens to a test when its input is missing.
 
 A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``digests``, ``drawing``, ``ros1`` and
-others. If an input is missing, the tests that need it are deselected, and one line at the end gives their number, the reason and
-the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give are a
-reason to leave tests out; every other missing input is a failure.
+others. If an input is missing, the tests that need it are deselected, and one line at the end gives their number, the
+reason and the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give
+are a reason to leave tests out; every other missing input is a failure.
 
 A test that needs a real clock, a browser, another program, a port or a kill has the marker ``live``: it runs in
 ``make live``. Who asks for a browser, ROS 1, RViz or a network namespace as a fixture gets the marker by that.

@@ -1,10 +1,29 @@
 """The kernel cache: keyed by sources, placed where asked, warm in the next process."""
 
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
+
+import crowdbot
+from crowdbot.core import kernels
+
+LENGTH, TABLE = 1.0, np.zeros(2)
+
+
+@kernels.kernel
+def inner(x):
+    return x * LENGTH
+
+
+@kernels.kernel
+def outer(x):
+    return inner(x) + TABLE[1]
+
 
 PROGRAM = """
 import sys
@@ -30,10 +49,11 @@ with progress(sys.argv[1] == "quiet") as report:
 """
 
 
-def _run(folder, program=PROGRAM, *words):
+def _run(folder, program=PROGRAM, *words, path=None):
+    places = {"CROWDBOT_CACHE": str(folder)} | ({"PYTHONPATH": str(path)} if path else {})
     done = subprocess.run(
         [sys.executable, "-c", program, *words],
-        env={**os.environ, "CROWDBOT_CACHE": str(folder)},
+        env={**os.environ, **places},
         capture_output=True,
         text=True,
     )
@@ -48,6 +68,28 @@ def test_cold_then_warm(tmp_path):
 
 
 @pytest.mark.program
+def test_another_installation_of_the_same_sources_is_warm(tmp_path):
+    source = Path(crowdbot.__file__).parent
+    for name in ("one", "other"):
+        for path in source.rglob("*.py"):
+            place = tmp_path / name / path.relative_to(source.parent)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)
+    found = [_run(tmp_path / "cache", path=tmp_path / name) for name in ("one", "other")]
+    assert found == [["True", "False", "0"], ["False", "False", "1"]]
+
+
+def test_a_constant_of_another_file_is_part_of_the_key_of_a_kernel(monkeypatch):
+    locator, stamps = kernels._PackageLocator(outer.py_func, Path()), []
+    for length, table in ((1.0, np.zeros(5000)), (2.0, np.zeros(5000)), (2.0, np.eye(5000)[2500])):
+        monkeypatch.setitem(globals(), "LENGTH", length)
+        monkeypatch.setitem(globals(), "TABLE", table)
+        stamps.append(locator.get_source_stamp())
+    assert len(set(stamps)) == 3
+    assert locator.get_source_stamp() == stamps[2]
+
+
+@pytest.mark.program
 def test_who_waits_for_kernels_of_ours_is_told_once_and_why(tmp_path):
     told = _run(tmp_path, TOLD, "plain")
     assert told.startswith("a first run: compiling kernels once, into " + str(tmp_path))
@@ -57,8 +99,6 @@ def test_who_waits_for_kernels_of_ours_is_told_once_and_why(tmp_path):
 
 
 def test_the_key_changes_with_any_kernel_source(tmp_path, monkeypatch):
-    from crowdbot.core import kernels
-
     package = tmp_path / "crowdbot"
     (package / "core").mkdir(parents=True)
     (package / "models").mkdir()

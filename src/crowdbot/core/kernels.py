@@ -2,7 +2,9 @@
 
 numba does not detect changes of a compiled function in another file: the caller keeps its cached machine code. The
 cache folder is therefore keyed by a hash of all source files with kernels, in addition to numba's own key (version and
-processor). All kernels use float64, no fast-math, and NumPy's rules for division.
+processor), and each entry by the constants that its kernel has from other files. Nothing in the names depends on the
+folder of the package, so another installation of the same sources finds the kernels compiled. All kernels use float64,
+no fast-math, and NumPy's rules for division.
 """
 
 from __future__ import annotations
@@ -13,14 +15,18 @@ import importlib
 import os
 import shutil
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar, cast, overload
 
+import numpy as np
+
 __all__ = ["cache_folder", "cache_root", "is_cold", "kernel", "prange"]
 
+PACKAGE = Path(__file__).parents[1]
 STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -71,13 +77,14 @@ class Kernel:
         names = self.py_func.__globals__
         if names.get("prange") is prange:
             names["prange"] = numba.prange
-        before = settings.CACHE_DIR
-        settings.CACHE_DIR = str(cache_folder())
+        caches: Any = importlib.import_module("numba.core.caching").FunctionCache._impl_class
+        before, locators = settings.CACHE_DIR, caches._locator_classes
+        settings.CACHE_DIR, caches._locator_classes = str(cache_folder()), [_PackageLocator, *locators]
         try:
             options = {"error_model": "numpy", "fastmath": False, "parallel": self._parallel}
             return numba.njit(cache=True, forceinline=self._inline, **options)(self.py_func)
         finally:
-            settings.CACHE_DIR = before
+            settings.CACHE_DIR, caches._locator_classes = before, locators
 
     @functools.cached_property
     def starts_threads(self) -> bool:
@@ -89,6 +96,63 @@ class Kernel:
     @property
     def _numba_type_(self) -> Any:
         return self.dispatcher._numba_type_
+
+
+class _PackageLocator:
+    """Where numba keeps a compiled kernel of this package; those of users stay with numba's own locators.
+
+    The methods are those of ``numba.core.caching._CacheLocator``.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self.function, self.folder = function, folder
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> _PackageLocator | None:
+        """Return the locator of a function, or None for another package or a folder that cannot be written."""
+        path = Path(file)
+        if not path.is_relative_to(PACKAGE):
+            return None
+        locator = cls(function, cache_folder() / path.parent.relative_to(PACKAGE))
+        try:
+            locator.ensure_cache_path()
+        except OSError:
+            return None
+        return locator
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder; raises OSError if nothing can be written there."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=self.folder).close()
+
+    def get_cache_path(self) -> str:
+        """Return the folder of the function."""
+        return str(self.folder)
+
+    def get_source_stamp(self) -> str:
+        """Return a digest of the constants that are compiled into the function; its folder is keyed by its source."""
+        digest = hashlib.blake2b(digest_size=16)
+        for name, value in sorted(_constants(self.function, set()).items()):
+            digest.update(f"{name}={value!r};".encode())
+        return digest.hexdigest()
+
+    def get_disambiguator(self) -> str:
+        """Return the first line of the function, which tells apart functions of one name in a file."""
+        return str(self.function.__code__.co_firstlineno)
+
+
+def _constants(function: Callable[..., Any], seen: set[Callable[..., Any]]) -> dict[str, Any]:
+    """Return the global numbers and arrays that a function and the kernels that it calls read."""
+    found: dict[str, Any] = {}
+    seen.add(function)
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if isinstance(value, Kernel):
+            found |= _constants(value.py_func, seen) if value.py_func not in seen else {}
+        elif not (value is None or callable(value) or isinstance(value, ModuleType)):
+            array = isinstance(value, np.ndarray)  # its text leaves out the middle of a long array
+            found[f"{function.__module__}.{name}"] = (value.dtype.str, value.shape, value.tobytes()) if array else value
+    return found
 
 
 @functools.cache
@@ -157,10 +221,11 @@ def is_cold() -> bool:
 
 def _source_key() -> str:
     sum_ = hashlib.blake2b(digest_size=8)
-    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
+    package = Path(__file__).parents[1]
+    for path in sorted(package.rglob("*.py")):
         source = path.read_bytes()
         if b"@kernel" in source or path.name == "kernels.py":
-            sum_.update(path.name.encode() + b"\0" + source)
+            sum_.update(path.relative_to(package).as_posix().encode() + b"\0" + source)
     return sum_.hexdigest()
 
 
