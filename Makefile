@@ -6,6 +6,8 @@
 # make sweeps   the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
 # make soak     the tests that take longer than CI allows, and 2000 mutated files of every kind
 # make smoke    build the wheel and the sdist, and try the wheel in bare environments
+# Without its bytecode, each process of a test would compile the sources again.
+unexport PYTHONDONTWRITEBYTECODE
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin

@@ -10,6 +10,7 @@ from crowdbot.benchmark.drives import measure_drives
 from crowdbot.core import RobotError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import PhysicsStage, PhysicsWorld, PlanarWorld, Robot, import_robot
+from samples import sample
 
 DT = 0.05
 
@@ -150,7 +151,7 @@ def real_robot(source, folder):
     return Robot.load(folder)
 
 
-@pytest.mark.parametrize("step", [0.002, 0.005, 0.01])
+@pytest.mark.parametrize("step", sample([0.005, 0.002, 0.01], 1))
 @pytest.mark.parametrize("name", [HUSKY, JACKAL])
 def test_real_skid_steer_robots_do_not_overshoot(urdf, tmp_path, name, step):
     real_robot(urdf / name, tmp_path)
@@ -170,7 +171,7 @@ def test_real_skid_steer_robots_turn_as_asked(urdf, tmp_path, name):
         assert turn == pytest.approx(row[1], rel=0.05, abs=0.01)
 
 
-@pytest.mark.parametrize("step", [0.002, 0.005, 0.01])
+@pytest.mark.parametrize("step", sample([0.005, 0.002, 0.01], 1))
 @pytest.mark.parametrize("kind", COMMANDS)
 def test_every_kind_passes_the_drive_laboratory(tmp_path, kind, step):
     robot_of(tmp_path, kind)

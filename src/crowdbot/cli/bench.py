@@ -178,7 +178,7 @@ def _measure_drives(options: argparse.Namespace) -> int:
 
     with progress(options.json) as report:
         found = measure_drives(
-            options.robot, quick=options.quick, makers=options.makers, keep=options.keep, report=report
+            options.robot or None, quick=options.quick, makers=options.makers, keep=options.keep, report=report
         )
     _write(options.out, found.as_dict())
     if options.page is not None:

@@ -92,7 +92,7 @@ class DriveReport:
 
 
 def measure_drives(
-    robots: Sequence[str] = (),
+    robots: Sequence[str] | None = None,
     *,
     steps: Sequence[float] | None = None,
     quick: bool = False,
@@ -103,7 +103,7 @@ def measure_drives(
     """Drive robots alone in an empty hall, in the plane and in the physics world, and compare the motions.
 
     Args:
-        robots: built-in names or folders of robots; none: all built-in robots.
+        robots: built-in names or folders of robots (default: all built-in robots).
         steps: time steps of the engine [s] (default: 1, 2, 5, 10 and 20 ms, or 5 ms if quick). The whole grid is driven
             at 2, 5 and 10 ms, the quick one at others.
         quick: three speeds and short manoeuvres.
@@ -123,7 +123,7 @@ def measure_drives(
     ((), True)
     """
     steps = tuple(steps) if steps else (0.005,) if quick else STEPS
-    loaded = [Robot.load(name) for name in (robots or builtin_robots())]
+    loaded = [Robot.load(name) for name in (builtin_robots() if robots is None else robots)]
     shown = min(steps, key=lambda step: abs(step - 0.005))
     store = TraceStore(keep)
     found = tuple(_measure_makers(store, makers, [step for step in steps if step in BARRED] or list(steps), report))
