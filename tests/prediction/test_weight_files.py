@@ -1,6 +1,7 @@
 """Pretrained weights: every file has its hash; those outside the package are found, checked, or named as missing."""
 
 import hashlib
+import sys
 from pathlib import Path
 
 import pytest
@@ -62,6 +63,6 @@ def test_missing_weights_are_named_in_a_sentence(wheel):
 )
 def test_the_folder_of_each_system(monkeypatch, platform, variable, end):
     monkeypatch.delenv("CROWDBOT_WEIGHTS", raising=False)
-    monkeypatch.setattr(weight_files.sys, "platform", platform)
+    monkeypatch.setattr(sys, "platform", platform)
     monkeypatch.setenv(variable, "/place")
     assert weights_folder().as_posix() == f"/{end}"

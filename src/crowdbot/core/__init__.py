@@ -43,6 +43,10 @@ from .programs import PROGRAMS, check_programs
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
 from .system_errors import explain_write_errors
+from .systems.file_lock import lock_file
+from .systems.memory import machine_memory, peak_memory
+from .systems.refusal import refuse_system, system_name
+from .systems.user_folders import user_data_folder
 from .tick_schedule import TickSchedule, whole_ticks
 from .version import source_digest
 from .walls import Walls
@@ -145,7 +149,9 @@ __all__ = [
     "is_cold",
     "kebab_case",
     "kernel",
+    "lock_file",
     "lock_output",
+    "machine_memory",
     "nearest_name",
     "next_uniform",
     "notify_compiling",
@@ -154,6 +160,7 @@ __all__ = [
     "parse_number",
     "parse_xml",
     "parse_yaml",
+    "peak_memory",
     "per_agent",
     "plugin_address",
     "plugin_sources",
@@ -162,6 +169,7 @@ __all__ = [
     "read_bytes",
     "read_gltf",
     "reads_only",
+    "refuse_system",
     "reject_entities",
     "relative_name",
     "release_stale_lock",
@@ -171,8 +179,10 @@ __all__ = [
     "sources_of",
     "stream",
     "stream_states",
+    "system_name",
     "table_rows",
     "unread_fields",
+    "user_data_folder",
     "whole_ticks",
     "without_running_code",
     "wrap_angle",

@@ -24,6 +24,8 @@ from typing import Any, TypeVar, cast, overload
 
 import numpy as np
 
+from .systems.user_folders import user_cache_folder
+
 __all__ = ["cache_folder", "cache_root", "is_cold", "kernel", "prange"]
 
 PACKAGE = Path(__file__).parents[1]
@@ -207,11 +209,7 @@ def cache_root() -> Path:
     chosen = os.environ.get("CROWDBOT_CACHE")
     if chosen:
         return Path(chosen).absolute()
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "crowdbot"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "crowdbot"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "crowdbot"
+    return user_cache_folder()
 
 
 def is_cold() -> bool:

@@ -131,10 +131,11 @@ def _is_running(pid: int) -> bool:
         kernel.GetExitCodeProcess(handle, ctypes.byref(status))
         kernel.CloseHandle(handle)
         return status.value == 259  # STILL_ACTIVE
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except (PermissionError, OverflowError):
+    else:
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return False
+        except (PermissionError, OverflowError):
+            return True
         return True
-    return True

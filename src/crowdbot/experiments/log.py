@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from pathlib import Path
 from typing import Any, BinaryIO, Literal
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, lock_file
 
 __all__ = ["SessionLog", "read_log"]
 
 FORMAT = 1
-LOCKED_BYTE = 1 << 30
-"""Position of the locked byte on Windows."""
 
 
 class SessionLog:
@@ -92,27 +89,11 @@ def _open_locked(path: Path, mode: Literal["xb", "r+b"]) -> BinaryIO:
     """
     stream: BinaryIO = path.open(mode)
     try:
-        _lock(stream)
+        lock_file(stream)
     except OSError:
         stream.close()
         raise EpisodeError(f"{path} is in use by another program; close that program first") from None
     return stream
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(stream: BinaryIO) -> None:
-        """Lock one byte beyond any content, since locked bytes cannot be read by others on Windows."""
-        stream.seek(LOCKED_BYTE)
-        msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
-        stream.seek(0)
-
-else:
-    import fcntl
-
-    def _lock(stream: BinaryIO) -> None:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def read_log(path: Path) -> list[dict[str, Any]]:

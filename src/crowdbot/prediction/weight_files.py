@@ -11,10 +11,9 @@ import functools
 import hashlib
 import importlib.resources
 import os
-import sys
 from pathlib import Path
 
-from crowdbot.core import DataError
+from crowdbot.core import DataError, user_data_folder
 
 __all__ = ["VARIABLE", "find_weights", "weight_hashes", "weights_folder"]
 
@@ -27,12 +26,7 @@ def weights_folder() -> Path:
     chosen = os.environ.get(VARIABLE)
     if chosen:
         return Path(chosen)
-    home = Path.home()
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", home / "AppData" / "Local")) / "crowdbot" / "weights"
-    if sys.platform == "darwin":
-        return home / "Library" / "Application Support" / "crowdbot" / "weights"
-    return Path(os.environ.get("XDG_DATA_HOME", home / ".local" / "share")) / "crowdbot" / "weights"
+    return user_data_folder() / "weights"
 
 
 @functools.cache

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field
 
-from crowdbot.core import InputError
-
-from .jobs.process_memory import machine_memory
+from crowdbot.core import InputError, machine_memory
 
 __all__ = ["CLASSROOM", "SessionLimits"]
 

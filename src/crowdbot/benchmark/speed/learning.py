@@ -45,8 +45,7 @@ def learning_measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
         found[f"learn-{name}"] = functools.partial(_learning, name)
         found[f"epoch-{name}"] = functools.partial(_epoch, name)
         found[f"predict-{name}-{PEOPLE}"] = functools.partial(_live, name)
-    if sys.platform != "win32":  # has no peak memory of a process
-        found["learn-memory"] = _memory
+    found["learn-memory"] = _memory
     return found
 
 
@@ -124,9 +123,9 @@ def _memory() -> Gauge:
     synthetic_samples(1)
     program = (
         "from crowdbot.benchmark.speed.learning import synthetic_samples, untrained_network, _updates\n"
-        "from crowdbot.benchmark.speed.measurement import peak_memory\n"
+        "from crowdbot.core import peak_memory\n"
         "_updates(untrained_network('social-ways', synthetic_samples()), 12)\n"
-        "print(peak_memory())"
+        "print(peak_memory() / 2**20)"
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)  # noqa: S603
     if run.returncode:

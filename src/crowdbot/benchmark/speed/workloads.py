@@ -63,8 +63,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     )
     if "power-law" in kinds:
         found["power-law-numpy"] = functools.partial(_against_numpy, kinds["power-law"])
-    if sys.platform != "win32":  # Windows does not report the peak memory of a process
-        found["orca-memory"] = _memory
+    found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "lidar-1080-batch": _lidar_batch, "trial": _trial}
     found |= {name: functools.partial(tracking, *pair) for name, pair in TRACKING_PAIRS.items()}
     found["predict-scans-1080"] = scan_prediction
@@ -161,11 +160,11 @@ def _alone() -> Measurement:
 def _memory() -> Gauge:
     """Read the peak memory of a child process that simulates 100 000 people for three steps."""
     program = (
-        "from crowdbot.benchmark.speed.measurement import peak_memory\n"
+        "from crowdbot.core import peak_memory\n"
         "from crowdbot.benchmark.speed.workloads import crowd\n"
         "from crowdbot.models import ORCA\n"
         "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
-        "print(peak_memory())"
+        "print(peak_memory() / 2**20)"
     )
     output = ""
     for _ in range(2):  # the first run may compile kernels, which needs more memory

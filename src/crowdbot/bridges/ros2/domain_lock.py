@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 import os
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, lock_file
 
 __all__ = ["lock_domain"]
 
@@ -29,15 +29,20 @@ def lock_domain() -> tuple[int, Callable[[], None]]:
     >>> release(), also()
     (None, None)
     """
-    import fcntl  # rclpy in lock step is for systems with fork
-
     for number in range(FIRST, LAST + 1):
-        path = Path(tempfile.gettempdir()) / f"crowdbot-domain-{os.getuid()}-{number}.lock"
-        place = os.open(path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
+        stream = os.fdopen(os.open(_lock_path(number), os.O_CREAT | os.O_RDWR, 0o600), "r+b")
         try:
-            fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock_file(stream)
         except OSError:
-            os.close(place)
+            stream.close()
             continue
-        return number, functools.partial(os.close, place)
+        return number, stream.close
     raise InputError(f"the ROS domains from {FIRST} to {LAST} are all in use")
+
+
+def _lock_path(number: int) -> Path:
+    folder = Path(tempfile.gettempdir())
+    if sys.platform == "win32":  # the folder belongs to one user
+        return folder / f"crowdbot-domain-{number}.lock"
+    else:
+        return folder / f"crowdbot-domain-{os.getuid()}-{number}.lock"

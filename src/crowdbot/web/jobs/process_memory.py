@@ -3,49 +3,34 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import os
 import signal
 import sys
 from pathlib import Path
 
-__all__ = ["end_descendants", "machine_memory", "process_memory"]
+from crowdbot.core import peak_memory
+
+__all__ = ["end_descendants", "process_memory"]
 
 PROC = Path("/proc")
-
-
-def machine_memory() -> float:
-    """Return the memory of this machine [B], infinity where the system does not tell it.
-
-    >>> machine_memory() > 1e8
-    True
-    """
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, ValueError, OSError):
-        return math.inf
 
 
 def process_memory() -> float:
     """Return the resident memory of this process and of those that it has started [B].
 
-    Where the system has no ``/proc``, it is the peak of this process alone, and 0 on Windows.
+    On macOS and Windows, it is the peak of this process alone.
 
     >>> process_memory() > 1e6
     True
     """
-    if PROC.joinpath("self", "statm").exists():
+    if sys.platform == "linux" and PROC.joinpath("self", "statm").exists():
         page = os.sysconf("SC_PAGE_SIZE")
         return float(page * sum(_pages(pid) for pid in (os.getpid(), *_descendants(os.getpid()))))
-    if sys.platform == "win32":
-        return 0.0
-    import resource
-
-    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    return peak_memory()
 
 
 def end_descendants() -> None:
-    """End the processes that this process has started."""
+    """End the processes that this process has started, on Linux; elsewhere they end by themselves, or go on."""
     for pid in _descendants(os.getpid()):
         with contextlib.suppress(OSError):
             os.kill(pid, signal.SIGTERM)
