@@ -9,18 +9,19 @@ import select
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
-from crowdbot.core import InputError, check_programs
+from crowdbot.core import InputError, check_programs, refuse_system
 
 from .messages import LONGEST_LINE
 
-__all__ = ["ChildProcess", "child_process"]
+__all__ = ["ChildProcess", "check_pipes", "child_process"]
 
 START = 60.0
 """Longest time until a process is ready: it imports its libraries [s]."""
@@ -36,10 +37,14 @@ class ChildProcess:
     Args:
         words: program and arguments; ``{scratch}`` is replaced by a folder of its own for files.
         name: name of the navigator, for error messages.
+
+    Raises:
+        InputError: it cannot be started, or the system is Windows.
     """
 
     def __init__(self, words: Sequence[str], name: str) -> None:
         check_programs(f"navigator {name}")
+        check_pipes(f"navigator {name}: a process of its own")
         self.name, self._lock, self._buffer = name, threading.Lock(), b""
         self.scratch = Path(tempfile.mkdtemp(prefix="crowdbot-process-"))
         self._log = (self.scratch / "stderr").open("w+b")
@@ -59,7 +64,7 @@ class ChildProcess:
             self.close()
             raise InputError(f"navigator {name}: {words[0]} cannot be started: {error.strerror}") from None
         assert self._process.stdout is not None
-        os.set_blocking(self._process.stdout.fileno(), False)
+        _stop_blocking(self._process.stdout)
 
     def wait_until_ready(self) -> None:
         """Wait for the first line, which says that the process is ready."""
@@ -84,7 +89,7 @@ class ChildProcess:
     def _send(self, data: bytes, end: float, seconds: float) -> None:
         stream = self._process.stdin
         assert stream is not None
-        os.set_blocking(stream.fileno(), False)
+        _stop_blocking(stream)
         view = memoryview(data)
         while view:
             _, ready, _ = select.select([], [stream], [], max(0.0, end - time.monotonic()))
@@ -154,6 +159,23 @@ class ChildProcess:
                     continue
         self._log.close()
         shutil.rmtree(self.scratch, ignore_errors=True)
+
+
+def check_pipes(what: str) -> None:
+    """Raise InputError on Windows, whose pipes have no limit of time.
+
+    Args:
+        what: who needs the pipes, for the message.
+
+    >>> check_pipes("navigator mine: a process of its own")
+    """
+    if sys.platform == "win32":
+        refuse_system(what, "Linux or macOS", "let the navigator run in this process, as mine.py:Mine")
+
+
+def _stop_blocking(stream: IO[bytes]) -> None:
+    if sys.platform != "win32":
+        os.set_blocking(stream.fileno(), False)
 
 
 def _status(code: int) -> str:

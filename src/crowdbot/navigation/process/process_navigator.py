@@ -15,7 +15,7 @@ from crowdbot.navigation.action import Action
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 
-from .child_process import ChildProcess, child_process
+from .child_process import ChildProcess, check_pipes, child_process
 from .messages import decode_action, encode_observation
 from .sandbox import sandbox_problem
 
@@ -30,7 +30,7 @@ class ProcessNavigator(Navigator):
     without the truth in readings (who is hit, biases) and without predictors. Its memory comes back with each answer,
     so replay and branches work as for other navigators; it must consist of numbers, texts, lists, dictionaries and
     arrays. A process that ends, hangs or answers something else fails the run in which it happens, and is started again
-    for the next one.
+    for the next one. It works on Linux and macOS.
 
     Fields:
         address: navigator in a Python file, ``mine.py:Mine``, relative to the working folder.
@@ -43,7 +43,7 @@ class ProcessNavigator(Navigator):
         cpu: largest CPU time of the process in the sandbox [s].
 
     Raises:
-        InputError: a value is not allowed, or this system has no sandbox.
+        InputError: a value is not allowed, this system has no sandbox, or it is Windows.
 
     >>> ProcessNavigator(address="mine.py:Mine", sandbox=False).title()
     'mine.py:Mine'
@@ -67,6 +67,7 @@ class ProcessNavigator(Navigator):
             raise InputError("ProcessNavigator: parameters belong to an address; write them into the command")
         if any("=" not in word for word in self.parameters.split()):
             raise InputError(f"ProcessNavigator: parameters = {self.parameters!r} must be name=value, by blanks")
+        check_pipes("ProcessNavigator: a navigator in a process of its own")
         if self.sandbox and (problem := sandbox_problem()):
             raise InputError(f"ProcessNavigator: {problem}; sandbox=false runs the code without one")
 
