@@ -6,6 +6,7 @@ import ipaddress
 import select
 import socket
 import struct
+import sys
 from collections.abc import Iterable
 from types import TracebackType
 
@@ -230,7 +231,7 @@ def _join(group: str, port: int, local: str) -> socket.socket:
     connection = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        connection.bind((group, port))
+        connection.bind((local if sys.platform == "win32" else group, port))  # Windows binds to own addresses only
         member = socket.inet_aton(group) + socket.inet_aton(local)
         connection.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
     except OSError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import json
 import math
 import subprocess
@@ -14,7 +15,7 @@ from typing import Any
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
-from crowdbot.core import InputError, import_optional
+from crowdbot.core import InputError, import_optional, refuse_system
 from crowdbot.recording import StepMessage
 
 from .memory_keys import SENSORS, memory_values
@@ -42,12 +43,14 @@ class NaoqiBridge:
 
     Raises:
         MissingExtra: qi is not installed.
-        InputError: the address is none.
+        InputError: the address is none, or there is no qi for this system.
     """
 
     name = "naoqi"
 
     def __init__(self, url: str) -> None:
+        if sys.platform != "linux" and importlib.util.find_spec("qi") is None:
+            refuse_system("the bridge naoqi", "Linux on x86-64, for the package qi", "run crowdbot on such a computer")
         import_optional("qi", "the bridge naoqi", "naoqi")
         scheme, sign, rest = url.partition("://")
         if not sign or scheme not in ("tcp", "tcps") or not rest:

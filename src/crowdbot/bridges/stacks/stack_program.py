@@ -7,11 +7,12 @@ import os
 import shlex
 import signal
 import subprocess
+import sys
 import tempfile
 from collections.abc import Mapping
 from typing import IO
 
-from crowdbot.core import InputError, check_programs
+from crowdbot.core import InputError, check_programs, refuse_system
 
 __all__ = ["StackProgram"]
 
@@ -19,6 +20,12 @@ PATIENCE = 3.0
 """Real time [s] between the request to end and the end by force."""
 LAST = 500
 """Characters of the error output in a message."""
+
+
+def _check_process_groups(what: str) -> None:
+    """Raise InputError on Windows, where a program would end without the programs that it has started."""
+    if sys.platform == "win32":
+        refuse_system(f"the start of {what} by a run", "Linux or macOS", "start it yourself, and leave out command")
 
 
 class StackProgram:
@@ -30,7 +37,7 @@ class StackProgram:
         environment: variables in addition to those of this process.
 
     Raises:
-        InputError: the program cannot be started.
+        InputError: the program cannot be started, or the system is Windows, which has no process groups to end.
 
     >>> program = StackProgram("sh -c 'echo no map >&2; exit 3'", {}, {})
     >>> _ = program.wait(10.0)
@@ -41,6 +48,7 @@ class StackProgram:
 
     def __init__(self, command: str, places: Mapping[str, object], environment: Mapping[str, str]) -> None:
         check_programs(f"{command[:80]!r}")
+        _check_process_groups(f"{command[:80]!r}")
         words = shlex.split(command)
         for name, value in places.items():
             words = [word.replace(f"{{{name}}}", str(value)) for word in words]
@@ -85,13 +93,14 @@ class StackProgram:
         """End the program and its children."""
         if self._log.closed:
             return
-        self._signal(signal.SIGTERM)
+        self._end_group()
         if self.wait(PATIENCE) is None:
-            self._signal(signal.SIGKILL)
+            self._end_group(by_force=True)
             self._process.wait()
-        self._signal(signal.SIGKILL)  # children that have ignored the request
+        self._end_group(by_force=True)  # children that have ignored the request
         self._log.close()
 
-    def _signal(self, number: signal.Signals) -> None:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, number)
+    def _end_group(self, by_force: bool = False) -> None:
+        if sys.platform != "win32":
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL if by_force else signal.SIGTERM)

@@ -22,7 +22,8 @@ LOOK = 0.1
 class StopKey:
     """Reads lines from the standard input: ``go`` releases the robot, every other line stops it.
 
-    The end of the input stops nothing: a robot can also be started without a terminal.
+    The end of the input stops nothing: a robot can also be started without a terminal. On Windows, where no program can
+    wait for a key and for something else, the thread takes no line after the end of the run, but lives until the next.
 
     Args:
         request: called with whether to stop and the reason; returns why the robot is not released.
@@ -46,16 +47,16 @@ class StopKey:
     ) -> None:
         """Stop to read."""
         self._end.set()
-        if self._thread is not None:
+        if self._thread is not None and sys.platform != "win32":
             self._thread.join()
 
     def _read(self, place: int) -> None:
         text = b""
         while not self._end.is_set():
-            if not select.select([place], [], [], LOOK)[0]:
+            if sys.platform != "win32" and not select.select([place], [], [], LOOK)[0]:
                 continue
             part = os.read(place, 1000)
-            if not part:
+            if not part or self._end.is_set():
                 return
             *lines, text = (text + part).split(b"\n")
             for line in lines:

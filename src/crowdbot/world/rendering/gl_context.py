@@ -43,11 +43,12 @@ def backend() -> str:
         return asked
     if sys.platform == "darwin":
         return "cgl"
-    if sys.platform == "win32":
+    elif sys.platform == "win32":
         return "glfw"
-    for name in ("egl", "osmesa"):
-        if _works(name):
-            return name
+    else:
+        for name in ("egl", "osmesa"):
+            if _works(name):
+                return name
     raise InputError(
         "rendering is not available: neither EGL nor OSMesa works; install one (Debian: apt install libosmesa6)"
     )
