@@ -3,7 +3,8 @@
 # make test     install what the tests need, then lint, types, import layers, tests and doctests: the gate of every change
 # make live     the tests that need a real clock, a browser, another program, a port or a kill; a failure is repeated once
 # make test-room ROOM=core   the tests and doctests of one room
-# make sweeps   the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
+# make types    mypy for Linux, macOS and Windows; make lint checks Linux alone
+# make sweeps   types on all systems, then the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
 # make soak     the tests that take longer than CI allows, and 2000 mutated files of every kind
 # make smoke    build the wheel and the sdist, and try the wheel in bare environments
 # Without its bytecode, each process of a test would compile the sources again.
@@ -18,7 +19,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retrie
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test doctests live test-room sweeps soak lint docs picture dist smoke rehearse clean
+.PHONY: demo test doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
@@ -41,6 +42,7 @@ test-room: $(VENV)/installed-dev
 
 sweeps: $(VENV)/installed-dev
 	tests/system-packages live
+	$(MAKE) --output-sync=target types
 	$(PYTEST) $(PARALLEL) -m "sweep and not soak"
 
 soak: $(VENV)/installed-dev
@@ -54,6 +56,15 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/house.py
+
+# A cache of one system is of no use to another.
+types: types-linux types-darwin types-win32
+
+types-linux: $(VENV)/installed-dev
+	$(BIN)/mypy
+
+types-darwin types-win32: types-%: $(VENV)/installed-dev
+	$(BIN)/mypy --platform $* --cache-dir .mypy_cache/$*
 
 docs: $(VENV)/installed-dev
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
