@@ -52,6 +52,7 @@ soak: $(VENV)/installed-dev
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check src tests tools
+	$(BIN)/ruff check --preview --select PLW1514 src tests tools # files of text without an encoding
 	$(BIN)/ruff format --check src tests tools
 	$(BIN)/mypy
 	$(BIN)/lint-imports

@@ -51,7 +51,7 @@ def sent_on(scene: Scene, draw: np.random.Generator) -> Scene:
 
 def memory() -> float:
     """Return the memory of this process [MB]."""
-    status = Path("/proc/self/status").read_text()
+    status = Path("/proc/self/status").read_text(encoding="utf-8")
     return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
 
 

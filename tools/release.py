@@ -203,7 +203,9 @@ def has_wheel(pin: str, platforms: list[str], python: str) -> bool:
         words += ["--python-version", python, "--implementation", "cp", "--target", folder]
         words += ["--report", f"{folder}/report.json", pin]
         run = subprocess.run([sys.executable, "-m", "pip", *words], capture_output=True, text=True, check=False)
-        return run.returncode == 0 and bool(json.loads(Path(folder, "report.json").read_text())["install"])
+        return run.returncode == 0 and bool(
+            json.loads(Path(folder, "report.json").read_text(encoding="utf-8"))["install"]
+        )
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ ENDLESS = ("--set", "duration=36000", "--set", "end/collision=false", "--set", "
 
 def resident(process):
     """Return the memory of a process [kB]."""
-    return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{process.pid}/status").read_text())[1])
+    return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8"))[1])
 
 
 def attack(url, frames, rng):

@@ -157,7 +157,7 @@ def test_the_command_runs_a_trial_with_a_recording_and_with_a_live_stream(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("walk.bvh").write_bytes(WALK)
-    Path("led.xml").write_text(TEXT.format(0.8))
+    Path("led.xml").write_text(TEXT.format(0.8), encoding="utf-8")
     assert main(["run", "led.xml", "--mocap", "walk.bvh=guide", "--out", "led"]) == 0
     assert "motion capture guide: 50 samples, 50.0 Hz" in capsys.readouterr().err
     assert replay("led/episode.mcap").equal

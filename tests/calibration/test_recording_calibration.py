@@ -26,7 +26,7 @@ def write_recording(path: Path) -> Recording:
         for frame in range(int(rng.integers(0, 8)), 30):
             x, y = place + 0.4 * frame * velocity + rng.normal(0.0, 0.05, 2)
             lines.append(f"{frame},{person},{x:.4f},{y:.4f}")
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return Recording(str(path), fps=2.5, observe=5, predict=3)
 
 
@@ -108,7 +108,7 @@ def test_the_key_depends_on_everything_that_decides(recording: Recording, tmp_pa
         dataclasses.replace(calibration, recording=dataclasses.replace(recording, observe=4)),
     ]
     changed = tmp_path / "square.csv"
-    changed.write_text(Path(recording.path).read_text().replace("0,", "1,", 1))
+    changed.write_text(Path(recording.path).read_text(encoding="utf-8").replace("0,", "1,", 1))
     others.append(dataclasses.replace(calibration, recording=dataclasses.replace(recording, path=str(changed))))
     keys = [calibration.key, *(other.key for other in others)]
     assert len(set(keys)) == len(keys)

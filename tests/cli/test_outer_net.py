@@ -49,8 +49,8 @@ def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
     assert found, done.stderr
     trace = Path(found.group(1))
     assert trace.parent == tmp_path
-    assert "Traceback (most recent call last)" in trace.read_text()
-    assert "ZeroDivisionError: nothing\nto divide" in trace.read_text()
+    assert "Traceback (most recent call last)" in trace.read_text(encoding="utf-8")
+    assert "ZeroDivisionError: nothing\nto divide" in trace.read_text(encoding="utf-8")
 
 
 @pytest.mark.program
@@ -124,7 +124,7 @@ def test_files_are_not_written_into_closed_streams(tmp_path):
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a file of Linux")
 @pytest.mark.parametrize("words", [["list"], ["cite", "orca"]])
 def test_a_full_disk_behind_the_output_is_one_sentence(words):
-    with Path("/dev/full").open("w") as full:
+    with Path("/dev/full").open("w", encoding="utf-8") as full:
         done = crowdbot(*words, stdout=full)
     assert (done.returncode, done.stderr) == (2, "crowdbot: standard output: No space left on device\n")
 

@@ -260,7 +260,7 @@ def test_kept_parts_belong_to_the_content_of_the_file(capsys, street, tmp_path):
     os.utime(copy)
     _json(capsys, *words)
     assert len(list((tmp_path / "out" / "parts").iterdir())) == count
-    lines = copy.read_text().splitlines()
-    copy.write_text("\n".join(lines[: len(lines) - 3]) + "\n")
+    lines = copy.read_text(encoding="utf-8").splitlines()
+    copy.write_text("\n".join(lines[: len(lines) - 3]) + "\n", encoding="utf-8")
     _json(capsys, *words)
     assert len(list((tmp_path / "out" / "parts").iterdir())) > count

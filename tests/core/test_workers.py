@@ -83,11 +83,11 @@ def test_processes_share_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def save(result: int, file: Path) -> None:
-    file.write_text(str(result))
+    file.write_text(str(result), encoding="utf-8")
 
 
 def load(file: Path) -> int:
-    return int(file.read_text()) + 1000
+    return int(file.read_text(encoding="utf-8")) + 1000
 
 
 def test_saved_jobs_are_loaded_and_the_others_run(tmp_path: Path) -> None:

@@ -76,12 +76,14 @@ def eth_obsmat(path: Path) -> None:
     for frame, id, x, y in rows(15.0, 6):
         vx, vy = people[id].velocity
         lines.append("".join(f"   {value:.7e}" for value in (frame, id, x, 0.0, y, vx, 0.0, vy)) + "\n")
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def sgan_text(path: Path) -> None:
     """Write a leave-one-out file: frame id x y with tabs, 10 frames per row."""
-    path.write_text("".join(f"{float(f)}\t{float(id)}\t{x:.10g}\t{y:.10g}\n" for f, id, x, y in rows(25.0, 10)))
+    path.write_text(
+        "".join(f"{float(f)}\t{float(id)}\t{x:.10g}\t{y:.10g}\n" for f, id, x, y in rows(25.0, 10)), encoding="utf-8"
+    )
 
 
 def ind_tracks(path: Path) -> None:
@@ -89,7 +91,7 @@ def ind_tracks(path: Path) -> None:
     head = "recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n"
     own = sorted(rows(25.0), key=lambda r: r[1])
     body = (f"7,{id},{frame},0,{x:.5f},{y:.5f},0.0,0.0,0.0\n" for frame, id, x, y in own)
-    path.write_text(head + "".join(body))
+    path.write_text(head + "".join(body), encoding="utf-8")
     kinds = "".join(f"7,{walker.id},{'bicycle' if walker.id > 9 else 'pedestrian'}\n" for walker in walkers())
     path.with_name("07_tracksMeta.csv").write_text("recordingId,trackId,class\n" + kinds)
     path.with_name("07_recordingMeta.csv").write_text("recordingId,frameRate\n7,25.0\n")
@@ -101,12 +103,12 @@ def jrdb_labels(path: Path) -> None:
     for frame, id, x, y in rows(15.0):
         box = {"cx": x, "cy": y, "cz": 0.0, "h": 1.7, "l": 0.5, "w": 0.5, "rot_z": 0.0}
         clouds.setdefault(f"{frame:06d}.pcd", []).append({"label_id": f"pedestrian:{id}", "box": box})
-    path.write_text(json.dumps({"labels": clouds}))
+    path.write_text(json.dumps({"labels": clouds}), encoding="utf-8")
 
 
 def lcas_csv(path: Path) -> None:
     """Write a ``data.csv`` of L-CAS at 2.5 rows per second; the last column is the scene."""
-    path.write_text("".join(f"{f},{id},{x:.4f},{y:.4f},0.6,0.8,0\n" for f, id, x, y in rows(2.5)))
+    path.write_text("".join(f"{f},{id},{x:.4f},{y:.4f},0.6,0.8,0\n" for f, id, x, y in rows(2.5)), encoding="utf-8")
 
 
 def wildtrack_frames(path: Path) -> None:
@@ -145,7 +147,7 @@ def thor_magni_csv(path: Path) -> None:
             )
             cells += marks + ([str(x), str(y), "1" if x != "" else ""] if number % 2 == 0 else [])
         lines += [",".join(cells)] * (2 if frame == 200 else 1)
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def trajnet_test(path: Path) -> None:
@@ -155,7 +157,7 @@ def trajnet_test(path: Path) -> None:
     for frame, id, x, y in rows(30.0, 12):
         count[id] = count.get(id, 0) + 1
         lines.append(f"{frame} {float(id)} {x:.3f} {y:.3f}\n" if count[id] <= SHORT else f"{frame} {float(id)} ? ?\n")
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def ucy_vsp(path: Path) -> None:
@@ -167,7 +169,7 @@ def ucy_vsp(path: Path) -> None:
         for frame in frames:
             x, y = walker.at(frame / 25.0)
             lines.append(f"{30 * x:.6f} {25 * y:.6f} {frame} 90.000000 - (2D point, m_id)\n")
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def sdd_annotations(path: Path) -> None:
@@ -180,27 +182,29 @@ def sdd_annotations(path: Path) -> None:
             left, top = round(400 + 30 * x), round(400 - 30 * y)
             box = f"{left - 10} {top - 20} {left + 10} {top + 20}"
             lines.append(f'{walker.id - 1} {box} {frame} {int(k == 0)} 0 {int(k % 12 > 0)} "{label}"\n')
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def petrack_metres(path: Path) -> None:
     """Write a PeTrack file in metres at 25 fps with a header."""
     head = "# PeTrack project: synthetic.pet\n# framerate: 25 fps\n# id frame x/m y/m z/m\n"
     body = (f"{id} {frame} {x:.4f} {y:.4f} 1.7600\n" for frame, id, x, y in sorted(rows(25.0), key=lambda r: r[1]))
-    path.write_text(head + "".join(body))
+    path.write_text(head + "".join(body), encoding="utf-8")
 
 
 def petrack_centimetres(path: Path) -> None:
     """Write a PeTrack file in centimetres at 25 fps with a header."""
     head = "# PeTrack project: synthetic.pet\n# framerate: 25 fps\n# id frame x/cm y/cm z/cm\n"
     body = (f"{id} {f} {100 * x:.2f} {100 * y:.2f} 176.00\n" for f, id, x, y in sorted(rows(25.0), key=lambda r: r[1]))
-    path.write_text(head + "".join(body))
+    path.write_text(head + "".join(body), encoding="utf-8")
 
 
 def hermes(path: Path) -> None:
     """Write a HERMES file: id frame x y z in centimetres at 16 fps, no header."""
     ordered = sorted(rows(16.0), key=lambda row: row[1])
-    path.write_text("".join(f"{id} {f} {100 * x:.3f} {100 * y:.3f} 183.02\n" for f, id, x, y in ordered))
+    path.write_text(
+        "".join(f"{id} {f} {100 * x:.3f} {100 * y:.3f} 183.02\n" for f, id, x, y in ordered), encoding="utf-8"
+    )
 
 
 def juelich_hdf5(path: Path) -> None:
@@ -244,7 +248,7 @@ def trajnetpp(path: Path) -> None:
         lines.append(json.dumps({"scene": scene}))
     for frame, id, x, y in rows(25.0, 10):
         lines.append(json.dumps({"track": {"f": frame, "p": id, "x": round(x, 2), "y": round(y, 2)}}))
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def social_ways(path: Path) -> None:
@@ -262,21 +266,21 @@ def csv_table(path: Path) -> None:
     for frame, id, x, y in sorted(rows(25.0, 10), key=lambda row: row[1]):
         vx, vy = people[id].velocity
         lines.append(f"{id},{frame},{x:.15f},{y:.15f},{vx:.15f},{vy:.15f}\n")
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def csv_filtered(path: Path) -> None:
     """Write a table as CITR has it: id,frame,label,x_est,y_est,vx_est,vy_est, every frame at 29.97 fps."""
     lines = ["id,frame,label,x_est,y_est,vx_est,vy_est\n"]
     lines += [f"{id},{frame},ped,{x:.12f},{y:.12f},1.0,0.0\n" for frame, id, x, y in rows(29.97)]
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def csv_times(path: Path) -> None:
     """Write a table of times [s] without frames, 0.4 s per row."""
     lines = ["track_id;time;pos_x;pos_y\n"]
     lines += [f"{id};{100 + frame / 25.0:.2f};{x:.6f};{y:.6f}\n" for frame, id, x, y in rows(25.0, 10)]
-    path.write_text("".join(lines))
+    path.write_text("".join(lines), encoding="utf-8")
 
 
 def parquet(path: Path) -> None:

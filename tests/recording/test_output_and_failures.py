@@ -67,7 +67,9 @@ class Broken:
 
 
 def line_of(text: str) -> int:
-    return next(k for k, line in enumerate(Path(__file__).read_text().splitlines(), start=1) if text in line)
+    return next(
+        k for k, line in enumerate(Path(__file__).read_text(encoding="utf-8").splitlines(), start=1) if text in line
+    )
 
 
 def test_run_refuses_to_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

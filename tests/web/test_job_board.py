@@ -81,7 +81,7 @@ def test_a_failure_is_listed_with_its_sentence(session, target, arguments, probl
 def runs(process):
     """Whether a process exists and is not a zombie, which init reaps."""
     try:
-        return "\nState:\tZ" not in Path(f"/proc/{process}/status").read_text()
+        return "\nState:\tZ" not in Path(f"/proc/{process}/status").read_text(encoding="utf-8")
     except OSError:
         return False
 

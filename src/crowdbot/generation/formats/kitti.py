@@ -50,8 +50,8 @@ def _write_images(table: Table, place: Path) -> list[Path]:
         pose = SpatialPose(table["pose_position"][row : row + 1].astype(float), table["pose_rotation"][row : row + 1])
         image, label, calib = (place / f"{kind}/{row:06d}" for kind in ("image_2", "label_2", "calib"))
         Image.fromarray(picture).save(image.with_suffix(".png"), format="PNG")
-        label.with_suffix(".txt").write_text("".join(_lines(table, row, pose)), encoding="ascii")
-        calib.with_suffix(".txt").write_text(_calibration(table["intrinsics"][row]), encoding="ascii")
+        label.with_suffix(".txt").write_text("".join(_lines(table, row, pose)), encoding="ascii", newline="\n")
+        calib.with_suffix(".txt").write_text(_calibration(table["intrinsics"][row]), encoding="ascii", newline="\n")
         files += [image.with_suffix(".png"), label.with_suffix(".txt"), calib.with_suffix(".txt")]
     return files
 

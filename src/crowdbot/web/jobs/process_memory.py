@@ -38,7 +38,7 @@ def end_descendants() -> None:
 
 def _pages(pid: int) -> int:
     try:
-        return int(PROC.joinpath(str(pid), "statm").read_text().split()[1])
+        return int(PROC.joinpath(str(pid), "statm").read_text(encoding="ascii").split()[1])
     except (OSError, ValueError, IndexError):  # it has ended
         return 0
 
@@ -50,7 +50,7 @@ def _descendants(pid: int) -> list[int]:
         with contextlib.suppress(OSError):
             for task in PROC.joinpath(str(front.pop()), "task").iterdir():
                 with contextlib.suppress(OSError):
-                    children = [int(one) for one in task.joinpath("children").read_text().split()]
+                    children = [int(one) for one in task.joinpath("children").read_text(encoding="ascii").split()]
                     found += children
                     front += children
     return found
