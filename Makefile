@@ -1,6 +1,7 @@
 # make demo     install into .venv and run the main job on built-in input
 # make docs     build the documentation as a site into site/; warnings are errors
 # make test     install what the tests need, then lint, types, import layers, tests and doctests: the gate of every change
+# make fix      write every generated file that tests compare; make fix STEPS="schema format" for some
 # make live     the tests that need a real clock, a browser, another program, a port or a kill; a failure is repeated once
 # make test-room ROOM=core   the tests and doctests of one room
 # make types    mypy for Linux, macOS and Windows; make lint checks Linux alone
@@ -19,7 +20,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retrie
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
+.PHONY: demo fix test doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
@@ -28,6 +29,9 @@ test: $(VENV)/installed-dev
 	tests/system-packages gate
 	$(MAKE) --jobs=2 --output-sync=target lint doctests
 	$(PYTEST) $(PARALLEL) --cache-clear -o cache_dir=.pytest_cache/gate tests
+
+fix: $(VENV)/installed-dev
+	$(BIN)/python tools/fix.py $(STEPS)
 
 # In one process beside the linters: the examples compile most kernels, which the workers of the tests would compile twice.
 doctests: $(VENV)/installed-dev

@@ -1,7 +1,7 @@
 """Runs of the built-in trials and their digests.
 
-``python tests/builtin_digests.py`` writes the runs that ``simulation/builtin_digests.json`` lacks. If a change of
-results is intended, delete the file first, and name the change in the commit.
+``python tests/builtin_digests.py`` writes the runs that ``simulation/builtin_digests.json`` lacks, and drops those of
+trials that are gone. If a change of results is intended, delete the file first, and name the change in the commit.
 
 The last bit of a result depends on the vector instructions that NumPy and its linear algebra use, so each run has a
 digest for processors with AVX-512 and one for those without. The second one is written in another process, in which
@@ -88,33 +88,46 @@ def early_state(episode: Episode, latest: float) -> list[float]:
 
 
 def write(file: Path = FILE) -> None:
-    """Write the digests that the file lacks for the level of this process."""
-    here = machine()
-    whole = json.loads(file.read_text("utf-8")) if file.exists() else {"machine": here, "runs": {}}
-    if reasons := differences(whole["machine"]):
-        raise SystemExit(f"{file} was written on another machine ({', '.join(reasons)}); delete it to write all runs")
-    for key in (f"{name}/{form}" for form in FORMS for name in sorted(builtin_trials())):
-        digests = whole["runs"].get(key, {}).get("digest", {})
-        if level() in digests:
-            continue
+    """Write the digests that the file lacks for the level of this process, and drop those of trials that are gone."""
+    whole = json.loads(file.read_text("utf-8")) if file.exists() else {"machine": machine(), "runs": {}}
+    keys = [f"{name}/{form}" for form in FORMS for name in sorted(builtin_trials())]
+    missing = [key for key in keys if level() not in whole["runs"].get(key, {}).get("digest", {})]
+    if missing and (reasons := differences(whole["machine"])):
+        raise SystemExit(
+            f"{len(missing)} runs are missing, and the others are of another machine: {', '.join(reasons)}; "
+            f"delete {file} to write all runs"
+        )
+    if gone := whole["runs"].keys() - keys:
+        whole["runs"] = {key: row for key, row in whole["runs"].items() if key not in gone}
+        _store(whole, file)
+    for key in missing:
         begin = time.monotonic()
         row = entry(key)
         if row["outcome"] == "interrupted":
             raise KeyboardInterrupt
+        old = whole["runs"].setdefault(key, row | {"digest": {}})
+        if abs(np.subtract(row["state"], old["state"])).max() > 1e-6:
+            raise SystemExit(f"{key} is another run on {level()}: {row['state']}, not {old['state']}")
+        old["digest"] = dict(sorted({**old["digest"], level(): row["digest"]}.items(), reverse=True))
         print(f"{key} {level()} {row['digest']} {time.monotonic() - begin:.1f} s", flush=True)
-        if key in whole["runs"] and abs(np.subtract(row["state"], whole["runs"][key]["state"])).max() > 1e-6:
-            raise SystemExit(f"{key} is another run on {level()}: {row['state']}, not {whole['runs'][key]['state']}")
-        whole["runs"].setdefault(key, row)
-        whole["runs"][key]["digest"] = dict(sorted({**digests, level(): row["digest"]}.items(), reverse=True))
-        rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(one)}" for name, one in sorted(whole["runs"].items()))
-        head = f' "machine": {json.dumps(whole["machine"])},\n "runs": '
-        file.write_text("{\n" + head + "{\n" + rows + "\n }\n}\n", encoding="utf-8")
+        _store(whole, file)
+
+
+def _store(whole: dict[str, Any], file: Path) -> None:
+    rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in sorted(whole["runs"].items()))
+    head = f' "machine": {json.dumps(whole["machine"])},\n "runs": '
+    file.write_text("{\n" + head + "{\n" + rows + "\n }\n}\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Write the digests of this level of processor, and those of the lower ones in other processes."""
+    write()
+    levels = list(LEVELS)
+    for name in levels[levels.index(level()) + 1 :] if level() else ():
+        subprocess.run([sys.executable, __file__], env=level_environment(name), check=True)
+    if level() != levels[0] and "NPY_DISABLE_CPU_FEATURES" not in os.environ:
+        print(f"this processor cannot write digests of {levels[0]}; new runs need them, too")
 
 
 if __name__ == "__main__":
-    write()
-    lower = list(LEVELS)[list(LEVELS).index(level()) + 1 :]
-    for name in lower:
-        subprocess.run([sys.executable, __file__], env=level_environment(name), check=True)
-    if level() != next(iter(LEVELS)) and "NPY_DISABLE_CPU_FEATURES" not in os.environ:
-        print(f"the digests of {next(iter(LEVELS))} are missing: this processor has no AVX-512")
+    main()

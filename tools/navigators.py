@@ -6,7 +6,8 @@
 kill). Everything runs in one process. Each line on the terminal is a finished row, with the share of the rows that are
 done and the time so far. ``--minutes`` ends the work after a time; the page is written when all rows are there, or with
 ``--incomplete`` from the rows that are there. ``--keep`` runs only the rows that the page does not have, and
-``--only-others`` only those of the other trials; both keep the rows of the page that they do not run.
+``--only-others`` only those of the other trials; both keep the rows of the page that they do not run. ``--layout`` runs
+nothing and writes the page again from its own rows, after a change of its text.
 """
 
 from __future__ import annotations
@@ -195,6 +196,7 @@ def parse_options(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--slow-others", type=int, help="seeds of slow navigators there (default: as --others)")
     parser.add_argument("--only-others", action="store_true", help="run these only, and keep the rest of the page")
     parser.add_argument("--keep", action="store_true", help="run only the rows that the page does not have")
+    parser.add_argument("--layout", action="store_true", help="run nothing, write the page again from its rows")
     parser.add_argument("--minutes", type=float, default=math.inf, help="time after which no more rows begin")
     parser.add_argument("--incomplete", action="store_true", help="write the page even if rows are missing")
     parser.add_argument("--parts", type=Path, default=Path("navigators-parts"))
@@ -210,6 +212,9 @@ def main(words: list[str] | None = None) -> None:
     """Run everything and write the page."""
     options = parse_options(words)
     old = lines_of_page(PAGE.read_text(encoding="utf-8"))
+    if options.layout:
+        PAGE.write_text(page_text(old), encoding="utf-8")
+        return
     rows = [row for row in rows_of(options) if not (options.keep and (row.table, row.trial, row.title) in old)]
     try:
         found = compute(rows, options)

@@ -3,6 +3,7 @@
     python tools/trial_pictures.py docs/gallery/trials
 
 writes one small picture per trial into the folder, and beside it the page that lists them with their parameters.
+``--missing`` draws only the pictures that the folder does not have.
 """
 
 from __future__ import annotations
@@ -34,11 +35,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("names", nargs="*")
+    parser.add_argument("--missing", action="store_true", help="draw only pictures that are not there")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     for name in options.names or builtin_trials():
-        draw(load_trial(name), options.folder / f"{name}.png")
-        print(name)
+        file = options.folder / f"{name}.png"
+        if not (options.missing and file.exists()):
+            draw(load_trial(name), file)
+            print(name)
     page(options.folder.with_suffix(".md"))
     return 0
 

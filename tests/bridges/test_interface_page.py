@@ -19,7 +19,7 @@ def load_tool():
 
 def test_the_page_is_up_to_date():
     page = (ROOT / "docs" / "reference" / "robot-interface.md").read_text(encoding="utf-8")
-    assert page == load_tool().page()
+    assert page == load_tool().page(), "run make fix"
 
 
 def test_every_kind_of_sensor_keeps_the_announced_types_and_frames():

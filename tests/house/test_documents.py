@@ -113,4 +113,4 @@ def test_make_knows_the_commands_and_ci_runs_both_tiers():
 @pytest.mark.program
 def test_the_page_of_models_is_made_from_the_models():
     done = subprocess.run([sys.executable, ROOT / "tools" / "models.py"], capture_output=True, text=True, check=True)
-    assert (ROOT / "docs" / "reference" / "crowd-models.md").read_text(encoding="utf-8") == done.stdout
+    assert (ROOT / "docs" / "reference" / "crowd-models.md").read_text(encoding="utf-8") == done.stdout, "make fix"

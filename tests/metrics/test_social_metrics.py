@@ -62,7 +62,7 @@ def test_every_value_is_in_the_table_under_its_family(family):
 
 def test_the_reference_page_is_that_of_the_table():
     page = Path(__file__).parents[2] / "docs/reference/metrics.md"
-    assert page.read_text(encoding="utf-8") == metric_page(), "run python -m crowdbot.metrics.social.page on the page"
+    assert page.read_text(encoding="utf-8") == metric_page(), "run make fix"
 
 
 def test_unknown_families_and_bad_logs_are_refused():

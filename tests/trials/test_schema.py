@@ -17,7 +17,7 @@ from trial_texts import FLOW, GOOD
 
 def test_the_schema_that_is_shipped_is_up_to_date() -> None:
     shipped = importlib.resources.files("crowdbot").joinpath("assets", "trial.xsd").read_text(encoding="utf-8")
-    assert shipped == schema(), "write it again: crowdbot new schema src/crowdbot/assets/trial.xsd --force"
+    assert shipped == schema(), "run make fix"
 
 
 @pytest.mark.parametrize("name", builtin_trials())

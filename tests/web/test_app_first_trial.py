@@ -14,7 +14,7 @@ from crowdbot.web.simulator import FIRST, LiveRun, live_run
 from crowdbot.web.simulator.beginning_player import BeginningPlayer
 from crowdbot.web.simulator.recorded_beginning import RecordedBeginning, shipped_beginning
 
-AGAIN = "run python tools/first_trial.py again"
+AGAIN = "run make fix"
 
 
 @pytest.fixture(scope="module")

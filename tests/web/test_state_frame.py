@@ -1,24 +1,11 @@
 """State frames: bytes that the page reads, round trip, hostile bytes."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from golden_frame import FRAME, GOLDEN
 
 from crowdbot.core import InputError
 from crowdbot.web import StateFrame
-
-GOLDEN = Path(__file__).with_name("state_frame.bin")
-FRAME = StateFrame(
-    "crowd",
-    0.25,
-    {
-        "people": np.array([[1.0, 2.0], [3.0, 4.0]], dtype=np.float32),
-        "ids": np.array([5, 6, 65535], dtype=np.uint16),
-        "bones": np.zeros((0, 4), dtype=np.int16),
-    },
-    7,
-)
 
 
 def test_the_bytes_are_those_that_the_test_of_the_page_reads():
