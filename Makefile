@@ -2,6 +2,8 @@
 # make docs     build the documentation as a site into site/; warnings are errors
 # make test     install what the tests need, then lint, types, import layers, tests and doctests: the gate of every change
 # make fix      write every generated file that tests compare; make fix STEPS="schema format" for some
+# make test-changed   the tests that call what changed since the branch left main (BASE=COMMIT), at most two minutes
+# make record-calls   which functions each test calls, for test-changed; once, then when many tests have changed
 # make live     the tests that need a real clock, a browser, another program, a port or a kill; a failure is repeated once
 # make test-room ROOM=core   the tests and doctests of one room
 # make types    mypy for Linux, macOS and Windows; make lint checks Linux alone
@@ -15,12 +17,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= demo
 ROOM ?= core
+BASE ?= main
 WORKERS ?= auto
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retries 5 -c constraints.txt
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo fix test doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
+.PHONY: demo fix test test-changed record-calls doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
@@ -32,6 +35,12 @@ test: $(VENV)/installed-dev
 
 fix: $(VENV)/installed-dev
 	$(BIN)/python tools/fix.py $(STEPS)
+
+test-changed: $(VENV)/installed-dev
+	$(BIN)/python tools/changed.py --base $(BASE)
+
+record-calls: $(VENV)/installed-dev
+	$(BIN)/python tools/changed.py --record $(RECORD)
 
 # In one process beside the linters: the examples compile most kernels, which the workers of the tests would compile twice.
 doctests: $(VENV)/installed-dev

@@ -13,7 +13,6 @@ mutants are kept, and the same command continues after an interruption; ``--surv
 from __future__ import annotations
 
 import argparse
-import ast
 import concurrent.futures
 import contextlib
 import hashlib
@@ -33,6 +32,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from calls import callers, function_body_at, within
 from mutants import ROOT, Mutant, mutants_of
 
 PACKAGE = "src/crowdbot"
@@ -79,7 +79,7 @@ class Tree:
         self.records[compiled], missing = {}, {}
         for file in sorted(file for name in self.tests for file in _test_files(self.folder / name)):
             name = file.relative_to(self.folder).as_posix()
-            key = f"{name}:{hashlib.blake2b(file.read_bytes(), digest_size=6).hexdigest()}:{sources}:{compiled}"
+            key = f"{name}:{hashlib.blake2b(file.read_bytes(), digest_size=6).hexdigest()}:{sources}:{compiled}:names"
             if key in known:
                 self.records[compiled] |= known[key]
             else:
@@ -108,12 +108,10 @@ class Tree:
         other processes count as callers, since their calls are not seen.
         """
         name = mutant.path.removeprefix(f"{PACKAGE}/")
-        calls = f"{name}:{_function_line(self.folder / mutant.path, mutant)}"
+        function = function_body_at((self.folder / mutant.path).read_text(encoding="utf-8"), mutant.line)
         passing = {test: record for test, record in self.records[compiled].items() if record["passed"]}
-        tests = {test: record for test, record in passing.items() if calls in record["calls"]}
-        if calls.endswith(":0"):
-            begin = f"{name}:"
-            tests = {t: record for t, record in passing.items() if any(c.startswith(begin) for c in record["calls"])}
+        tests = {test: passing[test] for test in callers(passing, name, function)}
+        if not function:
             tests = tests or passing
         tests |= {test: record for test, record in passing.items() if record["starts"]}
         stem = Path(mutant.path).stem
@@ -122,12 +120,8 @@ class Tree:
             seconds, file = tests[test]["seconds"], Path(test.split("::", maxsplit=1)[0]).stem
             return tests[test]["starts"], seconds > self.limit / 100.0, stem not in file, file
 
-        chosen, total = [], 0.0
-        for test in sorted(tests, key=rank):
-            total += tests[test]["seconds"]
-            if not chosen or total <= self.limit:
-                chosen.append(test)
-        return chosen
+        seconds = {test: record["seconds"] for test, record in tests.items()}
+        return within(sorted(tests, key=rank), seconds, self.limit)
 
     def survives(self, mutant: Mutant, compiled: bool) -> bool:
         """Return whether the tests pass with a mutant."""
@@ -189,17 +183,6 @@ class Tree:
 def _kill_group(group: int) -> None:
     with contextlib.suppress(ProcessLookupError):
         os.killpg(group, signal.SIGKILL)
-
-
-def _function_line(file: Path, mutant: Mutant) -> int:
-    """Return the first line of the innermost function around a mutant, its decorators included; 0 outside of one."""
-    line = 0
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
-            if node.body[0].lineno <= mutant.line <= (node.end_lineno or 0):
-                line = max(line, first)
-    return line
 
 
 def _test_files(path: Path) -> list[Path]:
