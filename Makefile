@@ -9,6 +9,7 @@
 # make types    mypy for Linux, macOS and Windows; make lint checks Linux alone
 # make sweeps   types on all systems, then the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
 # make soak     the tests that take longer than CI allows, and 2000 mutated files of every kind
+# make flaky TESTS=tests/data   tests whose outcome differs in random orders, on a busy machine or without compiled kernels
 # make smoke    build the wheel and the sdist, and try the wheel in bare environments
 # Without its bytecode, each process of a test would compile the sources again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -18,12 +19,13 @@ BIN := $(VENV)/bin
 OUT ?= demo
 ROOM ?= core
 BASE ?= main
+TESTS ?= tests
 WORKERS ?= auto
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retries 5 -c constraints.txt
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo fix test test-changed record-calls doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
+.PHONY: demo fix test test-changed record-calls flaky doctests live test-room sweeps soak lint types types-linux types-darwin types-win32 docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
@@ -41,6 +43,9 @@ test-changed: $(VENV)/installed-dev
 
 record-calls: $(VENV)/installed-dev
 	$(BIN)/python tools/changed.py --record $(RECORD)
+
+flaky: $(VENV)/installed-dev
+	$(BIN)/python tools/flaky.py $(TESTS)
 
 # In one process beside the linters: the examples compile most kernels, which the workers of the tests would compile twice.
 doctests: $(VENV)/installed-dev
