@@ -5,6 +5,8 @@ others. If an input is missing, the tests that need it are deselected, and one l
 reason and the remedy. If the variable ``CI`` is set (and ``ALONE`` is not), only rights that a container does not give
 are a reason to leave tests out; every other missing input is a failure.
 
+The same holds for packages that only the extra ``dev`` installs, see ``missing_packages.py``.
+
 A test that needs a real clock, a browser, another program, a port or a kill has the marker ``live``: it runs in
 ``make live``. Who asks for a browser, ROS 1, RViz or a network namespace as a fixture gets the marker by that.
 
@@ -15,6 +17,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import importlib.util
 import json
 import os
 import shutil
@@ -28,6 +31,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+import missing_packages
 from gate_guard import GateGuard
 
 settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -41,6 +45,7 @@ collect_ignore = ["bridges/ros1_robot.py"]
 """A program for the Python of the system, which has rospy. A conftest.py beside it would break ``make test``: pytest
 then collects two modules of the name ``conftest``."""
 WORKER_KEY = "deselected_by_input"
+WORKER_FILES = "files_without_package"
 
 
 def _set(variable: str) -> bool:
@@ -221,6 +226,17 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
         processes.close_all()
 
 
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
+    """Leave out a test file that imports a package which is not installed."""
+    return None if STRICT else missing_packages.OptionalModule.from_parent(parent, path=module_path)
+
+
+def input_of(name: str) -> Input:
+    """Return the input of a name, which may be that of a package."""
+    package = Input(f"the package {name}", missing_packages.REMEDY, lambda: importlib.util.find_spec(name))
+    return INPUTS.get(name, package)
+
+
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Deselect the tests whose input is missing, and count them."""
@@ -228,6 +244,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     needed = {name for item in items for name in getattr(item, "fixturenames", ()) if name in optional}
     missing = [name for name in INPUTS if name in needed and INPUTS[name].find() is None]
     first = [next((name for name in missing if name in getattr(item, "fixturenames", ())), None) for item in items]
+    if not STRICT:
+        first = [
+            name or next(iter(missing_packages.packages_of(item)), None)
+            for item, name in zip(items, first, strict=True)
+        ]
+    files = dict(config.stash.get(missing_packages.FILES, {}))
+    if files and hasattr(config, "workeroutput"):
+        config.workeroutput[WORKER_FILES] = files
     gone = [item for item, name in zip(items, first, strict=True) if name]
     if not gone:
         return
@@ -245,9 +269,10 @@ COUNTS = pytest.StashKey[dict[str, int]]()
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: object) -> None:
     """Take the count from a worker of pytest-xdist; every worker collects the same tests."""
-    counts = getattr(node, "workeroutput", {}).get(WORKER_KEY)
-    if counts:
-        node.config.stash[COUNTS] = counts  # type: ignore[attr-defined]
+    told = getattr(node, "workeroutput", {})
+    for key, place in ((WORKER_KEY, COUNTS), (WORKER_FILES, missing_packages.FILES)):
+        if key in told:
+            node.config.stash[place] = told[key]  # type: ignore[attr-defined]
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
@@ -255,12 +280,14 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     counts = config.stash.get(COUNTS, {})
     if counts:
         terminalreporter.write_line(summary_line(counts), yellow=True)
+    if files := config.stash.get(missing_packages.FILES, None):
+        terminalreporter.write_line(missing_packages.files_line(files), yellow=True)
 
 
 def summary_line(counts: dict[str, int]) -> str:
     """Return how many tests were left out, why, and how to run them, in one line."""
     groups: dict[str, list[str]] = {}
     for name, count in counts.items():
-        groups.setdefault(INPUTS[name].remedy, []).append(f"{count} need {INPUTS[name].what}")
+        groups.setdefault(input_of(name).remedy, []).append(f"{count} need {input_of(name).what}")
     reasons = "; ".join(f"{', '.join(group)} (see {remedy})" for remedy, group in groups.items())
     return f"{sum(counts.values())} tests left out: {reasons}"

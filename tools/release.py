@@ -190,7 +190,7 @@ def dependencies() -> list[str]:
     """Return what crowdbot needs with all extras of users."""
     table = project()
     extras: dict[str, list[str]] = table["optional-dependencies"]  # type: ignore[assignment]
-    more = [need for name, needs in extras.items() if name not in ("all", "dev") for need in needs]
+    more = [need for name, needs in extras.items() if name not in ("all", "dev", "test") for need in needs]
     more = [need for need in more if not need.startswith("crowdbot[")]  # the former name of an extra
     return [*table["dependencies"], *more]  # type: ignore[misc]
 

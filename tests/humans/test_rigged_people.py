@@ -48,7 +48,7 @@ def test_the_program_says_what_it_has_made(folder, monkeypatch, capsys):
     assert (folder / "my-hat-1.body").is_file()
 
 
-@pytest.mark.parametrize("world", ["planar", "physics"])
+@pytest.mark.parametrize("world", ["planar", pytest.param("physics", marks=pytest.mark.needs("mujoco"))])
 def test_an_episode_carries_the_body_along_and_replays(folder, tmp_path, world):
     summary = record(load_trial(folder / f"{world}.xml"), out=tmp_path)
     assert summary.outcome != "failed"
@@ -58,6 +58,7 @@ def test_an_episode_carries_the_body_along_and_replays(folder, tmp_path, world):
     assert len(read_episode(moved).ids) == 5
 
 
+@pytest.mark.needs("mujoco")
 def test_people_of_a_trial_have_the_body(folder):
     people = Simulation(load_trial(folder / "physics.xml")).world.people.people
     who = [person.name for person in people.persons]

@@ -39,6 +39,7 @@ def test_impacts_are_absent_in_the_planar_world() -> None:
     assert not set(IMPACT_METRICS) & set(simulate(load_trial("frontal", duration=1.0), 0).metrics)
 
 
+@pytest.mark.needs("mujoco")
 def test_impacts_of_a_run_are_those_of_its_contact_events(tmp_path) -> None:
     trial = dataclasses.replace(parse_trial(room("physics", LEAN)), duration=3.0)
     episode = run(trial, 0, out=tmp_path)

@@ -65,7 +65,7 @@ def test_nobody_gives_an_empty_table() -> None:
     assert all(len(column) == 0 for column in table.values())
 
 
-@pytest.mark.parametrize("world", ["planar", "physics"])
+@pytest.mark.parametrize("world", ["planar", pytest.param("physics", marks=pytest.mark.needs("mujoco"))])
 def test_a_recording_has_the_numbers_of_its_run(world: str, tmp_path) -> None:
     text = FLOW if world == "planar" else room("physics", LEAN)
     trial = dataclasses.replace(parse_trial(text), duration=4.0)
