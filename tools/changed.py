@@ -216,10 +216,10 @@ def rooms_of(paths: list[str]) -> list[str]:
 
 
 def users_of_helper(path: str) -> list[str]:
-    """Return the test files that import a helper of tests; of a conftest, those in its folder."""
+    """Return the test files that import a helper of tests; of a conftest, those in its folder, but not all tests."""
     folder = Path(path).parent.as_posix()
     if Path(path).name == "conftest.py":
-        return test_files(folder)
+        return [] if folder == "tests" else test_files(folder)
     word = re.compile(rf"\b(?:import|from)\s+{re.escape(Path(path).stem)}\b")
     return [file for file in test_files("tests" if folder == "tests" else folder) if word.search(_text(file))]
 
@@ -265,6 +265,8 @@ def choose(changes: dict[str, set[int]], budget: float) -> Choice:
             f"{len(bare)} test files have no record (make record-calls), so it is not known what they call; "
             f"{len(whole)} of them, those of {', '.join([*rooms_of(sources), 'tests/house'])}, run whole"
         )
+    if "tests/conftest.py" in changes:
+        choice.notes.append("tests/conftest.py concerns all tests; none of them run for it")
     covered = {*sources, *known, *(p for p in changes if p.startswith("tests/") and p.endswith(".py"))}
     if others := sorted(path for path in changes if path not in covered and not path.startswith("news/")):
         choice.notes.append(f"of {len(others)} other files no tests are known: {', '.join(others[:5])}"

@@ -202,6 +202,15 @@ def test_changed_test_files_and_users_of_changed_helpers_run_whole_and_first(tre
     assert choice.files == []
 
 
+def test_a_conftest_concerns_its_folder_and_that_of_all_tests_is_named(tree):
+    assert changed.choose({"tests/boats/conftest.py": {1}}, 100.0).first == []  # it is gone
+    (tree / "tests/boats/conftest.py").write_text("")
+    (tree / "tests/conftest.py").write_text("")
+    choice = changed.choose({"tests/boats/conftest.py": {1}, "tests/conftest.py": {1}}, 100.0)
+    assert choice.first == ["tests/boats/test_boat.py"]
+    assert "tests/conftest.py concerns all tests; none of them run for it" in choice.notes
+
+
 def test_tests_that_start_processes_count_in_their_room(tree):
     record([], "tests/cars/test_car.py::test_command", 1.0, starts=True)
     record([], "tests/boats/test_boat.py::test_command", 1.0, starts=True)
