@@ -35,6 +35,7 @@ from crowdbot.metrics import coordination
 from crowdbot.recording import run
 from crowdbot.simulation import EpisodeLog, Simulation, SimulationRun
 from crowdbot.trials import load_trial
+from samples import sample
 
 SHIPPED = builtin_experiments()["leader-follower"]
 
@@ -63,7 +64,7 @@ def walked(trial, person):
     return log.episode(*end)
 
 
-@pytest.mark.parametrize(("gain", "delay"), [(0.9, 0.4), (0.7, 0.2)])
+@pytest.mark.parametrize(("gain", "delay"), sample([(0.9, 0.4), (0.7, 0.2)], 1, rows=True))
 def test_an_emulated_follower_of_known_gain_and_delay_is_recovered_from_a_run(gain, delay):
     trial = load_trial(str(SHIPPED / "robot-leads-real.xml"))
     episode = walked(trial, EmulatedParticipant(gain=gain, delay=delay, wander=0.0))

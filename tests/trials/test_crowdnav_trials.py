@@ -12,6 +12,7 @@ from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.simulation import Simulation, simulate, simulate_seeds
 from crowdbot.trials import PeopleBatch, PlacementPlan, Spawner, Stage, Trial, Wall, load_trial, place
 from crowdbot.trials.notation import Points
+from samples import sizes
 
 SQUARE = Points.of([(-4, -4), (4, -4), (4, 4), (-4, 4)])
 ORCA = "orca share=0.5 time-horizon=5 neighbor-distance=10 max-neighbors=10 reaction=0.25"
@@ -112,15 +113,16 @@ def published(trial: Trial, method: str, cases: int) -> tuple[float, float, floa
     return tuple(cell.estimate(name).value for name in ("success-rate", "collision-rate", "time-to-goal"))  # type: ignore[return-value]
 
 
-def test_orca_has_its_published_results() -> None:
+@pytest.mark.parametrize("cases", sizes(120, 500))
+def test_orca_has_its_published_results(cases: int) -> None:
     trial = load_trial("crowdnav-circle-5")
-    success, collision, time = published(trial, f"{ORCA} safety=0.02", 500)
+    success, collision, time = published(trial, f"{ORCA} safety=0.02", cases)
     assert (success, collision, time) == pytest.approx((0.426, 0.568, 10.86), abs=0.3)
     assert (success, collision) == pytest.approx((0.426, 0.568), abs=0.07)
-    success, _, _ = published(trial, f"{ORCA} safety=0.32", 500)
+    success, _, _ = published(trial, f"{ORCA} safety=0.32", cases)
     assert success == pytest.approx(0.904, abs=0.04)
-    assert published(trial, "straight", 500)[0] == pytest.approx(0.026, abs=0.025)
-    assert published(load_trial("crowdnav-circle-5", visible=True), "own", 500)[0] == 1.0
+    assert published(trial, "straight", cases)[0] == pytest.approx(0.026, abs=0.025)
+    assert published(load_trial("crowdnav-circle-5", visible=True), "own", cases)[0] == 1.0
 
 
 def test_success_rises_with_the_attention_of_people() -> None:

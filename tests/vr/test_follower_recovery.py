@@ -20,6 +20,7 @@ from crowdbot.vr import (
     VrParticipant,
     read_headset_latency,
 )
+from samples import sample
 
 WHOLE = load_trial(str(builtin_experiments()["leader-follower"] / "robot-leads-vr.xml"))
 LEADER = dataclasses.replace(WHOLE.robots[0], navigator=dataclasses.replace(WHOLE.robots[0].navigator, cycles=3))
@@ -87,11 +88,15 @@ class Follower:
 
 @pytest.mark.parametrize(
     ("gain", "delay", "added", "factors"),
-    [
-        (0.9, 0.4, {}, {}),
-        (0.7, 0.25, {"motion_delay": 0.1, "picture_delay": 0.1, "noise": 0.01}, {}),  # settings of the operator
-        (1.1, 0.6, {}, {"delay": 0.15, "picture_delay": 0.2, "noise": 0.01}),  # factors of the trial
-    ],
+    sample(
+        [
+            (0.7, 0.25, {"motion_delay": 0.1, "picture_delay": 0.1, "noise": 0.01}, {}),  # settings of the operator
+            (0.9, 0.4, {}, {}),
+            (1.1, 0.6, {}, {"delay": 0.15, "picture_delay": 0.2, "noise": 0.01}),  # factors of the trial
+        ],
+        1,
+        rows=True,
+    ),
 )
 def test_gain_and_delay_of_a_follower_are_recovered_under_latency_noise_and_losses(
     gain, delay, added, factors, tmp_path

@@ -79,6 +79,7 @@ def answers_of(questions):
     return found
 
 
+@pytest.mark.live
 def test_a_participant_in_a_headset_goes_from_consent_to_the_report(tmp_path, capsys):
     folder = tmp_path / "files"
     with contextlib.ExitStack() as stack:

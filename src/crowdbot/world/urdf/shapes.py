@@ -102,7 +102,7 @@ class Sphere:
 
     def points(self) -> Floats:
         """Return points ``[N, 3]`` whose convex hull approximates the sphere."""
-        return _ball(self.radius)
+        return self.radius * UNIT_BALL
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class Capsule:
 
     def points(self) -> Floats:
         """Return points ``[N, 3]`` on the two hemispheres."""
-        ball = _ball(self.radius)
+        ball = self.radius * UNIT_BALL
         return np.concatenate([ball + (0.0, 0.0, z) for z in (-self.length / 2.0, self.length / 2.0)])
 
 
@@ -202,7 +202,11 @@ class Mesh:
 Shape = Box | Cylinder | Sphere | Capsule | Mesh
 
 
-def _ball(radius: float) -> Floats:
+def _unit_ball() -> Floats:
     rings = np.linspace(-math.pi / 2.0, math.pi / 2.0, 17)
     rows = [np.stack([np.cos(t) * np.cos(ROUND), np.cos(t) * np.sin(ROUND), np.full(64, np.sin(t))], 1) for t in rings]
-    return np.asarray(radius * np.concatenate(rows))
+    return np.concatenate(rows)
+
+
+UNIT_BALL = _unit_ball()
+"""Points ``[17 * 64, 3]`` on a sphere of radius 1; shapes are asked for their points at every step."""
