@@ -30,10 +30,11 @@ PARALLEL := -n $(WORKERS) --maxprocesses 4
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT) --force
 
+# A test file goes to one worker as a whole, so that its fixtures are made once.
 test: $(VENV)/installed-dev
 	tests/system-packages gate
 	$(MAKE) --jobs=2 --output-sync=target lint doctests
-	$(PYTEST) $(PARALLEL) --cache-clear -o cache_dir=.pytest_cache/gate tests
+	$(PYTEST) $(PARALLEL) --dist loadfile --cache-clear -o cache_dir=.pytest_cache/gate tests
 
 fix: $(VENV)/installed-dev
 	$(BIN)/python tools/fix.py $(STEPS)
