@@ -137,13 +137,15 @@ def test_digests_of_trials_that_are_gone_are_dropped_and_others_stay(monkeypatch
     import builtin_digests
 
     file = tmp_path / "digests.json"
-    row = {"digest": "ab", "outcome": "timeout", "steps": 3, "state": [1.0]}
-    other = {**builtin_digests.machine(), "processor": "other"}
+    row = {"digest": dict.fromkeys(builtin_digests.LEVELS, "ab"), "outcome": "timeout", "steps": 3, "state": [1.0]}
+    other = {**builtin_digests.machine(), "libc": "other"}
     keys = [f"one/{form}" for form in builtin_digests.FORMS]
     file.write_text(json.dumps({"machine": other, "runs": dict.fromkeys([*keys, "gone/planar/0/2"], row)}))
     monkeypatch.setattr(builtin_digests, "builtin_trials", lambda: ["one"])
     builtin_digests.write(file)
     assert json.loads(file.read_text()) == {"machine": other, "runs": dict.fromkeys(keys, row)}
     monkeypatch.setattr(builtin_digests, "builtin_trials", lambda: ["one", "two"])
-    with pytest.raises(SystemExit, match=r"3 runs are missing, and the others are of another machine: processor other"):
+    with pytest.raises(
+        SystemExit, match=r"3 runs are missing, and the others are of another machine: libc \S.* instead of other"
+    ):
         builtin_digests.write(file)
