@@ -236,7 +236,7 @@ def test_only_old_records_are_made_again(tree, monkeypatch, capsys):
         started.append(words[-1])
         test = f"{words[-1]}::test_one"
         text = json.dumps({test: {"passed": True, "seconds": 1.0, "starts": False, "calls": ["cars/car.py:park"]}})
-        Path(plan["out"]).write_text(text)
+        Path(plan["out"]).write_text(text, encoding="utf-8")
         return 0
 
     monkeypatch.setattr(changed, "run_pytest", run)
