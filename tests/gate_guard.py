@@ -6,14 +6,13 @@ waits for, such as a command of crowdbot, is allowed if the test says so with th
 
 from __future__ import annotations
 
-import functools
 import multiprocessing.util
 import socket
 import sys
 import threading
 import time
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,6 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "src" / "crowdbot"
 LONGEST_SLEEP = 0.1
 """Longest sleep [s] in the thread of a test of the gate."""
-CLOCKS = ("monotonic", "perf_counter", "time", "monotonic_ns", "perf_counter_ns", "time_ns")
 PROCESSES = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")
 ADDRESSES = ("socket.bind", "socket.connect", "socket.sendto")
 INNER = ("uname -p", "fc-list", "import mujoco.egl", "import compile_kernels", str(PACKAGE / "data"))
@@ -31,7 +29,7 @@ OUTSIDE = ("live", "sweep", "soak")
 
 
 class GateGuard:
-    """Plugin of pytest that watches processes, network addresses, sleeps, and tests that read a clock.
+    """Plugin of pytest that watches processes, network addresses and sleeps.
 
     Examples in docstrings are left out: they open ports and start programs to show how, and nobody answers them.
     """
@@ -43,8 +41,6 @@ class GateGuard:
         self._fixtures: dict[object, tuple[list[str], list[str]]] = {}
         sys.addaudithook(self._audit)  # stays to the end of the process
         self._sleep, self._spawn = time.sleep, multiprocessing.util.spawnv_passfds
-        self._clocks = {name: getattr(time, name) for name in CLOCKS}
-        self._watched_clocks = {name: self._watched_clock(clock) for name, clock in self._clocks.items()}
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
@@ -54,7 +50,6 @@ class GateGuard:
         self._watching = not outside and not isinstance(item, pytest.DoctestItem)
         time.sleep = self._watched_sleep
         multiprocessing.util.spawnv_passfds = self._watched_spawn  # a spawned process raises no audit event
-        vars(time).update(self._watched_clocks)
         return (yield)
 
     @pytest.hookimpl(wrapper=True)
@@ -102,7 +97,6 @@ class GateGuard:
     def _end(self) -> None:
         self._watching = False
         time.sleep, multiprocessing.util.spawnv_passfds = self._sleep, self._spawn
-        vars(time).update(self._clocks)
 
     def _audit(self, event: str, values: tuple[Any, ...]) -> None:
         if not self._watching:
@@ -119,23 +113,9 @@ class GateGuard:
             self._live.append(f"time.sleep({seconds:g})")
         self._sleep(seconds)
 
-    def _watched_clock(self, clock: Callable[[], float]) -> Callable[[], float]:
-        @functools.wraps(clock)
-        def read() -> float:
-            if self._watching and is_test_file(sys._getframe(1).f_code.co_filename):
-                self._live.append(f"time.{clock.__name__}()")
-            return clock()
-
-        return read
-
     def _watched_spawn(self, path: bytes, words: list[str], kept: list[int]) -> int:
         self._program.append("a process of multiprocessing")
         return self._spawn(path, words, kept)
-
-
-def is_test_file(name: str) -> bool:
-    """Return whether code is that of a test; helpers read the clock to end a wait that lasts too long."""
-    return Path(name).name.startswith("test_")
 
 
 def fixtures_of(item: pytest.Item) -> list[object]:
