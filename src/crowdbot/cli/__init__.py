@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parse(words)
         debug |= options.debug
-        with _code_notices():
+        with _notices():
             status: int = options.main(options)
         sys.stdout.flush()
         return status
@@ -94,18 +94,25 @@ def _open_standard_streams() -> None:
         sys.stdout.reconfigure(errors="replace")
 
 
-class _CodeNotices(logging.Handler):
-    """Prints on stderr the files that code is loaded from."""
+class _Notices(logging.Handler):
+    """Prints on stderr, once each, the files that code is loaded from and the robots that replace those of trials."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._printed: set[str] = set()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Print one line."""
-        print(f"crowdbot: {record.getMessage()}", file=sys.stderr)
+        """Print one line, unless it was printed."""
+        message = record.getMessage()
+        if message not in self._printed:  # a sweep replaces a robot in each of its variants
+            self._printed.add(message)
+            print(f"crowdbot: {message}", file=sys.stderr)
 
 
 @contextlib.contextmanager
-def _code_notices() -> Iterator[None]:
+def _notices() -> Iterator[None]:
     """Print the log of crowdbot on stderr inside the block."""
-    logger, handler = logging.getLogger("crowdbot"), _CodeNotices()
+    logger, handler = logging.getLogger("crowdbot"), _Notices()
     level = logger.level
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .output import add_json, print_json
+from .output import add_json, print_json, robot_lines
 from .settings import add_settings, settings
 
 MOST_LINES = 20
@@ -91,7 +91,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     except InputError as error:
         return {"problems": [str(error)]}
     variants = [one.name for one in expand_sweeps(trial)] if trial.sweeps else []
-    return {"problems": [], "remarks": trial_remarks(trial), "variants": variants}
+    return {"problems": [], "robots": robot_lines([trial]), "remarks": trial_remarks(trial), "variants": variants}
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
@@ -123,6 +123,8 @@ def _print(name: str, row: dict[str, Any]) -> None:
     count = len(row["problems"])
     verdict = f"{count} error{'s' if count != 1 else ''}" if count else "OK"
     print(f"{Path(name).name}: {verdict}")
+    for line in row.get("robots", ()):
+        print(f"  {line}")
     for remark in row.get("remarks", ()):
         print(f"  note: {remark}")
     for k, variant in enumerate(row.get("variants", ()), 1):

@@ -9,9 +9,12 @@ import os
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from crowdbot.trials import Trial
 
 __all__ = [
     "Progress",
@@ -21,10 +24,15 @@ __all__ = [
     "number",
     "print_json",
     "print_metrics",
+    "print_robots",
     "print_table",
     "print_warnings",
     "progress",
+    "robot_lines",
 ]
+
+MOST_ROBOTS = 20
+"""Largest number of robots that are described."""
 
 Progress = Callable[[str, float], None]
 """Progress callback: called with the name of the current task and the completed fraction, 0 to 1."""
@@ -113,6 +121,25 @@ def number(value: Any, digits: int = 3) -> str:
 def note(sentence: str) -> None:
     """Print a sentence on stderr."""
     print(sentence, file=sys.stderr, flush=True)
+
+
+def print_robots(trials: Iterable[Trial]) -> None:
+    """Print on stderr the robots of trials, once each: type, drive, speed, sensors, and what the trial overrides."""
+    for line in robot_lines(trials):
+        note(f"crowdbot: {line}")
+
+
+def robot_lines(trials: Iterable[Trial]) -> list[str]:
+    """Return a line for each robot that differs, with the name of its trial if the trials have different robots."""
+    from crowdbot.trials import describe_robot
+
+    rows = {trial.name: tuple(map(describe_robot, trial.robots)) for trial in trials}
+    if len(set(rows.values())) <= 1:
+        lines = [line for row in list(rows.values())[:1] for line in row]
+    else:
+        lines = [f"{name}: {line}" for name, row in rows.items() for line in row]
+    more = len(lines) - MOST_ROBOTS
+    return [*lines[:MOST_ROBOTS], *([f"and {more} more robots"] if more > 0 else [])]
 
 
 @contextmanager

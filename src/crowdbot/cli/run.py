@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING
 
 from .bridge import add_bridge, check_bridge_options, run_with_bridge
 from .bridge.mocap import add_mocap, open_captures, print_captures
-from .output import add_json, note, number, print_json, print_metrics, print_table, print_warnings, progress
+from .output import (
+    add_json,
+    note,
+    number,
+    print_json,
+    print_metrics,
+    print_robots,
+    print_table,
+    print_warnings,
+    progress,
+)
 from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
@@ -44,6 +54,7 @@ def main(options: argparse.Namespace) -> int:
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, settings(options), trust=options.trust), options.variant)
+    print_robots([trial])
     with contextlib.ExitStack() as stack:
         captures = open_captures(trial, options, stack)
         if options.bridge:

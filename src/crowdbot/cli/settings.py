@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_settings", "add_world", "select_variant", "settings"]
+__all__ = ["add_robots", "add_settings", "add_world", "robots", "select_variant", "settings"]
 
 WORLDS = ("planar", "physics")
 
@@ -23,6 +23,22 @@ def add_settings(parser: argparse._ActionsContainer) -> None:
         metavar="NAME=VALUE",
         help="parameter of a built-in trial (density=0.5) or value by its path (spawner[1]/count=20); repeatable",
     )
+
+
+def add_robots(parser: argparse._ActionsContainer) -> None:
+    """Add the option ``--robots``."""
+    parser.add_argument(
+        "--robots",
+        default="",
+        metavar="LIST",
+        help="robot types or robot folders, separated by commas, each with its own body, drive and sensors instead of"
+        " the first robot of the trial (default: own)",
+    )
+
+
+def robots(options: argparse.Namespace) -> list[str]:
+    """Return the robot types; an empty name is the robot of the trial."""
+    return [name.strip() for name in options.robots.split(",")]
 
 
 def add_world(parser: argparse._ActionsContainer) -> None:

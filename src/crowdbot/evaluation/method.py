@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import Element, InputError, TrialError, format_xml
-from crowdbot.trials import Trial, element_from, parse_trial
+from crowdbot.trials import Trial, element_from, parse_trial, replace_robot
 
 __all__ = ["Method", "own_method", "parse_methods", "with_safety"]
 
@@ -19,8 +19,6 @@ OWN = "own"
 SAFETY = "+safety"
 """End of the name of a method whose robot has a safety layer."""
 SETTING = re.compile(r"([A-Za-z][\w-]*)=(\S+)")
-BY_TYPE = ("radius", "height", "mass", "latency", "rider")
-"""Attributes of a robot that its type gives."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,8 @@ class Method:
         Args:
             trial: the trial; it needs a robot.
             robot_type: another type for the robot, such as ``pepper`` or a robot folder; empty: as in the trial.
-                Radius, height, mass, latency, drive and sensors are then those of the type.
+                Its body, drive and sensors replace those of the trial, see
+                :func:`crowdbot.trials.replace_robot`.
             trust: whether code from outside the folder of the trial may be loaded.
 
         Raises:
@@ -71,7 +70,7 @@ class Method:
             robot.children = [child for child in robot.children if child.tag != "safety"]
             robot.children += (had or [Element("safety")]) if self.safety else []
         if robot_type:
-            _change_type(robot, _relative(robot_type, trial.folder))
+            replace_robot(robot, _relative(robot_type, trial.folder))
         place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
         try:
             new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust, quiet=True)
@@ -138,13 +137,6 @@ def _parse_method(text: str) -> Method:
             raise InputError(f"navigator {text.strip()!r}: {setting!r} must be name=value, such as time-horizon=3")
         parameters.append((match[1], match[2]))
     return Method(" ".join([kind, *settings]), bare, tuple(parameters), safety)
-
-
-def _change_type(robot: Element, kind: str) -> None:
-    robot.attributes["type"] = kind
-    for name in BY_TYPE:
-        robot.attributes.pop(name, None)
-    robot.children = [child for child in robot.children if child.tag not in ("drive", "sensor")]
 
 
 def _relative(name: str, folder: Path | None) -> str:

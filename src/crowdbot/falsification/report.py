@@ -67,7 +67,9 @@ def describe_rarity(result: FalsificationResult) -> str:
         return (
             f"{result.failures} of {len(result.samples)} runs of a directed search fail; it estimates no probability."
         )
-    value, low, high, _ = result.estimate
+    value, low, high, runs = result.estimate
+    if not runs:
+        return f"None of {len(result.samples)} runs is possible; there is no estimate."
     if not result.failures:
         return f"No run fails; the failure probability is at most {high:.2g} (95 %)."
     once = f", once in {1.0 / value:.3g} runs" if value > 0.0 else ""

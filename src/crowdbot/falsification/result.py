@@ -125,7 +125,7 @@ class FalsificationResult:
             "first_failure": self.first_failure,
             "invalid": self.invalid,
             "errors": self.errors,
-            "estimate": None if self.estimate is None else self.estimate._asdict(),
+            "estimate": None if self.estimate is None or not self.estimate.runs else self.estimate._asdict(),
             "levels": list(self.levels),
             "clusters": [
                 {

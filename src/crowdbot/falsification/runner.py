@@ -90,7 +90,7 @@ class SampleRunner:
         trial = self.space.trial
         return SampleJob(
             self._xml,
-            trial.folder,
+            trial.folder or Path.cwd(),  # jobs with the same text in another working folder are others
             self.space.trust,
             self.space.factors,
             self.failure.text,

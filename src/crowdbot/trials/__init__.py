@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from .robots.joint_target import JointTarget, joint_positions
     from .robots.predictor import RobotPredictor
     from .robots.reaction import ReactionSpec, robot_reactions
+    from .robots.robot_parts import describe_robot, override_remarks, replace_robot
     from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
@@ -127,6 +128,7 @@ __getattr__, __dir__ = lazy_exports(
         "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
         "robots.reaction": ["ReactionSpec", "robot_reactions"],
+        "robots.robot_parts": ["describe_robot", "override_remarks", "replace_robot"],
         "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
@@ -241,6 +243,7 @@ __all__ = [
     "code_digest",
     "code_references",
     "crowd_names",
+    "describe_robot",
     "element_from",
     "element_word",
     "expand_spawners",
@@ -267,6 +270,7 @@ __all__ = [
     "model_range",
     "needs_trust",
     "outline",
+    "override_remarks",
     "overview",
     "own",
     "parse_trial",
@@ -280,6 +284,7 @@ __all__ = [
     "readable",
     "recorded_trial",
     "remove_element",
+    "replace_robot",
     "resolve_file",
     "restore_old_names",
     "robot_place_problem",

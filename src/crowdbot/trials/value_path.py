@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core import Element, InputError, did_you_mean
 
 from .fields import FieldSpec, outline, quote_value
+from .robots.robot_parts import replace_robot
 from .xml.old_names import current_name
 
 __all__ = ["element_at", "remove_at", "set_value", "set_values", "text_of"]
@@ -37,7 +38,8 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
 
     A path names elements and then an attribute, separated by slashes or dots, as in ``duration``,
     ``crowd/time-horizon`` or ``robot[pepper].navigator.max-speed``. Of several elements of one kind, the brackets
-    select one by name or by number, counted from 1. A new ``type`` removes the parameters of the old type.
+    select one by name or by number, counted from 1. A new ``type`` removes the parameters of the old type; the type of
+    a robot brings its own body, drive and sensors, see :func:`crowdbot.trials.replace_robot`.
 
     Args:
         root: the trial, changed in place.
@@ -58,6 +60,9 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
     here, inside = _follow(root, kind, steps)
     last = current_name(here.tag, last)
     _check_attribute(here, inside, last)
+    if (here.tag, last) == ("robot", "type"):
+        replace_robot(here, text)
+        return
     if last == "type" and here.attributes.get("type") != text and _is_mounted(inside):
         own = () if inside is None else tuple(part.word for part in outline(inside) if part.role == "attribute")
         here.attributes = {key: value for key, value in here.attributes.items() if key in (*own, "name")}

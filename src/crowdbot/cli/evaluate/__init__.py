@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.output import add_json, note, print_json, progress
-from crowdbot.cli.settings import add_settings, add_world
+from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
+from crowdbot.cli.settings import add_robots, add_settings, add_world
 
 from .plan_options import add_plan_options, plan_of, statistic_names
 from .recordings import add_recording_options, present_recordings
@@ -36,7 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         default="own",
         help="each navigator as it is (own), or without and with a safety layer (both); default: own",
     )
-    parser.add_argument("--robots", default="", metavar="LIST", help="robot types, separated by commas (default: own)")
+    add_robots(parser)
     parser.add_argument("--seeds", metavar="SEEDS", help="seeds, such as 0:50 (default: 0:20; with --real 0:100)")
     parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")
     parser.add_argument(
@@ -74,6 +74,7 @@ def main(options: argparse.Namespace) -> int:
         raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)
     plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
+    print_robots(cell.variant for cell in plan.cells)
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
     try:
         with progress(options.json) as report:

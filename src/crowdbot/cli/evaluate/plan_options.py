@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.settings import settings
+from crowdbot.cli.settings import robots, settings
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan
@@ -86,7 +86,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     return EvaluationPlan(
         trials,
         with_safety(methods) if options.safety == "both" else methods,
-        [name.strip() for name in options.robots.split(",")],
+        robots(options),
         parse_seeds(options.seeds or "0:20"),
         families=families,
         factors=levels,

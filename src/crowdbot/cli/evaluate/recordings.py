@@ -49,8 +49,8 @@ def present_recordings(options: argparse.Namespace) -> int:
     given = [name for name in ("trials", "logs", "real", "participants") if getattr(options, name)]
     if len(given) > 1:
         raise InputError(f"{' and '.join(given)} are given; evaluate takes trials, --logs, --real, or --participants")
-    if options.sweep or options.require or options.disturbance:
-        raise InputError("--sweep, --require and --disturbance need trials, not recordings")
+    if options.sweep or options.require or options.disturbance or options.robots:
+        raise InputError("--sweep, --require, --disturbance and --robots need trials, not recordings")
     if options.participants:
         return _compare_participants(options)
     if options.real:

@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.output import add_json, note, print_json, progress
-from crowdbot.cli.settings import add_settings, add_world, settings
+from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
+from crowdbot.cli.settings import add_robots, add_settings, add_world, robots, settings
 
 from .tables import print_result
 
@@ -25,6 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help='navigator with parameters, such as "orca safety=0.15" or mine.py:Mine (default: own, that of the trial)',
     )
+    add_robots(parser)
     parser.add_argument(
         "--over",
         action="append",
@@ -67,6 +68,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.falsification import falsify, parse_failure, parse_sampling, write_report
 
     space = _space(options)
+    print_robots([space.trial])
     begin = time.perf_counter()
     try:
         with progress(options.json) as report:
@@ -109,5 +111,8 @@ def _space(options: argparse.Namespace) -> SearchSpace:
     methods = parse_methods(options.navigator)
     if len(methods) != 1:
         raise InputError(f"--navigator {options.navigator!r} names {len(methods)} navigators; give one")
+    kinds = robots(options)
+    if len(kinds) != 1:
+        raise InputError(f"--robots {options.robots!r} names {len(kinds)} robots; give one")
     trial = load_trial(options.trial, settings(options), trust=options.trust)
-    return SearchSpace(methods[0].put_into(trial), tuple(parse_factor(text) for text in options.over))
+    return SearchSpace(methods[0].put_into(trial, kinds[0]), tuple(parse_factor(text) for text in options.over))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.output import add_json, note, print_json, print_table, progress
+from crowdbot.cli.output import add_json, note, print_json, print_robots, print_table, progress
 from crowdbot.cli.settings import add_settings, add_world, settings
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.generation import generate
 
     plan, begin = make_plan(options), time.perf_counter()
+    print_robots(plan.trials)
     try:
         with progress(options.json) as report:
             card = generate(

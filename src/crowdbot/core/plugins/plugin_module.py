@@ -98,7 +98,7 @@ def sources_of(cls: type) -> tuple[Path, ...]:
 def plugin_address(cls: type, folder: Path | None) -> str:
     """Return the address of a class that was loaded from a file or a folder, as seen from ``folder``.
 
-    It is empty for other classes. If ``folder`` is None, the file or folder is named without its path.
+    It is empty for other classes. Without a folder, the name is as in :func:`relative_name`.
     """
     package, name = _package_of(cls), cls.__qualname__
     if package is not None:
@@ -114,13 +114,15 @@ def plugin_address(cls: type, folder: Path | None) -> str:
 def relative_name(path: Path, folder: Path | None) -> str:
     """Return the name of a file relative to a folder.
 
-    It is the absolute path for a file on another drive of Windows, and the file name alone without a folder.
+    It is the absolute path for a file on another drive of Windows. Without a folder, it is relative to the working
+    folder, or the file name alone for a file outside of it.
 
     >>> relative_name(Path("/data/maps/hall.png"), Path("/data/trials"))
     '../maps/hall.png'
     """
     if folder is None:
-        return path.name
+        here = Path.cwd()
+        return path.relative_to(here).as_posix() if path.is_relative_to(here) else path.name
     try:
         return Path(os.path.relpath(path, folder.resolve())).as_posix()
     except ValueError:  # another drive

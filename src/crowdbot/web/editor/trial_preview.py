@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, TrialError, without_running_code
 from crowdbot.navigation import PathPlanner
-from crowdbot.trials import Trial, expand_sweeps, parse_trial, place, trial_remarks
+from crowdbot.trials import Trial, expand_sweeps, override_remarks, parse_trial, place, trial_remarks
 
 from .xml_document import XmlDocument
 
@@ -28,7 +28,7 @@ def read_trial(text: str, folder: Path) -> tuple[Trial | None, list[str], list[s
     try:
         with without_running_code():
             trial = parse_trial(text, folder=folder, quiet=True)
-            return trial, [], trial_remarks(trial)
+            return trial, [], [*override_remarks(trial), *trial_remarks(trial)]
     except TrialError as error:
         return None, list(error.problems), []
     except InputError as error:

@@ -172,6 +172,7 @@ def _falsify_rows(space: Workspace) -> list[Row]:
     return [
         _choice("trial", "Trial", _trials(space), "frontal"),
         {**_text("navigator", "Navigator", "own"), "note": 'own, or with parameters: "orca safety=0.15"'},
+        {**_text("robots", "Robot", ""), "note": "robot type or robot folder (default: that of the trial)"},
         {**_text("over", "Values that vary", ""), "note": over},
         {**_text("failure", "Failure", "collision"), "note": failure},
         _choice("search", "Search", searches),
@@ -183,7 +184,7 @@ def _falsify_rows(space: Workspace) -> list[Row]:
 
 def _falsify_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
     over = [f"--over={one.strip()}" for one in values["over"].split(";") if one.strip()]
-    plain = [f"--{name}={values[name]}" for name in ("navigator", "failure", "search")]
+    plain = [f"--{name}={values[name]}" for name in ("navigator", "robots", "failure", "search")]
     return ["falsify", values["trial"], *plain, *over, *_numbers(values, "runs", "seed")]
 
 
