@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, Pose, Scene, Twist
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.navigation import DriveLimits, Observation, VisiblePeople
+from crowdbot.sensors import Infrared, Lidar2D
 from crowdbot.world import DifferentialDrive, Twists
 
 LIMITS = DriveLimits(1.0, 2.0, 1.0, 3.0)
@@ -144,3 +145,22 @@ def test_it_drives_to_the_waypoint_and_slows_by_the_length_of_the_path():
     assert alone(waypoint=(0.1, 0.0)).towards_goal(0.8).forward == 0.8
     with pytest.raises(InputError, match="observation: waypoint = \\(nan, 0.0\\) is not finite"):
         alone(waypoint=(math.nan, 0.0))
+
+
+def test_the_scan_is_that_of_the_widest_horizontal_scanner():
+    """Narrow, tilted and single beams come first, and stay readings by name."""
+    scene = Scene.of([[2.0, 0.0]], radius=0.3)
+    level, down = SpatialPose.of((0.0, 0.0, 0.3)), SpatialPose.of((0.0, 0.0, 0.3), pitch=1.2)
+    readings = {
+        "cliff": Lidar2D(rays=2, field_of_view=0.1).read(scene, level),
+        "floor": Lidar2D(rays=900, field_of_view=4.0).read(scene, down),
+        "range": Infrared().read(scene, level),
+        "coarse": Lidar2D(rays=90, field_of_view=3.0).read(scene, level),
+        "fine": Lidar2D(rays=180, field_of_view=3.0).read(scene, SpatialPose.of((0.0, 0.0, 0.3), roll=math.pi)),
+        "again": Lidar2D(rays=180, field_of_view=3.0).read(scene, level),
+    }
+    seen = alone(readings=readings)
+    assert seen.scan is readings["fine"]
+    assert seen.readings.keys() == readings.keys()
+    assert alone(readings={name: readings[name] for name in ("range", "floor")}).scan is None
+    assert alone(readings={"cliff": readings["cliff"]}).scan is readings["cliff"]

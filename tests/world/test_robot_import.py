@@ -131,6 +131,45 @@ def test_sensors_of_gazebo_tags(tmp_path, capsys):
     assert "its type is not supported" in capsys.readouterr().out
 
 
+RAY = """<gazebo reference='laser'><sensor name='{name}' type='{kind}'><update_rate>10</update_rate><ray><scan>
+  <horizontal><samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle></horizontal>
+  {vertical}</scan><range><min>0.02</min><max>4</max></range></ray>{plugin}</sensor></gazebo>"""
+ROWS = "<vertical><samples>5</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical>"
+OUTPUT = "<plugin filename='libgazebo_ros_ray_sensor.so'><output_type>sensor_msgs/{}</output_type>{}</plugin>"
+RANGE = "<plugin filename='libgazebo_ros_range.so'>{}</plugin>"
+
+
+@pytest.mark.parametrize(
+    ("kind", "samples", "vertical", "plugin", "sensor"),
+    [
+        ("ray", 5, ROWS, OUTPUT.format("Range", "<radiation_type>ultrasound</radiation_type>"), "Ultrasound"),
+        ("ray", 5, ROWS, OUTPUT.format("Range", "<radiation_type>infrared</radiation_type>"), "Infrared"),
+        ("ray", 5, ROWS, OUTPUT.format("Range", ""), "Infrared"),
+        ("ray", 5, ROWS, RANGE.format("<radiation>ultrasound</radiation><fov>0.5</fov>"), "Ultrasound"),
+        ("gpu_ray", 5, "", RANGE.format("<radiation>infrared</radiation>"), "Infrared"),
+        ("gpu_ray", 5, "", RANGE.format(""), "Ultrasound"),
+        ("gpu_lidar", 1, "", "", "Infrared"),
+        ("ray", 5, ROWS, OUTPUT.format("LaserScan", ""), "Lidar2D"),
+        ("ray", 2, "", OUTPUT.format("LaserScan", ""), "Lidar2D"),
+        ("ray", 90, ROWS, OUTPUT.format("PointCloud2", ""), "Lidar3D"),
+        ("gpu_lidar", 90, ROWS, "", "Lidar3D"),
+    ],
+)
+def test_message_and_radiation_decide_the_kind_of_a_ray_sensor(tmp_path, kind, samples, vertical, plugin, sensor):
+    """A sonar with rows of beams is a sonar, and a beam alone is a range finder."""
+    words = {"name": "near", "kind": kind, "samples": samples, "vertical": vertical, "plugin": plugin}
+    text = RAY.format(low=-0.2, high=0.2, **words)
+    robot = Robot.load(convert(tmp_path, base_file("differential").replace("</robot>", f"{text}</robot>")))
+    (made,) = [mount.sensor for mount in robot.mounts if mount.name == "near"]
+    assert type(made).__name__ == sensor
+    if sensor == "Ultrasound":
+        half = 0.25 if "fov" in plugin else 0.2
+        assert made.radius == pytest.approx(4.0 * math.tan(half), abs=1e-4)
+    if sensor == "Infrared":
+        assert made.dispersion == pytest.approx(0.2 if samples > 1 else math.radians(2.5))
+    assert (made.range_max, made.rate) == (4.0, 10.0)
+
+
 def test_a_folder_is_not_replaced_by_mistake(tmp_path, capsys):
     folder = convert(tmp_path, base_file("differential"))
     file = tmp_path / "maker.urdf.xacro"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.navigation import DriveLimits, ExternalNavigator
-from crowdbot.sensors import Lidar2D, Scan
+from crowdbot.sensors import Lidar2D, Scan, main_scanner
 from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.trials import Trial
 
@@ -68,7 +68,8 @@ class RobotPort:
             )
         self.dt = self.ticks * trial.step
         mounts = [mount for mount in spec.sensors if isinstance(mount.sensor, Lidar2D)]
-        self.scanner = mounts[0] if mounts else None
+        best = main_scanner((mount.sensor.angles, spec.frame_of(mount)[2, 2]) for mount in mounts)
+        self.scanner = None if best is None else mounts[best]
         if observation.with_scan and self.scanner is None:
             raise InputError(f"robot {robot!r} has no laser scanner for observation = {observation.form!r}")
         self._simulation: Simulation | None = None

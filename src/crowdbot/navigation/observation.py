@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, Twist, Walls, wrap_angle
 from crowdbot.data import Forecast
 from crowdbot.prediction import Predictor
-from crowdbot.sensors import Odometry, Reading, Scan
+from crowdbot.sensors import Odometry, Reading, main_scan
 
 from .goal_motion import SLOWING_TIME, TURN_GAIN
 from .track_history import HORIZON, TrackHistory, choose_predictor
@@ -87,7 +87,9 @@ class Observation:
         twist: current velocity.
         people: visible people and other robots.
         walls: walls of the stage.
-        scan: latest scan of its first laser scanner, or None; default: the first scan in ``readings``.
+        scan: latest scan of its main laser scanner, or None; default: of ``readings``, the scan with the widest field
+            of view whose plane is within 45 degrees of the horizontal; then the one with the most beams, then the
+            first (:func:`crowdbot.sensors.main_scan`).
         dt: time until the next decision [s].
         time: simulated time [s].
         readings: latest reading of each sensor by its name; sensors without a reading yet are missing.
@@ -124,8 +126,7 @@ class Observation:
         if self.waypoint is AT_GOAL:
             object.__setattr__(self, "waypoint", self.goal)
         if self.scan is None and self.readings:
-            scans = (reading for reading in self.readings.values() if isinstance(reading, Scan))
-            object.__setattr__(self, "scan", next(scans, None))
+            object.__setattr__(self, "scan", main_scan(self.readings.values()))
         vectors = (("pose", self.pose), ("goal", self.goal), ("twist", self.twist), ("waypoint", self.waypoint))
         for name, values in vectors:
             if not all(math.isfinite(value) for value in values):

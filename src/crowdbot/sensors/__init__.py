@@ -7,7 +7,7 @@ from .ground_truth_people import GroundTruthPeople, TrackedPeople
 from .imu import IMU, ImuReading, ImuState
 from .infrared import Infrared
 from .lens import ImageSource, Lens, distort_image
-from .lidar import Lidar2D, Scan, cast_plane
+from .lidar import Lidar2D, Scan, cast_plane, main_scan, main_scanner
 from .lidar3d import Lidar3D, PointCloud
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
 from .odometry.arcs import arc_between
@@ -81,6 +81,8 @@ __all__ = [
     "check_sensor",
     "distort_image",
     "join_readings",
+    "main_scan",
+    "main_scanner",
     "measure_rows",
     "planar_pose",
     "preset",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -22,7 +23,7 @@ from .ray_shapes import WALLS as WALL
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan", "cast_plane"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan", "cast_plane", "main_scan", "main_scanner"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -254,6 +255,51 @@ def visible_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
     rows, beams_ = np.nonzero(flat >= 0)
     marks[rows, flat[rows, beams_]] = True
     return marks
+
+
+LEVEL = math.cos(math.radians(45.0))
+"""Cosine of the largest angle between the plane of a main scanner and the horizontal."""
+
+
+def main_scanner(scanners: Iterable[tuple[Floats, float]]) -> int | None:
+    """Return the index of the main scanner: of the horizontal ones, that with the widest field of view.
+
+    A scanner is horizontal if its plane is within 45 degrees of the horizontal. The width is the angle between the
+    first and the last beam; of equally wide scanners, the one with more beams counts, then the first one.
+
+    Args:
+        scanners: angles of the beams ``[R]`` [rad], and cosine of the angle between the axis of the scanner and up.
+
+    >>> beams = [np.linspace(-0.1, 0.1, 2), np.linspace(-2.0, 2.0, 90), np.linspace(-3.0, 3.0, 90)]
+    >>> main_scanner(zip(beams, (1.0, -1.0, 0.0))), main_scanner([])
+    (1, None)
+    """
+    level = [(k, angles) for k, (angles, up) in enumerate(scanners) if abs(up) >= LEVEL]
+    if not level:
+        return None
+    return max(level, key=lambda row: (round(float(row[1][-1] - row[1][0]), 6), len(row[1])))[0]
+
+
+def main_scan(readings: Iterable[Reading]) -> Scan | None:
+    """Return the reading of the main scanner, see :func:`main_scanner`, or None without one.
+
+    >>> from crowdbot.core import Pose, Scene
+    >>> here = Scene.of([[2.0, 0.0]], radius=0.3), Pose.of((0.0, 0.0), 0.0)
+    >>> narrow, wide = (Lidar2D(rays=count, field_of_view=angle).read(*here) for count, angle in ((2, 0.1), (90, 3.0)))
+    >>> len(main_scan([narrow, wide]).angles), main_scan([])
+    (90, None)
+    """
+    scans = [reading for reading in readings if isinstance(reading, Scan)]
+    best = main_scanner((scan.angles, _up(scan)) for scan in scans)
+    return None if best is None else scans[best]
+
+
+def _up(scan: Scan) -> float:
+    """Return the cosine of the angle between the axis of a scanner and up, in the first environment."""
+    if not isinstance(scan.pose, SpatialPose):
+        return 1.0
+    _, x, y, _ = scan.pose.rotation[0].tolist()
+    return float(1.0 - 2.0 * (x * x + y * y))
 
 
 @dataclass(frozen=True)

@@ -187,14 +187,19 @@ def _lidar(sensor: Element, shared: dict[str, str]) -> dict[str, str]:
     low = _number(ray, "scan", "horizontal", "min_angle")
     high = _number(ray, "scan", "horizontal", "max_angle")
     near, far = _number(ray, "range", "min"), _number(ray, "range", "max")
+    single = low is not None and low == high
     low, high = (-math.pi if low is None else low), (math.pi if high is None else high)
     if not high > low or high - low > 2.0 * math.pi + 0.01:
         low, high = -math.pi, math.pi
     reach = {"range-min": f"{max(near or 0.05, 0.0):g}", "range-max": f"{max(far or 10.0, (near or 0.05) + 0.1):g}"}
     rows = _number(ray, "scan", "vertical", "samples") or 1.0
-    if _text(ray, "range", "max") and _text(sensor, "plugin", "radiation") == "ultrasound":
-        return {"type": "ultrasound", **reach, "radius": f"{max(0.05, (far or 2.5) * math.tan(0.5 * (high - low))):g}"}
-    if rows > 1.5:
+    message = _message(sensor)
+    if not message and rows < 1.5 and samples < 1.5:
+        message = "infrared"  # one beam measures one distance
+    if message in ("ultrasound", "infrared"):
+        angle = 0.0 if single or samples < 1.5 else high - low
+        return _range_finder(sensor, message, angle, shared, 0.5 * (low + high)) | reach | _noise(ray)
+    if rows > 1.5 and message != "scan":
         down = _number(ray, "scan", "vertical", "min_angle") or 0.0
         up = _number(ray, "scan", "vertical", "max_angle") or 0.0
         count = int(min(rows, 64))
@@ -209,6 +214,43 @@ def _lidar(sensor: Element, shared: dict[str, str]) -> dict[str, str]:
     made = {"type": "lidar-2d", "rays": f"{int(min(max(samples, 2), 4000))}"}
     made["field-of-view"] = f"{min(high - low, 2.0 * math.pi - 1e-8):.9g}"
     return made | reach | _noise(ray)
+
+
+RANGE_FINDERS = ("gazebo_ros_range", "gazebo_ros_sonar", "gazebo_ros_ir")
+SCANNERS = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
+"""Beginnings of file names of plugins that publish sensor_msgs/Range and sensor_msgs/LaserScan."""
+NARROW = math.radians(5.0)
+"""Smallest opening angle of a range finder [rad]."""
+
+
+def _message(sensor: Element) -> str:
+    """Return what the plugin of a ray sensor publishes: ``ultrasound`` or ``infrared`` for ranges with that radiation,
+    ``scan``, or nothing if the file does not say it."""
+    for plugin in sensor.each("plugin"):
+        output = _text(plugin, "output_type").rpartition("/")[2].lower()
+        file = plugin.attributes.get("filename", "").rpartition("/")[2].removeprefix("lib")
+        words = [_text(plugin, tag).lower() for tag in ("radiation_type", "radiation") if _text(plugin, tag)]
+        if output == "laserscan" or (not output and file.startswith(SCANNERS)):
+            return "scan"
+        if output == "range" or (not output and (words or file.startswith(RANGE_FINDERS))):
+            if words:
+                return "ultrasound" if words[0].startswith("ultraso") else "infrared"
+            # the plugins assume these if the file has no radiation
+            return "infrared" if output else "ultrasound"
+    return ""
+
+
+def _range_finder(sensor: Element, kind: str, angle: float, shared: dict[str, str], middle: float) -> dict[str, str]:
+    """Return an ultrasonic or infrared range finder with an opening angle [rad], turned to the middle of its beams."""
+    if abs(middle) > 1e-3:
+        shared["yaw"] = f"{float(shared.get('yaw', 0.0)) + middle:.9g}"
+    wide = next((value for plugin in sensor.each("plugin") if (value := _number(plugin, "fov"))), 0.0)
+    angle = min(max(angle, wide, NARROW), 2.5)
+    if kind == "infrared":
+        return {"type": "infrared", "dispersion": f"{0.5 * angle:.9g}"}
+    ray = next((one for tag in ("ray", "lidar") for one in sensor.each(tag)), None)
+    far = _number(ray, "range", "max") or 10.0
+    return {"type": "ultrasound", "radius": f"{max(0.05, far * math.tan(0.5 * angle)):g}"}
 
 
 def _noise(element: Element | None) -> dict[str, str]:
