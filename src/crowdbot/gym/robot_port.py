@@ -68,7 +68,8 @@ class RobotPort:
             )
         self.dt = self.ticks * trial.step
         mounts = [mount for mount in spec.sensors if isinstance(mount.sensor, Lidar2D)]
-        best = main_scanner((mount.sensor.angles, spec.frame_of(mount)[2, 2]) for mount in mounts)
+        planar = ((mount.sensor, float(spec.frame_of(mount)[2, 2])) for mount in mounts)
+        best = main_scanner((sensor.angles, up) for sensor, up in planar if isinstance(sensor, Lidar2D))
         self.scanner = None if best is None else mounts[best]
         if observation.with_scan and self.scanner is None:
             raise InputError(f"robot {robot!r} has no laser scanner for observation = {observation.form!r}")
