@@ -123,9 +123,9 @@ def note(sentence: str) -> None:
     print(sentence, file=sys.stderr, flush=True)
 
 
-def print_robots(trials: Iterable[Trial]) -> None:
+def print_robots(trials: Iterable[Trial], quiet: bool = False) -> None:
     """Print on stderr the robots of trials, once each: type, drive, speed, sensors, and what the trial overrides."""
-    for line in robot_lines(trials):
+    for line in () if quiet else robot_lines(trials):
         note(f"crowdbot: {line}")
 
 

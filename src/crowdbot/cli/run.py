@@ -54,7 +54,7 @@ def main(options: argparse.Namespace) -> int:
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
     trial = select_variant(load_trial(options.trial, settings(options), trust=options.trust), options.variant)
-    print_robots([trial])
+    print_robots([trial], options.json)
     with contextlib.ExitStack() as stack:
         captures = open_captures(trial, options, stack)
         if options.bridge:

@@ -74,7 +74,7 @@ def main(options: argparse.Namespace) -> int:
         raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)
     plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
-    print_robots(cell.variant for cell in plan.cells)
+    print_robots((cell.variant for cell in plan.cells), options.json)
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
     try:
         with progress(options.json) as report:

@@ -68,7 +68,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.falsification import falsify, parse_failure, parse_sampling, write_report
 
     space = _space(options)
-    print_robots([space.trial])
+    print_robots([space.trial], options.json)
     begin = time.perf_counter()
     try:
         with progress(options.json) as report:

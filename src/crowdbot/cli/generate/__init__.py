@@ -44,7 +44,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.generation import generate
 
     plan, begin = make_plan(options), time.perf_counter()
-    print_robots(plan.trials)
+    print_robots(plan.trials, options.json)
     try:
         with progress(options.json) as report:
             card = generate(
