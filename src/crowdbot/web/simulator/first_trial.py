@@ -6,7 +6,7 @@ __all__ = ["FIRST"]
 
 FIRST: tuple[str, dict[str, str], int] = (
     "two-way",
-    {"robot/type": "pepper", "robot/default-sensors": "false", "end/collision": "false"},
+    {"robot/type": "pepper", "end/collision": "false"},
     1,
 )
 """Trial, values and seed that a new session shows: a robot among walking people."""
