@@ -28,7 +28,7 @@ def _json(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
 def test_tables_and_requirements_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*QUICK, "--navigators", "straight, orca", "--require", "collision-rate<0.9@90%"]) == 0
     text = capsys.readouterr().out
-    assert re.search(r"straight +yes +3 +0 \[0, 0\.561\]", text)
+    assert re.search(r"straight +yes +3 +0 \[0, 0\.708\]", text)
     assert "6 runs in" in text
     assert "comparison with straight" in text
     assert "collision-rate<0.9@90%: holds for frontal, orca: collision-rate is 0 in 3 runs" in text

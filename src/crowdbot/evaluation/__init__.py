@@ -4,7 +4,7 @@ from .comparison import PairedComparison, paired_comparison
 from .decision_metrics import DECISION_METRICS
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
-from .intervals import Estimate, bootstrap_interval, wilson_interval
+from .intervals import Estimate, bootstrap_interval, exact_interval, wilson_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
@@ -60,6 +60,7 @@ from .tracking import (
     track_video,
 )
 from .trial_of_recording import recorded_trial
+from .verdict import Verdict, judge_cell, runs_without_event
 from .worst_run import WorstRun, worst_runs
 
 __all__ = [
@@ -99,6 +100,7 @@ __all__ = [
     "TrackingRun",
     "TruePaths",
     "TruePeople",
+    "Verdict",
     "VideoForecast",
     "VideoRun",
     "WorstRun",
@@ -109,9 +111,11 @@ __all__ = [
     "estimate_scores",
     "estimate_strata",
     "evaluate",
+    "exact_interval",
     "factor_effects",
     "families_of",
     "find_ogm_split",
+    "judge_cell",
     "junit_xml",
     "load_evaluation",
     "load_robot_recording",
@@ -141,6 +145,7 @@ __all__ = [
     "result_schema",
     "row_of",
     "row_values",
+    "runs_without_event",
     "scan_statistics",
     "score_detections",
     "score_positions",

@@ -19,6 +19,7 @@ from .requirement import Requirement
 from .result import CellResult, EvaluationResult
 from .statistic import Statistic
 from .sweep_effects import FactorEffect, factor_effects
+from .verdict import judge_cell
 from .worst_run import WorstRun
 
 __all__ = ["write_report"]
@@ -50,8 +51,10 @@ def write_report(
     page = Template(_asset("report.html")).substitute(
         style=_asset("report.css"),
         script=_asset("report.js"),
-        lead=html.escape(
-            f"{len(result.cells)} combinations of trial, navigator and robot, {seeds} seeds each; intervals are 95 %."
+        lead=_verdicts(result.cells, requirements),
+        size=html.escape(
+            f"{len(result.cells)} combinations of trial, navigator and robot, {seeds} seeds each. Intervals are 95 %:"
+            " exact binomial (Clopper-Pearson) for rates, bootstrap for others."
         ),
         table=_results(result, statistics),
         protocol=_protocol(result.cells),
@@ -70,6 +73,17 @@ def write_report(
 
 def _asset(name: str) -> str:
     return importlib.resources.files("crowdbot").joinpath("assets", "evaluation", name).read_text(encoding="utf-8")
+
+
+def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) -> str:
+    """Return the sentences that the page begins with, one paragraph for each row."""
+    parts = []
+    for cell in cells:
+        verdict = judge_cell(cell, requirements)
+        kind = "safe" if verdict.safe else "unsafe"
+        limit = f"<br><small>{html.escape(verdict.limit)}</small>"
+        parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
+    return "".join(parts)
 
 
 def _title(run: WorstRun) -> str:
@@ -122,7 +136,9 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
     for requirement in requirements:
         for cell in result.cells:
             verdict = requirement.judge(cell.values(requirement.statistic.metric))
+            warning = judge_cell(cell).warning
             passed = "holds" if verdict.holds else "does not hold"
+            passed += f", but shows nothing: {warning}" if verdict.holds and warning else ""
             rows.append([*_names(cell), requirement.text, passed, verdict.sentence])
     table = _table(["trial", "navigator", "robot", "requirement", "verdict", "measured"], rows)
     return f"<h2>Requirements</h2>{table}" if table else ""

@@ -48,7 +48,7 @@ def evaluate(
     >>> trial = load_trial("frontal", duration=3.0)
     >>> result = evaluate(EvaluationPlan([trial], parse_methods("orca, straight"), seeds=range(3)))
     >>> [str(cell.estimate("collision-rate")) for cell in result.cells]
-    ['0 [0, 0.561]', '0 [0, 0.561]']
+    ['0 [0, 0.708]', '0 [0, 0.708]']
     """
     jobs = [
         RunJob(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import metric_table
 
-from .intervals import Estimate, bootstrap_interval, wilson_interval
+from .intervals import Estimate, bootstrap_interval, exact_interval
 from .own_metric import metric_name
 
 __all__ = ["RATES", "Statistic", "parse_statistic"]
@@ -23,10 +23,14 @@ Floats = NDArray[np.float64]
 RATES = {
     "success-rate": "success",
     "collision-rate": "collision",
+    "person-collision-rate": "person_collision",
+    "wall-collision-rate": "wall_collision",
+    "object-collision-rate": "object_collision",
+    "robot-collision-rate": "robot_collision",
     "timeout-rate": "timeout",
     "error-rate": "error",
 }
-"""Names of the shares of runs, with their metric."""
+"""Names of the shares of runs, with their metric; ``collision`` is a contact that ends a run, whatever is touched."""
 QUANTILE = re.compile(r"p(\d{1,2})")
 TAIL = re.compile(r"cvar(\d{1,2})")
 OWN = re.compile(r"(?P<kind>[a-z]\w*:)?(?P<address>[^:]*(?:\.py|/):[A-Za-z_]\w*)")
@@ -61,7 +65,7 @@ class Statistic:
         kept = np.asarray(values, dtype=np.float64)
         kept = kept[~np.isnan(kept)]
         if self.kind == "rate":
-            return wilson_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
+            return exact_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
         if not len(kept):
             return bootstrap_interval(kept, confidence=confidence)
         function = _FUNCTIONS.get(self.kind) or _of_percentile(self.kind)
@@ -72,7 +76,7 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     """Return the statistic with a name.
 
     Args:
-        name: ``success-rate``, ``collision-rate``, ``timeout-rate`` or ``error-rate``; a metric, of which the mean is
+        name: a share of runs, such as ``success-rate`` or ``person-collision-rate``; a metric, of which the mean is
             taken; or a metric after ``median:``, ``min:``, ``max:``, a percentile such as ``p95:`` or the mean of the
             tail above it, ``cvar95:``. A metric of users has its address: ``mine.py:TimeNear``.
         metrics: known metrics, to refuse others.

@@ -12,7 +12,15 @@ from crowdbot.cli.settings import add_settings, add_world
 
 from .plan_options import add_plan_options, plan_of, statistic_names
 from .recordings import add_recording_options, present_recordings
-from .tables import print_comparisons, print_effects, print_result, print_runs, print_verdicts, result_values
+from .tables import (
+    print_answers,
+    print_comparisons,
+    print_effects,
+    print_result,
+    print_runs,
+    print_verdicts,
+    result_values,
+)
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
@@ -121,8 +129,9 @@ def _present(
     if options.out is not None:
         _write(options, plan, result, statistics, requirements)
     if options.json:
-        print_json(result_values(result, statistics, comparisons, verdicts))
+        print_json(result_values(result, statistics, comparisons, verdicts, requirements))
     else:
+        print_answers(result, requirements)
         print_result(result, statistics, wall)
         print_effects(result, statistics)
         print_comparisons(result, comparisons)

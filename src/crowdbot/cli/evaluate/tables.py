@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +18,25 @@ if TYPE_CHECKING:
         Requirement,
         RequirementVerdict,
         Statistic,
+        Verdict,
     )
 
+WIDTH = 120
+"""Width of a line of sentences [characters]."""
 MOST_ROWS = 20
 """Largest number of messages of failed or invalid runs that are printed."""
+
+
+def print_answers(result: EvaluationResult, requirements: Sequence[Requirement]) -> None:
+    """Print what the runs show: a sentence for each row, and what their number can show at most."""
+    from crowdbot.evaluation import judge_cell
+
+    verdicts = [judge_cell(cell, requirements) for cell in result.cells]
+    for verdict in verdicts:
+        print(textwrap.fill(verdict.sentence, WIDTH))
+    for limit in dict.fromkeys(verdict.limit for verdict in verdicts):
+        print(textwrap.fill(limit, WIDTH))
+    print()
 
 
 def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall: float) -> None:
@@ -40,7 +57,7 @@ def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall
             if cell.trial == trial
         ]
         print_table(trial, head, rows, words=2 if robots else 1)
-    print(f"{count} runs in {wall:.1f} s; intervals of 95 %: Wilson for rates, bootstrap for others\n")
+    print(f"{count} runs in {wall:.1f} s; intervals of 95 %: exact (Clopper-Pearson) for rates, bootstrap for others\n")
 
 
 def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComparison]) -> None:
@@ -75,11 +92,15 @@ def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> 
 
 
 def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:
-    """Print whether the requirements hold."""
+    """Print whether the requirements hold, and whether that shows anything."""
+    from crowdbot.evaluation import judge_cell
+
     for cell, requirement, verdict in verdicts:
         word = "holds" if verdict.holds else "DOES NOT HOLD"
         where = ", ".join(filter(None, (cell.trial, cell.method, cell.robot)))
         print(f"{requirement.text}: {word} for {where}: {verdict.sentence}")
+        if verdict.holds and (warning := judge_cell(cell).warning):
+            print(f"WARNING: {requirement.text} holds, but shows nothing: {warning}")
 
 
 def print_runs(result: EvaluationResult) -> None:
@@ -100,13 +121,17 @@ def result_values(
     statistics: Sequence[Statistic],
     comparisons: Sequence[PairedComparison],
     verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]],
+    requirements: Sequence[Requirement] = (),
 ) -> dict[str, Any]:
     """Return the values of all tables."""
+    from crowdbot.evaluation import judge_cell
+
     return {
         "provenance": dict(result.provenance),
         "cells": [
             {
                 **_names(cell),
+                "verdict": _verdict_values(judge_cell(cell, requirements)),
                 "runs": len(cell.valid),
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
@@ -117,12 +142,23 @@ def result_values(
         **({"effects": effect_values(result, statistics)} if any(cell.factors for cell in result.cells) else {}),
         "comparisons": [one._asdict() | {"difference": one.difference._asdict()} for one in comparisons],
         "requirements": [
-            {**_names(cell), "requirement": requirement.text, "holds": verdict.holds, "sentence": verdict.sentence}
+            {
+                **_names(cell),
+                "requirement": requirement.text,
+                "holds": verdict.holds,
+                "sentence": verdict.sentence,
+                "warning": judge_cell(cell).warning if verdict.holds else "",
+            }
             for cell, requirement, verdict in verdicts
         ],
         "failed": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.failures],
         "invalid": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.invalid],
     }
+
+
+def _verdict_values(verdict: Verdict) -> dict[str, Any]:
+    shares = {name: getattr(verdict, name)._asdict() for name in ("person", "obstacle", "missed")}
+    return dataclasses.asdict(verdict) | shares | {"interval": "exact binomial (Clopper-Pearson), 95 %"}
 
 
 def effect_values(result: EvaluationResult, statistics: Sequence[Statistic]) -> list[dict[str, Any]]:
