@@ -9,6 +9,7 @@ from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
+from .person_contacts import PersonContact, person_contacts
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .reality import RealPlacement, place_reality, reality_svg
 from .recorded_scans import (
@@ -29,7 +30,7 @@ from .result import CellResult, EvaluationResult, load_evaluation, result_schema
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .scan_prediction import SCAN_SCORES, SOGMP, ScanProtocol, ScanScores, TruePeople, plot_scan_scores, score_scans
-from .statistic import Statistic, parse_statistic
+from .statistic import Statistic, metric_unit, parse_statistic
 from .sweep_effects import FactorEffect, factor_effects
 from .tracking import (
     BAND_LIMITS,
@@ -86,6 +87,7 @@ __all__ = [
     "LoggedReading",
     "Method",
     "PairedComparison",
+    "PersonContact",
     "ReadingLog",
     "RealPlacement",
     "Requirement",
@@ -120,6 +122,7 @@ __all__ = [
     "load_evaluation",
     "load_robot_recording",
     "log_readings",
+    "metric_unit",
     "own_method",
     "paired_comparison",
     "pareto_front",
@@ -128,6 +131,7 @@ __all__ = [
     "parse_requirement",
     "parse_seeds",
     "parse_statistic",
+    "person_contacts",
     "place_reality",
     "plot_scan_scores",
     "plot_tracks",

@@ -11,18 +11,27 @@ from pathlib import Path
 from string import Template
 
 from crowdbot.core import explain_write_errors
+from crowdbot.metrics import metric_table
 
 from .comparison import PairedComparison
 from .effect_plots import effects_svg
 from .pareto import pareto_svg
+from .person_contacts import person_contacts
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
-from .statistic import Statistic
+from .statistic import Statistic, metric_unit
 from .sweep_effects import FactorEffect, factor_effects
 from .verdict import judge_cell
 from .worst_run import WorstRun
 
 __all__ = ["write_report"]
+
+MOST_CONTACTS = 10
+"""Largest number of contacts of a row in the report."""
+PROTOCOL_UNITS = {
+    "margin": "m", "step": "s", "control_period": "s", "latency": "s", "duration": "s", "goal_tolerance": "m",
+}  # fmt: skip
+"""Units of the columns of the protocol."""
 
 
 def write_report(
@@ -58,6 +67,7 @@ def write_report(
         ),
         table=_results(result, statistics),
         protocol=_protocol(result.cells),
+        contacts=_contacts(result.cells),
         requirements=_requirements(result, requirements),
         comparisons=_comparisons(comparisons),
         pareto=pareto_svg(result.cells) + _effects(result, statistics),
@@ -108,17 +118,54 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _results(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
-    head = ["trial", "navigator", "robot", "runs", *(one.name for one in statistics)]
+    head = ["trial", "navigator", "robot", "runs", *(one.title for one in statistics)]
     rows = [
         [*_names(cell), str(len(cell.valid)), *(str(cell.estimate(one)) for one in statistics)] for cell in result.cells
     ]
-    return _table(head, rows)
+    return _table(head, rows) + _definitions(statistics)
+
+
+def _definitions(statistics: Sequence[Statistic]) -> str:
+    """Return what the columns are, from the table of metrics."""
+    table = metric_table()
+    metrics = dict.fromkeys(one.metric for one in statistics if one.metric in table)
+    rows = [f"<li><b>{name.replace('_', ' ')}</b>: {html.escape(table[name].formula)}</li>" for name in metrics]
+    return f"<details><summary>What the columns are</summary><ul>{''.join(rows)}</ul></details>" if rows else ""
+
+
+def _contacts(cells: Sequence[CellResult]) -> str:
+    """Return the table of contacts with persons, the hardest of each row first."""
+    rows = [
+        [
+            *_names(cell),
+            str(one.seed),
+            one.region or "unknown",
+            one.severity,
+            f"{one.speed:.2f}",
+            one.cause or "unknown",
+        ]
+        for cell in cells
+        for one in person_contacts(cell)[:MOST_CONTACTS]
+    ]
+    head = ["trial", "navigator", "robot", "seed", "body region", "severity [force / limit]", "impact speed [m/s]"]
+    table = _table([*head, "approached by"], rows)
+    about = (
+        f"<p>The {MOST_CONTACTS} hardest of each row. Severity is the force over the limit of ISO/TS 15066 for the body"
+        " region; above 1 is above the onset of pain. In the planar world the region is unknown: the range is that of"
+        " all regions below the height of the robot, at the closing speed of the discs.</p>"
+    )
+    return f"<h2>Contacts with persons</h2>{about}{table}" if table else ""
 
 
 def _protocol(cells: Sequence[CellResult]) -> str:
     keys = list(dict.fromkeys(key for cell in cells for key in cell.protocol))
     rows = [[*_names(cell), *(_words(cell.protocol.get(key)) for key in keys)] for cell in cells]
-    return _table(["trial", "navigator", "robot type", *(key.replace("_", " ") for key in keys)], rows)
+    return _table(["trial", "navigator", "robot type", *map(_protocol_title, keys)], rows)
+
+
+def _protocol_title(key: str) -> str:
+    unit = PROTOCOL_UNITS.get(key)
+    return key.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
 def _words(value: object) -> str:
@@ -146,7 +193,7 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
 
 def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
     rows = [
-        [one.trial, one.robot or "-", one.metric.replace("_", " "), one.first, one.second, str(one.difference),
+        [one.trial, one.robot or "-", _with_unit(one.metric), one.first, one.second, str(one.difference),
          _p_value(one.p_value), _p_value(one.corrected)]
         for one in comparisons
         if not math.isnan(one.p_value)
@@ -170,11 +217,16 @@ def _effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
         for one in factor_effects(result, metric):
             groups.setdefault((one.trial, one.method, one.robot), []).append(one)
         for names, rows in groups.items():
-            title = html.escape(f"{metric.replace('_', ' ')}: {', '.join(filter(None, names))}")
+            title = html.escape(f"{_with_unit(metric)}: {', '.join(filter(None, names))}")
             cells = [(" and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)) for one in rows]
             parts.append(f"<h3>{title}</h3>{effects_svg(rows)}")
             parts.append(_table(["factor", "level", "mean", "effect"], cells))
     return "".join(parts)
+
+
+def _with_unit(metric: str) -> str:
+    unit = metric_unit(metric)
+    return f"{metric.replace('_', ' ')} [{unit}]" if unit else metric.replace("_", " ")
 
 
 def _p_value(value: float) -> str:

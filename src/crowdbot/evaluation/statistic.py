@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
-from crowdbot.metrics import metric_table
+from crowdbot.metrics import Metric, metric_table
 
 from .intervals import Estimate, bootstrap_interval, exact_interval
 from .own_metric import metric_name
 
-__all__ = ["RATES", "Statistic", "parse_statistic"]
+__all__ = ["RATES", "Statistic", "metric_unit", "parse_statistic"]
 
 Floats = NDArray[np.float64]
 RATES = {
@@ -53,6 +53,16 @@ class Statistic:
     metric: str
     kind: str
     address: str = ""
+
+    @property
+    def title(self) -> str:
+        """Name with the unit of its metric, as the head of a column.
+
+        >>> parse_statistic("p95:time-to-goal").title, parse_statistic("success-rate").title
+        ('p95:time-to-goal [s]', 'success-rate [share]')
+        """
+        unit = "share" if self.kind == "rate" else metric_unit(self.metric)
+        return f"{self.name} [{unit}]" if unit else self.name
 
     def estimate(self, values: Floats, confidence: float = 0.95) -> Estimate:
         """Return the statistic of one value for each run, with its interval.
@@ -113,11 +123,27 @@ _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {
 }
 
 
+def metric_unit(metric: str) -> str:
+    """Return the unit of a metric, ``1`` for numbers and shares; empty if it is in no table.
+
+    >>> metric_unit("min_clearance"), metric_unit("impact_severity_hand"), metric_unit("mine")
+    ('m', '1', '')
+    """
+    row = _row_of(metric)
+    return "" if row is None else row.unit
+
+
 def _is_better_lower(metric: str) -> bool:
     """Return whether the table says that a metric is better when it is lower."""
-    table = metric_table()
-    row = table.get("impact_severity_*" if metric.startswith("impact_severity_") else metric)
+    row = _row_of(metric)
     return row is not None and row.better == "lower"
+
+
+def _row_of(metric: str) -> Metric | None:
+    """Return the row of a metric in the table; those of body regions share one."""
+    table = metric_table()
+    family = next((name for name in table if name.endswith("*") and metric.startswith(name[:-1])), metric)
+    return table.get(metric) or table.get(family)
 
 
 def _of_percentile(kind: str) -> Callable[[Floats], Floats]:

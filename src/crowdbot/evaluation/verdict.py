@@ -132,7 +132,7 @@ def _counts(cell: CellResult, person: Estimate, obstacle: Estimate, missed: Esti
         else "has no record of contacts,"
     )
     return (
-        f"In {len(cell.valid)} runs of {row_name(cell)}{left_out} the robot {touched}"
+        f"In {len(cell.valid)} run{'s' * (len(cell.valid) != 1)} of {row_name(cell)}{left_out} the robot {touched}"
         f" and failed to arrive in {_percent(missed, kinds)}"
     )
 
@@ -196,7 +196,7 @@ def _limit(runs: int, requirements: Sequence[Requirement]) -> str:
     needed = runs_without_event(bound, level)
     most = -math.expm1(math.log1p(-level) / runs)
     return (
-        f"{runs} runs can show at most this: without any contact, the rate of contacts is at most"
+        f"{runs} run{'s' * (runs != 1)} can show at most this: without any contact, the rate of contacts is at most"
         f" {_digits(100.0 * most)} % with {100.0 * level:g} % confidence (1 - {1.0 - level:.2g}^(1/{runs}));"
         f" a rate below {_digits(100.0 * bound)} % needs {needed} run{'s' * (needed > 1)} without a contact."
     )

@@ -25,7 +25,9 @@ from .tables import (
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
 
-STATISTICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", "min-clearance")
+STATISTICS = (
+    "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
+)  # fmt: skip
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
