@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -60,6 +61,20 @@ def test_json_has_all_values(capsys: pytest.CaptureFixture[str]) -> None:
     assert set(cell["statistics"]) == {"success-rate", "p95:min-clearance"}
     assert cell["protocol"]["control_period"] == 0.1
     assert found["failed"] == found["invalid"] == found["requirements"] == []
+
+
+def test_the_command_of_the_worst_runs_plays_them(capsys: pytest.CaptureFixture[str]) -> None:
+    words = [*QUICK, "--navigators", "straight, orca safety=0.2", "--sweep", "robot.visible=true,false"]
+    rows = _json(capsys, *words)["cells"]
+    assert [len(row["worst"]["runs"]) for row in rows] == [3] * 4
+    row = next(one for one in rows if one["navigator"] != "straight" and "false" in one["trial"])
+    program, *again = shlex.split(row["worst"]["command"])
+    assert program == "crowdbot"
+    seeds = [run["seed"] for run in row["worst"]["runs"]]
+    assert again[again.index("--seeds") + 1] == ",".join(map(str, seeds))
+    (same,) = _json(capsys, *again[: again.index("--worst")])["cells"]
+    assert same["protocol"] == row["protocol"]
+    assert [run["reason"] for run in same["worst"]["runs"]] == [run["reason"] for run in row["worst"]["runs"]]
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from crowdbot.evaluation import (
     metric_unit,
     parse_statistic,
     person_contacts,
+    worst_rows,
     write_report,
 )
 
@@ -50,6 +51,31 @@ def test_the_region_of_discs_is_unknown() -> None:
     assert (known.region, known.severity, known.speed, known.cause) == ("", "1.5 to 9.6", 0.7, "robot")
     (unknown,) = person_contacts(cell(row(1)))
     assert (unknown.severity, unknown.cause) == ("unknown", "")
+
+
+def test_the_worst_runs_are_contacts_then_closeness_then_no_arrival() -> None:
+    def free(seed: int, outcome: str, clearance: float, **more: float) -> RunRow:
+        values = {"person_collision": 0.0, "success": float(outcome == "success"), "min_clearance": clearance}
+        return RunRow(seed, outcome, "", values | more)
+
+    rows = [
+        free(1, "success", 0.4),
+        free(2, "timeout", 0.6),
+        free(3, "success", 0.1),
+        free(4, "collision", math.nan, wall_collision=1.0),
+        row(5, max_severity=0.5, impact_severity_hand=0.5, **PHYSICS),
+        row(6, max_severity=1.5, impact_severity_hand=1.5, **PHYSICS),
+        RunRow(7, "invalid"),
+    ]
+    assert [(run.seed, reason) for run, reason in worst_rows(cell(*rows), 9)] == [
+        (6, "contact with a person at 0.80 m/s, severity 1.5"),
+        (5, "contact with a person at 0.80 m/s, severity 0.5"),
+        (3, "clearance 0.10 m"),
+        (4, "contact with a wall, nobody near"),
+        (2, "timeout, clearance 0.60 m"),
+        (1, "clearance 0.40 m"),
+    ]
+    assert [run.seed for run, _ in worst_rows(cell(*rows))] == [6, 5, 3]
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ from .tracking import (
 )
 from .trial_of_recording import recorded_trial
 from .verdict import Verdict, judge_cell, runs_without_event
-from .worst_run import WorstRun, worst_runs
+from .worst_run import WorstRun, worst_rows, worst_runs
 
 __all__ = [
     "BAND_LIMITS",
@@ -159,6 +159,7 @@ __all__ = [
     "track_video",
     "wilson_interval",
     "with_safety",
+    "worst_rows",
     "worst_runs",
     "write_report",
 ]

@@ -42,6 +42,7 @@ def write_report(
     worst: Sequence[WorstRun] = (),
     requirements: Sequence[Requirement] = (),
     comparisons: Sequence[PairedComparison] = (),
+    again: Sequence[str] = (),
 ) -> None:
     """Write one HTML page that needs no other file and asks nothing from the network.
 
@@ -52,6 +53,7 @@ def write_report(
         worst: runs to play.
         requirements: bounds with their verdicts.
         comparisons: comparisons of the navigators.
+        again: lines about the worst runs, with the commands that play them.
 
     Raises:
         InputError: the page cannot be written.
@@ -71,7 +73,7 @@ def write_report(
         requirements=_requirements(result, requirements),
         comparisons=_comparisons(comparisons),
         pareto=pareto_svg(result.cells) + _effects(result, statistics),
-        failures=_failures(result),
+        failures=_again(again) + _failures(result),
         runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
         provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),
         data=json.dumps([run.drawing for run in worst], allow_nan=False).replace("<", "\\u003c"),
@@ -94,6 +96,11 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
         limit = f"<br><small>{html.escape(verdict.limit)}</small>"
         parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
     return "".join(parts)
+
+
+def _again(lines: Sequence[str]) -> str:
+    text = html.escape("\n".join(lines))
+    return f"<h2>Run the worst seeds again</h2><pre>{text}</pre>" if lines else ""
 
 
 def _title(run: WorstRun) -> str:

@@ -13,10 +13,11 @@ from crowdbot.simulation import Episode, RunFailureWarning, simulate
 from crowdbot.trials import floor_plan
 
 from .job import RunRow
+from .person_contacts import PersonContact, person_contacts
 from .plan import EvaluationPlan
 from .result import CellResult, EvaluationResult
 
-__all__ = ["WorstRun", "worst_runs"]
+__all__ = ["WorstRun", "worst_rows", "worst_runs"]
 
 RATE = 10.0
 """Largest number of pictures a second in the report."""
@@ -43,8 +44,7 @@ class WorstRun(NamedTuple):
 def worst_runs(plan: EvaluationPlan, result: EvaluationResult, count: int = 1) -> list[WorstRun]:
     """Return the worst runs of each cell, simulated again.
 
-    Collisions come first, the fastest impact first of all; then falls of people, failures of the navigator, timeouts,
-    and runs with the smallest clearance.
+    See :func:`worst_rows` for their order.
 
     Args:
         plan, result: of the same evaluation.
@@ -52,19 +52,60 @@ def worst_runs(plan: EvaluationPlan, result: EvaluationResult, count: int = 1) -
     """
     found = []
     for planned, cell in zip(plan.cells, result.cells, strict=True):
-        for row in sorted(cell.valid, key=_rank)[:count]:
+        for row, _ in worst_rows(cell, count):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", RunFailureWarning)
                 episode = simulate(planned.variant, row.seed)
             found.append(WorstRun(cell, row, _drawing(episode), episode.digest == row.digest))
-    return sorted(found, key=lambda run: _rank(run.row)[:3])
+    return sorted(found, key=lambda run: (not _hurts(run.row), _missed(run.row)))
 
 
-def _rank(row: RunRow) -> tuple[float, ...]:
-    place = ORDER.index(row.outcome) if row.outcome in ORDER else len(ORDER)
-    values = [row.metrics.get(name, math.nan) for name in ("max_severity", "max_impact_speed", "min_clearance")]
-    severity, speed, clearance = (0.0 if math.isnan(value) else value for value in values)
-    return (place, -severity, -speed, clearance, row.seed)
+def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:
+    """Return the worst runs of a row, and why each is there.
+
+    First are the runs in which a person is touched or falls, the hardest first; then the run with the smallest
+    clearance to a person, the runs that do not arrive, and the others by their clearance.
+
+    Args:
+        cell: the row.
+        count: number of runs.
+
+    >>> from crowdbot.evaluation import CellResult
+    >>> values = {"person_collision": 0.0, "success": 1.0}
+    >>> rows = tuple(RunRow(k, "success", "", values | {"min_clearance": 0.1 * k}) for k in (3, 2, 1))
+    >>> [(row.seed, reason) for row, reason in worst_rows(CellResult("hall", "orca", "", "", {}, rows), 2)]
+    [(1, 'clearance 0.10 m'), (2, 'clearance 0.20 m')]
+    """
+    contacts = {one.seed: one for one in person_contacts(cell)}
+    order = [*contacts]
+    order += [row.seed for row in cell.valid if _hurts(row) and row.seed not in contacts]
+    close = sorted(cell.valid, key=lambda row: (_clearance(row), row.seed))
+    missed = sorted((row for row in close if row.metrics.get("success") != 1.0), key=_missed)
+    order += [row.seed for row in (*close[:1], *missed, *close)]
+    rows = {row.seed: row for row in cell.valid}
+    return [(rows[seed], _reason(rows[seed], contacts.get(seed))) for seed in [*dict.fromkeys(order)][:count]]
+
+
+def _reason(row: RunRow, contact: PersonContact | None) -> str:
+    if contact is not None:
+        return f"contact with a person at {contact.speed:.2f} m/s, severity {contact.severity}"
+    clearance = f"clearance {_clearance(row):.2f} m" if math.isfinite(_clearance(row)) else "nobody near"
+    touched = [kind for kind in ("wall", "object", "robot") if row.metrics.get(f"{kind}_collision") == 1.0]
+    what = f"contact with a {' and a '.join(touched)}" if touched and row.outcome == "collision" else row.outcome
+    return clearance if row.outcome == "success" else f"{what}, {clearance}"
+
+
+def _hurts(row: RunRow) -> bool:
+    return row.metrics.get("person_collision") == 1.0 or row.outcome == "fall"
+
+
+def _clearance(row: RunRow) -> float:
+    value = row.metrics.get("min_clearance", math.inf)
+    return math.inf if math.isnan(value) else value
+
+
+def _missed(row: RunRow) -> int:
+    return ORDER.index(row.outcome) if row.outcome in ORDER else len(ORDER)
 
 
 def _drawing(episode: Episode) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from crowdbot.cli.output import add_json, note, print_json, progress
 from crowdbot.cli.settings import add_settings, add_world
 
+from .again import print_worst, worst_lines, worst_values
 from .plan_options import add_plan_options, plan_of, statistic_names
 from .recordings import add_recording_options, present_recordings
 from .tables import (
@@ -131,7 +132,10 @@ def _present(
     if options.out is not None:
         _write(options, plan, result, statistics, requirements)
     if options.json:
-        print_json(result_values(result, statistics, comparisons, verdicts, requirements))
+        values = result_values(result, statistics, comparisons, verdicts, requirements)
+        for row, cell in zip(values["cells"], result.cells, strict=True):
+            row["worst"] = worst_values(cell, options)
+        print_json(values)
     else:
         print_answers(result, requirements)
         print_result(result, statistics, wall)
@@ -139,6 +143,7 @@ def _present(
         print_comparisons(result, comparisons)
         print_verdicts(verdicts)
         print_runs(result)
+        print_worst(result, options)
         if options.out is not None:
             print(f"report    {options.out / 'report.html'}\nresult    {options.out / 'result.json'}")
     return 0 if all(verdict.holds for _, _, verdict in verdicts) else 1
@@ -160,6 +165,7 @@ def _write(
         options.out / "report.html",
         statistics,
         worst=worst_runs(plan, result, options.worst),
+        again=worst_lines(result, options),
         requirements=requirements,
         comparisons=result.compare(),
     )
