@@ -11,7 +11,7 @@ from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .person_contacts import PersonContact, person_contacts
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
-from .reality import RealPlacement, place_reality, reality_svg
+from .reality import FEWEST_RUNS, RealPlacement, place_reality, reality_svg
 from .recorded_scans import (
     OGM_PERIOD,
     AnnotatedScan,
@@ -69,6 +69,7 @@ __all__ = [
     "DECISION_METRICS",
     "DOWNSTREAM_INPUTS",
     "DOWNSTREAM_SCORES",
+    "FEWEST_RUNS",
     "OGM_PERIOD",
     "PAIRED_FAMILIES",
     "SCAN_SCORES",
