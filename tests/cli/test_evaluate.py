@@ -114,11 +114,11 @@ def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsy
     command = [sys.executable, "-m", "crowdbot", *words, "--out", str(tmp_path), "--worst", "0"]
     program = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ))
     end = time.monotonic() + 120.0
-    while not list(tmp_path.glob("parts/*.json")) and time.monotonic() < end:
+    while not list(tmp_path.glob("parts/*.jsonl")) and time.monotonic() < end:
         time.sleep(0.02)
     program.send_signal(signal.SIGKILL)
     program.wait()
-    assert list(tmp_path.glob("parts/*.json"))
+    assert list(tmp_path.glob("parts/*.jsonl"))
     assert main([*words, "--out", str(tmp_path), "--worst", "0"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["cells"] == whole["cells"]
