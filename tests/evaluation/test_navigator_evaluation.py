@@ -27,6 +27,7 @@ from crowdbot.evaluation import (
     parse_seeds,
     parse_statistic,
     result_schema,
+    worst_runs,
 )
 from crowdbot.evaluation.job import RunJob
 from crowdbot.evaluation.pareto import pareto_svg
@@ -308,6 +309,13 @@ def _with_severities(cell: CellResult, *severities: float) -> CellResult:
     metrics = {"success": 1.0, "collision": 0.0, "time_to_goal": 9.0}
     rows = [RunRow(k, "success", metrics=metrics | {"max_severity": one}) for k, one in enumerate(severities)]
     return dataclasses.replace(cell, runs=tuple(rows))
+
+
+def test_the_drawing_of_a_worst_run_has_the_outline_of_the_robot() -> None:
+    plan = EvaluationPlan([load_trial("frontal", duration=1.0)], robots=["pepper", ""], seeds=[0])
+    pepper, disc = ([len(one["outline"]) for one in run.drawing["agents"]] for run in worst_runs(plan, evaluate(plan)))
+    assert sorted(pepper) == [0, len(plan.cells[0].variant.robots[0].body.footprint)]
+    assert disc == [0, 0]
 
 
 def test_each_row_has_its_margin(trial: Trial) -> None:

@@ -28,6 +28,7 @@ __all__ = ["write_report"]
 
 MOST_CONTACTS = 10
 """Largest number of contacts of a row in the report."""
+NO_SUCCESS = "<p>No robot arrived in any run, so there is nothing to compare.</p>"
 PROTOCOL_UNITS = {
     "margin": "m", "step": "s", "control_period": "s", "latency": "s", "duration": "s", "goal_tolerance": "m",
 }  # fmt: skip
@@ -72,7 +73,7 @@ def write_report(
         contacts=_contacts(result.cells),
         requirements=_requirements(result, requirements),
         comparisons=_comparisons(comparisons),
-        pareto=pareto_svg(result.cells) + _effects(result, statistics),
+        pareto=(pareto_svg(result.cells) or NO_SUCCESS) + _effects(result, statistics),
         failures=_again(again) + _failures(result),
         runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
         provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),

@@ -113,6 +113,7 @@ def _drawing(episode: Episode) -> dict[str, Any]:
     rows = np.arange(0, len(episode.times), step)
     rows = rows if rows[-1] == len(episode.times) - 1 else np.append(rows, len(episode.times) - 1)
     seen = episode.active[rows].any(axis=0) & (episode.radius > 0)
+    outlines = dict(zip(episode.robots, episode.footprints, strict=True))
     tracks = []
     for agent in np.flatnonzero(seen).tolist():
         here = episode.active[rows, agent]
@@ -121,6 +122,7 @@ def _drawing(episode: Episode) -> dict[str, Any]:
             {
                 "robot": agent in episode.robots,
                 "radius": round(float(episode.radius[agent]), 3),
+                "outline": [] if (shape := outlines.get(agent)) is None else np.round(shape, 3).tolist(),
                 "heading": np.round(episode.heading[rows, agent], 2).tolist(),
                 "track": [point if on else None for point, on in zip(points.tolist(), here.tolist(), strict=True)],
             }

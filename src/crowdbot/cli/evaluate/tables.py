@@ -69,7 +69,7 @@ def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall
 def _head(statistic: Statistic) -> str:
     """Return the head of a column on lines of its own, with the unit below the name."""
     name, _, unit = statistic.title.partition(" [")
-    return "\n".join([*textwrap.wrap(name, 14), *([f"[{unit}"] if unit else [])])
+    return "\n".join([*textwrap.wrap(name, 10, break_long_words=False), *([f"[{unit}"] if unit else [])])
 
 
 def _metric_title(metric: str) -> str:
