@@ -61,7 +61,7 @@ from .tracking import (
     track_video,
 )
 from .trial_of_recording import recorded_trial
-from .verdict import Verdict, judge_cell, runs_without_event
+from .verdict import SafetyVerdict, judge_cell, runs_without_event
 from .worst_run import WorstRun, worst_rows, worst_runs
 
 __all__ = [
@@ -97,13 +97,13 @@ __all__ = [
     "RobotOdometry",
     "RobotRecording",
     "RunRow",
+    "SafetyVerdict",
     "ScanProtocol",
     "ScanScores",
     "Statistic",
     "TrackingRun",
     "TruePaths",
     "TruePeople",
-    "Verdict",
     "VideoForecast",
     "VideoRun",
     "WorstRun",

@@ -1,4 +1,4 @@
-"""Verdict: what the runs of a row say about the safety of its robot, in sentences, with exact binomial intervals."""
+"""SafetyVerdict: what the runs of a row say about the safety of its robot, in sentences, with exact binomial intervals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .intervals import Estimate, exact_interval
 from .requirement import Requirement
 from .result import CellResult
 
-__all__ = ["Verdict", "judge_cell", "row_name", "runs_without_event"]
+__all__ = ["SafetyVerdict", "judge_cell", "row_name", "runs_without_event"]
 
 Floats = NDArray[np.float64]
 CONFIDENCE = 0.95
@@ -27,7 +27,7 @@ OUTCOMES = {"collision": "contact", "error": "failed navigator"}
 
 
 @dataclass(frozen=True)
-class Verdict:
+class SafetyVerdict:
     """What the runs of one navigator and robot in one trial show.
 
     Fields:
@@ -52,7 +52,7 @@ class Verdict:
     warning: str
 
 
-def judge_cell(cell: CellResult, requirements: Sequence[Requirement] = ()) -> Verdict:
+def judge_cell(cell: CellResult, requirements: Sequence[Requirement] = ()) -> SafetyVerdict:
     """Return the verdict of a row.
 
     "Shown safe" needs a requirement with a confidence on the rate of contacts with persons, such as
@@ -80,7 +80,7 @@ def judge_cell(cell: CellResult, requirements: Sequence[Requirement] = ()) -> Ve
     shown = _proof(cell, requirements)
     told = f"shown safe as required by {shown}" if not reason else f"not shown safe: {reason}"
     sentence = f"{_counts(cell, person, obstacle, missed)}; {told}."
-    return Verdict(
+    return SafetyVerdict(
         len(cell.valid), person, obstacle, missed, not reason, sentence, _limit(len(cell.valid), requirements), warning
     )
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
         PairedComparison,
         Requirement,
         RequirementVerdict,
+        SafetyVerdict,
         Statistic,
-        Verdict,
     )
 
 WIDTH = 120
@@ -177,7 +177,7 @@ def result_values(
     }
 
 
-def _verdict_values(verdict: Verdict) -> dict[str, Any]:
+def _verdict_values(verdict: SafetyVerdict) -> dict[str, Any]:
     shares = {name: getattr(verdict, name)._asdict() for name in ("person", "obstacle", "missed")}
     return dataclasses.asdict(verdict) | shares | {"interval": "exact binomial (Clopper-Pearson), 95 %"}
 
