@@ -1,4 +1,4 @@
-"""SafetyVerdict: what the runs of a row say about the safety of its robot, in sentences, with exact binomial intervals."""
+"""SafetyVerdict: what the runs of a row say about the safety of its robot, in sentences, with exact intervals."""
 
 from __future__ import annotations
 
