@@ -9,7 +9,6 @@ from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
-from .person_contacts import PersonContact, person_contacts
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .reality import FEWEST_RUNS, RealPlacement, place_reality, reality_svg
 from .recorded_scans import (
@@ -62,7 +61,7 @@ from .tracking import (
 )
 from .trial_of_recording import recorded_trial
 from .verdict import SafetyVerdict, judge_cell, runs_without_event
-from .worst_run import WorstRun, worst_rows, worst_runs
+from .worst_run import PersonContact, WorstRun, person_contacts, worst_rows, worst_runs
 
 __all__ = [
     "BAND_LIMITS",

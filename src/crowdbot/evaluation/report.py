@@ -16,13 +16,12 @@ from crowdbot.metrics import metric_table
 from .comparison import PairedComparison
 from .effect_plots import effects_svg
 from .pareto import pareto_svg
-from .person_contacts import person_contacts
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
 from .statistic import Statistic, metric_unit
 from .sweep_effects import FactorEffect, factor_effects
 from .verdict import judge_cell
-from .worst_run import WorstRun
+from .worst_run import WorstRun, person_contacts
 
 __all__ = ["write_report"]
 
