@@ -19,7 +19,17 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from crowdbot.evaluation import CellResult, EvaluationPlan, evaluate, parse_methods
+import numpy as np
+
+from crowdbot.evaluation import (
+    CellResult,
+    Estimate,
+    EvaluationPlan,
+    evaluate,
+    parse_methods,
+    parse_statistic,
+    wilson_interval,
+)
 from crowdbot.trials import builtin_trials, load_trial
 
 PAGE = Path(__file__).parent.parent / "docs" / "results" / "navigators.md"
@@ -137,9 +147,18 @@ def compute(rows: list[Row], options: argparse.Namespace) -> dict[Row, CellResul
 
 def line(row: Row, found: CellResult, columns: tuple[str, ...]) -> str:
     """Return a row of a table."""
-    values = [found.estimate(column) for column in columns]
+    values = [_estimate(found, column) for column in columns]
     texts = ["-" if math.isnan(one.value) else f"{one.value:.3g} [{one.low:.3g}, {one.high:.3g}]" for one in values]
     return f"| `{row.trial}` | {row.title} | {len(found.values('success'))} | {' | '.join(texts)} |"
+
+
+def _estimate(found: CellResult, column: str) -> Estimate:
+    """Return a statistic; rates have the Wilson intervals of the rows that the page keeps."""
+    statistic = parse_statistic(column)
+    if statistic.kind != "rate":
+        return found.estimate(statistic)
+    values = found.values(statistic.metric)
+    return wilson_interval(int(np.nansum(values)), int(np.sum(~np.isnan(values))))
 
 
 def lines_of_page(page: str) -> Lines:

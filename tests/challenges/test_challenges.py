@@ -88,7 +88,7 @@ def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: 
     own = () if SANDBOX else ("--no-sandbox",)
     done = crowdbot("run", file, folder, "--out", tmp_path / "entry", *own)
     assert done.returncode == 0, done.stderr
-    assert "1 [0.342, 1]" in done.stdout
+    assert "1 [0.158, 1]" in done.stdout
     done = crowdbot("pack", file, folder, "--entry", tmp_path / "entry" / "entry.json", "--out", tmp_path / "s.zip")
     assert done.returncode == 0, done.stderr
     done = crowdbot("verify", file, tmp_path / "s.zip", "--out", tmp_path / "again")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -28,7 +29,7 @@ def _json(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
 def test_tables_and_requirements_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*QUICK, "--navigators", "straight, orca", "--require", "collision-rate<0.9@90%"]) == 0
     text = capsys.readouterr().out
-    assert re.search(r"straight +yes +3 +0 \[0, 0\.561\]", text)
+    assert re.search(r"straight +yes +3 +0 \[0, 0\.708\]", text)
     assert "6 runs in" in text
     assert "comparison with straight" in text
     assert "collision-rate<0.9@90%: holds for frontal, orca: collision-rate is 0 in 3 runs" in text
@@ -60,6 +61,20 @@ def test_json_has_all_values(capsys: pytest.CaptureFixture[str]) -> None:
     assert set(cell["statistics"]) == {"success-rate", "p95:min-clearance"}
     assert cell["protocol"]["control_period"] == 0.1
     assert found["failed"] == found["invalid"] == found["requirements"] == []
+
+
+def test_the_command_of_the_worst_runs_plays_them(capsys: pytest.CaptureFixture[str]) -> None:
+    words = [*QUICK, "--navigators", "straight, orca safety=0.2", "--sweep", "robot.visible=true,false"]
+    rows = _json(capsys, *words)["cells"]
+    assert [len(row["worst"]["runs"]) for row in rows] == [3] * 4
+    row = next(one for one in rows if one["navigator"] != "straight" and "false" in one["trial"])
+    program, *again = shlex.split(row["worst"]["command"])
+    assert program == "crowdbot"
+    seeds = [run["seed"] for run in row["worst"]["runs"]]
+    assert again[again.index("--seeds") + 1] == ",".join(map(str, seeds))
+    (same,) = _json(capsys, *again[: again.index("--worst")])["cells"]
+    assert same["protocol"] == row["protocol"]
+    assert [run["reason"] for run in same["worst"]["runs"]] == [run["reason"] for run in row["worst"]["runs"]]
 
 
 @pytest.mark.parametrize(
@@ -99,11 +114,11 @@ def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsy
     command = [sys.executable, "-m", "crowdbot", *words, "--out", str(tmp_path), "--worst", "0"]
     program = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ))
     end = time.monotonic() + 120.0
-    while not list(tmp_path.glob("parts/*.json")) and time.monotonic() < end:
+    while not list(tmp_path.glob("parts/*.jsonl")) and time.monotonic() < end:
         time.sleep(0.02)
     program.send_signal(signal.SIGKILL)
     program.wait()
-    assert list(tmp_path.glob("parts/*.json"))
+    assert list(tmp_path.glob("parts/*.jsonl"))
     assert main([*words, "--out", str(tmp_path), "--worst", "0"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["cells"] == whole["cells"]

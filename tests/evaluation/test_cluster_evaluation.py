@@ -57,7 +57,7 @@ if __name__ == "__main__":
     import ray
 
     ray.init(address="local", num_cpus=2, include_dashboard=False, log_to_driver=False)
-    importlib.import_module("crowdbot.evaluation.runner").CHUNK = 2
+    importlib.import_module("crowdbot.evaluation.runner").PARALLEL_BATCH = 2
     plan = EvaluationPlan([load_trial("frontal", duration=1.5)], parse_methods("fatal.py:Fatal"), seeds=range(4))
     evaluate(plan, workers=2, cluster="auto").save(Path("cluster.json"))
     found = {"messages": [message(refuse, InputError), message(die, CrowdbotError)], "stays": ray.is_initialized()}

@@ -53,7 +53,7 @@ def test_a_killed_evaluation_ends_with_the_same_table(tmp_path, kills):
 
 @pytest.mark.sweep
 def test_a_worker_that_dies_does_not_change_the_table(tmp_path, monkeypatch):
-    monkeypatch.setattr(importlib.import_module("crowdbot.evaluation.runner"), "CHUNK", 2)
+    monkeypatch.setattr(importlib.import_module("crowdbot.evaluation.runner"), "PARALLEL_BATCH", 2)
     (tmp_path / "fatal.py").write_text(FATAL)
     monkeypatch.chdir(tmp_path)
     plan = EvaluationPlan([load_trial("frontal", duration=2.0)], parse_methods("fatal.py:Fatal, orca"), seeds=range(6))

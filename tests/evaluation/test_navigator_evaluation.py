@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import json
 import math
 from pathlib import Path
@@ -26,7 +27,9 @@ from crowdbot.evaluation import (
     parse_seeds,
     parse_statistic,
     result_schema,
+    worst_runs,
 )
+from crowdbot.evaluation.job import RunJob
 from crowdbot.evaluation.pareto import pareto_svg
 from crowdbot.simulation import simulate
 from crowdbot.trials import Trial, load_trial
@@ -76,10 +79,9 @@ def test_each_row_is_that_of_a_single_run(trial: Trial, result: EvaluationResult
 def test_an_evaluation_continues_and_does_not_depend_on_chunks_and_workers(
     trial: Trial, result: EvaluationResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import importlib
-
     module = importlib.import_module("crowdbot.evaluation.runner")
-    monkeypatch.setattr(module, "CHUNK", 2)
+    monkeypatch.setattr(module, "BATCH", 2)
+    monkeypatch.setattr(module, "PART_SECONDS", math.inf)
     plan = EvaluationPlan([trial], parse_methods("straight, orca"), seeds=range(5))
 
     def interrupt(share: float) -> None:
@@ -88,12 +90,12 @@ def test_an_evaluation_continues_and_does_not_depend_on_chunks_and_workers(
 
     with pytest.raises(KeyboardInterrupt):
         evaluate(plan, tmp_path, progress=interrupt)
-    done = sorted(tmp_path.glob("*.json"))
-    assert len(done) == 3
-    times = [file.stat().st_mtime_ns for file in done]
+    (done,) = tmp_path.glob("*.jsonl")
+    assert [json.loads(line)["seed"] for line in done.read_text().splitlines()] == [0, 1, 2, 3, 4]
+    before = done.stat().st_mtime_ns
     again = evaluate(plan, tmp_path, workers=2)
-    assert [file.stat().st_mtime_ns for file in done] == times
-    assert len(list(tmp_path.glob("*.json"))) == 6
+    assert done.stat().st_mtime_ns == before
+    assert sorted(len(file.read_text().splitlines()) for file in tmp_path.glob("*.jsonl")) == [5, 5]
     assert [[row.digest for row in cell.runs] for cell in again.cells] == [
         [row.digest for row in cell.runs] for cell in result.cells
     ]
@@ -102,10 +104,37 @@ def test_an_evaluation_continues_and_does_not_depend_on_chunks_and_workers(
 def test_a_damaged_part_is_told(trial: Trial, tmp_path: Path) -> None:
     plan = EvaluationPlan([trial], seeds=range(1))
     evaluate(plan, tmp_path)
-    (file,) = tmp_path.glob("*.json")
-    file.write_text("[{")
-    with pytest.raises(InputError, match="is damaged .*; remove it to run its job again"):
+    (file,) = tmp_path.glob("*.jsonl")
+    file.write_text("[{\n")
+    with pytest.raises(InputError, match="is damaged .*; remove it to run its seeds again"):
         evaluate(plan, tmp_path)
+
+
+def test_finished_runs_are_kept_one_by_one(trial: Trial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module("crowdbot.evaluation.runner")
+    monkeypatch.setattr(module, "PART_SECONDS", 0.0)  # each run is longer than a batch may be
+    whole = evaluate(EvaluationPlan([trial], seeds=range(4))).cells[0].runs
+    ran: list[int] = []
+    run_job = module.run_job
+
+    def fail(job: RunJob) -> list[RunRow]:
+        ran.extend(job.seeds)
+        if len(ran) == 3:
+            raise KeyboardInterrupt
+        return list(run_job(job))
+
+    monkeypatch.setattr(module, "run_job", fail)
+    plan = EvaluationPlan([trial], seeds=range(4))
+    with pytest.raises(KeyboardInterrupt):
+        evaluate(plan, tmp_path)
+    (file,) = tmp_path.glob("*.jsonl")
+    assert len(file.read_text().splitlines()) == 2
+    file.write_text(file.read_text() + '{"seed": 2, "outc')  # as a kill leaves it
+    found = evaluate(plan, tmp_path).cells[0].runs
+    assert ran == [0, 1, 2, 2, 3]
+    assert repr(found) == repr(whole)
+    assert evaluate(EvaluationPlan([trial], seeds=[3, 0]), tmp_path).cells[0].runs[0].seed == 3
+    assert ran == [0, 1, 2, 2, 3]
 
 
 def test_a_navigator_of_the_user_that_fails_is_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,7 +159,7 @@ def test_a_changed_navigator_is_run_again(tmp_path: Path, monkeypatch: pytest.Mo
     evaluate(plan, tmp_path / "parts")
     (tmp_path / "shy.py").write_text(SHY.replace("Twist(0.1)", "Twist(0.2)"))
     evaluate(plan, tmp_path / "parts")
-    assert len(list((tmp_path / "parts").glob("*.json"))) == 2
+    assert len(list((tmp_path / "parts").glob("*.jsonl"))) == 2
 
 
 def test_a_seed_with_which_the_trial_is_impossible_is_invalid_and_counts_nowhere() -> None:
@@ -280,6 +309,13 @@ def _with_severities(cell: CellResult, *severities: float) -> CellResult:
     metrics = {"success": 1.0, "collision": 0.0, "time_to_goal": 9.0}
     rows = [RunRow(k, "success", metrics=metrics | {"max_severity": one}) for k, one in enumerate(severities)]
     return dataclasses.replace(cell, runs=tuple(rows))
+
+
+def test_the_drawing_of_a_worst_run_has_the_outline_of_the_robot() -> None:
+    plan = EvaluationPlan([load_trial("frontal", duration=1.0)], robots=["pepper", ""], seeds=[0])
+    pepper, disc = ([len(one["outline"]) for one in run.drawing["agents"]] for run in worst_runs(plan, evaluate(plan)))
+    assert sorted(pepper) == [0, len(plan.cells[0].variant.robots[0].body.footprint)]
+    assert disc == [0, 0]
 
 
 def test_each_row_has_its_margin(trial: Trial) -> None:

@@ -114,6 +114,10 @@ def test_the_command_measures_and_simulates(clip, tmp_path, capsys):
     values = json.loads((out / "reality.json").read_text())
     assert values["real"][0]["runs"] == 12
     assert "<svg" in (out / "reality.html").read_text()
+    assert main(["evaluate", "--real", str(clip), "--fps", "10", "--seeds", "0:9"]) == 2
+    assert (
+        "--real has 9 seeds; where a recording lies among its simulations needs at least 10" in capsys.readouterr().err
+    )
     assert main(["evaluate", "frontal", "--real", str(clip)]) == 2
     assert "trials and real are given" in capsys.readouterr().err
     assert main(["evaluate"]) == 2

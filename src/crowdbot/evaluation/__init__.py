@@ -4,13 +4,13 @@ from .comparison import PairedComparison, paired_comparison
 from .decision_metrics import DECISION_METRICS
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
-from .intervals import Estimate, bootstrap_interval, wilson_interval
+from .intervals import Estimate, bootstrap_interval, exact_interval, wilson_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds
-from .reality import RealPlacement, place_reality, reality_svg
+from .reality import FEWEST_RUNS, RealPlacement, place_reality, reality_svg
 from .recorded_scans import (
     OGM_PERIOD,
     AnnotatedScan,
@@ -29,7 +29,7 @@ from .result import CellResult, EvaluationResult, load_evaluation, result_schema
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .scan_prediction import SCAN_SCORES, SOGMP, ScanProtocol, ScanScores, TruePeople, plot_scan_scores, score_scans
-from .statistic import Statistic, parse_statistic
+from .statistic import Statistic, metric_unit, parse_statistic
 from .sweep_effects import FactorEffect, factor_effects
 from .tracking import (
     BAND_LIMITS,
@@ -60,13 +60,15 @@ from .tracking import (
     track_video,
 )
 from .trial_of_recording import recorded_trial
-from .worst_run import WorstRun, worst_runs
+from .verdict import SafetyVerdict, judge_cell, runs_without_event
+from .worst_run import PersonContact, WorstRun, person_contacts, worst_rows, worst_runs
 
 __all__ = [
     "BAND_LIMITS",
     "DECISION_METRICS",
     "DOWNSTREAM_INPUTS",
     "DOWNSTREAM_SCORES",
+    "FEWEST_RUNS",
     "OGM_PERIOD",
     "PAIRED_FAMILIES",
     "SCAN_SCORES",
@@ -85,6 +87,7 @@ __all__ = [
     "LoggedReading",
     "Method",
     "PairedComparison",
+    "PersonContact",
     "ReadingLog",
     "RealPlacement",
     "Requirement",
@@ -93,6 +96,7 @@ __all__ = [
     "RobotOdometry",
     "RobotRecording",
     "RunRow",
+    "SafetyVerdict",
     "ScanProtocol",
     "ScanScores",
     "Statistic",
@@ -109,13 +113,16 @@ __all__ = [
     "estimate_scores",
     "estimate_strata",
     "evaluate",
+    "exact_interval",
     "factor_effects",
     "families_of",
     "find_ogm_split",
+    "judge_cell",
     "junit_xml",
     "load_evaluation",
     "load_robot_recording",
     "log_readings",
+    "metric_unit",
     "own_method",
     "paired_comparison",
     "pareto_front",
@@ -124,6 +131,7 @@ __all__ = [
     "parse_requirement",
     "parse_seeds",
     "parse_statistic",
+    "person_contacts",
     "place_reality",
     "plot_scan_scores",
     "plot_tracks",
@@ -141,6 +149,7 @@ __all__ = [
     "result_schema",
     "row_of",
     "row_values",
+    "runs_without_event",
     "scan_statistics",
     "score_detections",
     "score_positions",
@@ -150,6 +159,7 @@ __all__ = [
     "track_video",
     "wilson_interval",
     "with_safety",
+    "worst_rows",
     "worst_runs",
     "write_report",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -24,7 +25,7 @@ from crowdbot.metrics import (
     metric_table,
 )
 from crowdbot.navigation import PathPlanner
-from crowdbot.simulation import Episode
+from crowdbot.simulation import WALL, Episode
 from crowdbot.trials import Trial
 from crowdbot.world import BODY_REGION_LIMITS
 
@@ -46,6 +47,8 @@ PAIRED_FAMILIES = ("empty-scene", "crowd-disturbance")
 """Families of metrics that need further runs with the same seed."""
 TOUCH = re.compile(r"collision|^severity|^contact_")
 """Metrics of contacts, which a ghost does not have."""
+BODY_KINDS = {"wall": "wall", "prop": "object", "robot": "robot"}
+"""Kinds of bodies of the physics world, with the word of the metrics."""
 REGIONS = {name: BodyRegion(*limits) for name, limits in BODY_REGION_LIMITS.items()}
 
 
@@ -109,6 +112,8 @@ def episode_metrics(
     names = [*LOG_FAMILIES] if families is None else list(families)
     log = episode_log(episode)
     found = log_metrics(log, [name for name in names if name not in PAIRED_FAMILIES and not is_own_metric(name)])
+    if "task" in names:
+        found |= _touched(episode)
     if episode.trial.robots[0].ghost:
         found = {name: value for name, value in found.items() if not TOUCH.search(name)}
     if episode.trial.world == "physics" and "severity" in names:
@@ -170,6 +175,29 @@ def check_families(names: Sequence[str]) -> None:
             load_metric(name)
         elif name not in known:
             raise InputError(f"no family of metrics {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}")
+
+
+def _touched(episode: Episode) -> dict[str, float]:
+    """Return what the first robot has touched in any time step, by the bodies of the world.
+
+    The log knows only discs at its records: it misses a foot that is run over in the physics world.
+    """
+    own, robots = int(episode.ids[episode.robots[0]]), {int(episode.ids[k]) for k in episode.robots}
+    pairs = [(one.robot, one.other) for _, one in episode.contacts]
+    touched = {second if first == own else first for first, second in pairs if own in (first, second)}
+    found = {
+        "person_collision": float(any(one not in robots and one != WALL for one in touched)),
+        "robot_collision": float(any(one in robots for one in touched)),
+        "wall_collision": float(WALL in touched),
+    }
+    if episode.trial.world == "physics":
+        body = ("robot", own)
+        events = [(one.first, one.second) for one in episode.collisions if body in (one.first, one.second)]
+        counts = Counter((second if first == body else first).kind for first, second in events)
+        found |= {f"{kind}_collisions": float(counts[word]) for word, kind in BODY_KINDS.items()}
+        found["object_collision"] = float(counts["prop"] > 0)
+        found["wall_collision"] = float(counts["wall"] > 0 or (WALL in touched and not counts["prop"]))
+    return found
 
 
 def _agent_log(episode: Episode) -> AgentLog:

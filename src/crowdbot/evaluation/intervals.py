@@ -1,4 +1,4 @@
-"""Confidence intervals: Wilson for proportions, bootstrap for means and quantiles."""
+"""Confidence intervals: exact and Wilson for proportions, bootstrap for means and quantiles."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
+from scipy import special, stats
 
 from crowdbot.core import InputError, stream
 
-__all__ = ["Estimate", "bootstrap_interval", "wilson_interval"]
+__all__ = ["Estimate", "bootstrap_interval", "exact_interval", "wilson_interval"]
 
 Floats = NDArray[np.float64]
 RESAMPLES = 2000
@@ -39,6 +39,30 @@ class Estimate(NamedTuple):
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
 
+def exact_interval(successes: int, count: int, confidence: float = 0.95) -> Estimate:
+    """Return a proportion with its exact binomial interval, which covers the true one at least as often as it says.
+
+    Clopper and Pearson 1934, The use of confidence or fiducial limits illustrated in the case of the binomial,
+    https://doi.org/10.1093/biomet/26.4.404.
+
+    Args:
+        successes: number of successes, 0 to ``count``.
+        count: number of runs; 0 gives NaN.
+        confidence: level, between 0 and 1.
+
+    Raises:
+        InputError: a number is out of range.
+
+    >>> [round(value, 4) for value in exact_interval(0, 100)[:3]]
+    [0.0, 0.0, 0.0362]
+    """
+    _check_count(successes, count, confidence)
+    if count == 0:
+        return Estimate(math.nan, math.nan, math.nan, 0)
+    low, high = stats.binomtest(successes, count).proportion_ci(confidence, method="exact")
+    return Estimate(successes / count, float(low), float(high), count)
+
+
 def wilson_interval(successes: int, count: int, confidence: float = 0.95) -> Estimate:
     """Return a proportion with its Wilson score interval.
 
@@ -56,9 +80,7 @@ def wilson_interval(successes: int, count: int, confidence: float = 0.95) -> Est
     >>> [round(value, 4) for value in wilson_interval(8, 10)[:3]]
     [0.8, 0.4902, 0.9433]
     """
-    _check(confidence)
-    if not 0 <= successes <= count:
-        raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
+    _check_count(successes, count, confidence)
     if count == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
     z = float(special.ndtri(0.5 + confidence / 2.0))
@@ -121,6 +143,12 @@ def bootstrap_interval(
 
 def _mean(rows: Floats) -> Floats:
     return np.asarray(np.mean(rows, axis=1))
+
+
+def _check_count(successes: int, count: int, confidence: float) -> None:
+    _check(confidence)
+    if not 0 <= successes <= count:
+        raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
 
 
 def _check(confidence: float) -> None:

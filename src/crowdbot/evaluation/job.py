@@ -10,14 +10,14 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import CrowdbotError, MissingExtra
+from crowdbot.core import CrowdbotError, InputError, MissingExtra, explain_write_errors
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
 from crowdbot.trials import Trial, parse_trial
 
 from .decision_metrics import decision_metrics
 from .episode_metrics import episode_metrics, paired_variants
 
-__all__ = ["RunJob", "RunRow", "read_rows", "run_job", "write_rows"]
+__all__ = ["RunJob", "RunRow", "append_rows", "read_rows", "run_job"]
 
 
 @dataclass(frozen=True)
@@ -122,14 +122,36 @@ def _row(seed: int, episode: Episode | str, families: Sequence[str], paired: dic
     return RunRow(seed, episode.outcome, episode.digest, metrics | {"error": float(failed)}, message)
 
 
-def write_rows(rows: Sequence[RunRow], path: Path) -> None:
-    """Write rows as JSON; NaN and infinite values are texts."""
-    path.write_text(json.dumps([row_values(row) for row in rows], allow_nan=False), encoding="utf-8")
+def append_rows(rows: Sequence[RunRow], path: Path) -> None:
+    """Append rows to a file, one line of JSON each; NaN and infinite values are texts.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    text = "".join(json.dumps(row_values(row), allow_nan=False) + "\n" for row in rows)
+    with explain_write_errors(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a", encoding="utf-8") as stream:
+            stream.write(text)
 
 
 def read_rows(path: Path) -> list[RunRow]:
-    """Read rows from JSON."""
-    return [row_of(values) for values in json.loads(path.read_text(encoding="utf-8"))]
+    """Read the rows of a file, an empty list without one; a last line that a kill has cut is removed.
+
+    Raises:
+        InputError: a line is damaged.
+    """
+    if not path.exists():
+        return []
+    content = path.read_bytes()
+    end = content.rfind(b"\n") + 1
+    if end < len(content):
+        with explain_write_errors(path), path.open("r+b") as stream:
+            stream.truncate(end)
+    try:
+        return [row_of(json.loads(line)) for line in content[:end].splitlines()]
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{path} is damaged ({type(error).__name__}); remove it to run its seeds again") from None
 
 
 def row_values(row: RunRow) -> dict[str, Any]:

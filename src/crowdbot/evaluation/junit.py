@@ -8,6 +8,7 @@ from crowdbot.core import Element, format_xml
 
 from .requirement import Requirement
 from .result import EvaluationResult
+from .verdict import judge_cell
 
 __all__ = ["junit_xml"]
 
@@ -38,11 +39,19 @@ def junit_xml(result: EvaluationResult, requirements: Sequence[Requirement]) -> 
             for requirement in requirements:
                 verdict = requirement.judge(cell.values(requirement.statistic.metric))
                 label = " on ".join(filter(None, (cell.method, cell.robot)))
+                warning = judge_cell(cell, requirements).warning
                 case = Element("testcase", {"name": f"{label}: {requirement.text}", "classname": trial})
                 if not verdict.holds:
                     case.children.append(Element("failure", {"message": verdict.sentence}))
                     failures += 1
+                elif warning:
+                    case.children.append(_warning(f"nothing is shown: {warning}"))
                 suite.children.append(case)
         suite.attributes |= {"tests": str(len(suite.children)), "failures": str(failures), "errors": "0"}
         root.children.append(suite)
     return format_xml(root)
+
+
+def _warning(text: str) -> Element:
+    """Return the properties of a test case that passes, but shows nothing."""
+    return Element("properties", children=[Element("property", {"name": "warning", "value": text})])

@@ -14,7 +14,7 @@ from crowdbot.metrics import metric_table
 from .intervals import wilson_interval
 from .job import RunRow
 
-__all__ = ["RealPlacement", "place_reality", "reality_svg"]
+__all__ = ["FEWEST_RUNS", "RealPlacement", "place_reality", "reality_svg"]
 
 INSIDE = (0.025, 0.975)
 """Quantiles of the simulations between which reality is inside."""
@@ -24,7 +24,7 @@ OWN_MOTION = (
     "failures_to_progress", "final_goal_distance", "min_goal_distance", "mean_wall_clearance", "wall_collision",
     "wall_collisions", "obstacle_force_on_robot",
 )  # fmt: skip
-FEWEST = 10
+FEWEST_RUNS = 10
 """Metrics with fewer simulated values are left out."""
 
 
@@ -73,7 +73,7 @@ def place_reality(real: Mapping[str, float], runs: Sequence[RunRow], mirror: boo
             continue
         values = np.array([row.metrics.get(name, math.nan) for row in runs if row.valid])
         values = values[np.isfinite(values)]
-        if not math.isfinite(value) or len(values) < FEWEST:
+        if not math.isfinite(value) or len(values) < FEWEST_RUNS:
             continue
         near = np.isclose(values, value, rtol=1e-9, atol=1e-12)
         below = float(np.sum((values < value) & ~near)) + 0.5 * float(near.sum())

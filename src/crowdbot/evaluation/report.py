@@ -11,17 +11,27 @@ from pathlib import Path
 from string import Template
 
 from crowdbot.core import explain_write_errors
+from crowdbot.metrics import metric_table
 
 from .comparison import PairedComparison
 from .effect_plots import effects_svg
 from .pareto import pareto_svg
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
-from .statistic import Statistic
+from .statistic import Statistic, metric_unit
 from .sweep_effects import FactorEffect, factor_effects
-from .worst_run import WorstRun
+from .verdict import judge_cell
+from .worst_run import WorstRun, person_contacts
 
 __all__ = ["write_report"]
+
+MOST_CONTACTS = 10
+"""Largest number of contacts of a row in the report."""
+NO_SUCCESS = "<p>No robot arrived in any run, so there is nothing to compare.</p>"
+PROTOCOL_UNITS = {
+    "margin": "m", "step": "s", "control_period": "s", "latency": "s", "duration": "s", "goal_tolerance": "m",
+}  # fmt: skip
+"""Units of the columns of the protocol."""
 
 
 def write_report(
@@ -32,6 +42,7 @@ def write_report(
     worst: Sequence[WorstRun] = (),
     requirements: Sequence[Requirement] = (),
     comparisons: Sequence[PairedComparison] = (),
+    again: Sequence[str] = (),
 ) -> None:
     """Write one HTML page that needs no other file and asks nothing from the network.
 
@@ -42,6 +53,7 @@ def write_report(
         worst: runs to play.
         requirements: bounds with their verdicts.
         comparisons: comparisons of the navigators.
+        again: lines about the worst runs, with the commands that play them.
 
     Raises:
         InputError: the page cannot be written.
@@ -50,15 +62,18 @@ def write_report(
     page = Template(_asset("report.html")).substitute(
         style=_asset("report.css"),
         script=_asset("report.js"),
-        lead=html.escape(
-            f"{len(result.cells)} combinations of trial, navigator and robot, {seeds} seeds each; intervals are 95 %."
+        lead=_verdicts(result.cells, requirements),
+        size=html.escape(
+            f"{len(result.cells)} combinations of trial, navigator and robot, {seeds} seeds each. Intervals are 95 %:"
+            " exact binomial (Clopper-Pearson) for rates, bootstrap for others."
         ),
         table=_results(result, statistics),
         protocol=_protocol(result.cells),
+        contacts=_contacts(result.cells),
         requirements=_requirements(result, requirements),
         comparisons=_comparisons(comparisons),
-        pareto=pareto_svg(result.cells) + _effects(result, statistics),
-        failures=_failures(result),
+        pareto=(pareto_svg(result.cells) or NO_SUCCESS) + _effects(result, statistics),
+        failures=_again(again) + _failures(result),
         runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
         provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),
         data=json.dumps([run.drawing for run in worst], allow_nan=False).replace("<", "\\u003c"),
@@ -70,6 +85,22 @@ def write_report(
 
 def _asset(name: str) -> str:
     return importlib.resources.files("crowdbot").joinpath("assets", "evaluation", name).read_text(encoding="utf-8")
+
+
+def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) -> str:
+    """Return the sentences that the page begins with, one paragraph for each row."""
+    parts = []
+    for cell in cells:
+        verdict = judge_cell(cell, requirements)
+        kind = "safe" if verdict.safe else "unsafe"
+        limit = f"<br><small>{html.escape(verdict.limit)}</small>"
+        parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
+    return "".join(parts)
+
+
+def _again(lines: Sequence[str]) -> str:
+    text = html.escape("\n".join(lines))
+    return f"<h2>Run the worst seeds again</h2><pre>{text}</pre>" if lines else ""
 
 
 def _title(run: WorstRun) -> str:
@@ -94,17 +125,54 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _results(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
-    head = ["trial", "navigator", "robot", "runs", *(one.name for one in statistics)]
+    head = ["trial", "navigator", "robot", "runs", *(one.title for one in statistics)]
     rows = [
         [*_names(cell), str(len(cell.valid)), *(str(cell.estimate(one)) for one in statistics)] for cell in result.cells
     ]
-    return _table(head, rows)
+    return _table(head, rows) + _definitions(statistics)
+
+
+def _definitions(statistics: Sequence[Statistic]) -> str:
+    """Return what the columns are, from the table of metrics."""
+    table = metric_table()
+    metrics = dict.fromkeys(one.metric for one in statistics if one.metric in table)
+    rows = [f"<li><b>{name.replace('_', ' ')}</b>: {html.escape(table[name].formula)}</li>" for name in metrics]
+    return f"<details><summary>What the columns are</summary><ul>{''.join(rows)}</ul></details>" if rows else ""
+
+
+def _contacts(cells: Sequence[CellResult]) -> str:
+    """Return the table of contacts with persons, the hardest of each row first."""
+    rows = [
+        [
+            *_names(cell),
+            str(one.seed),
+            one.region or "unknown",
+            one.severity,
+            f"{one.speed:.2f}",
+            one.cause or "unknown",
+        ]
+        for cell in cells
+        for one in person_contacts(cell)[:MOST_CONTACTS]
+    ]
+    head = ["trial", "navigator", "robot", "seed", "body region", "severity [force / limit]", "impact speed [m/s]"]
+    table = _table([*head, "approached by"], rows)
+    about = (
+        f"<p>The {MOST_CONTACTS} hardest of each row. Severity is the force over the limit of ISO/TS 15066 for the body"
+        " region; above 1 is above the onset of pain. In the planar world the region is unknown: the range is that of"
+        " all regions below the height of the robot, at the closing speed of the discs.</p>"
+    )
+    return f"<h2>Contacts with persons</h2>{about}{table}" if table else ""
 
 
 def _protocol(cells: Sequence[CellResult]) -> str:
     keys = list(dict.fromkeys(key for cell in cells for key in cell.protocol))
     rows = [[*_names(cell), *(_words(cell.protocol.get(key)) for key in keys)] for cell in cells]
-    return _table(["trial", "navigator", "robot type", *(key.replace("_", " ") for key in keys)], rows)
+    return _table(["trial", "navigator", "robot type", *map(_protocol_title, keys)], rows)
+
+
+def _protocol_title(key: str) -> str:
+    unit = PROTOCOL_UNITS.get(key)
+    return key.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
 def _words(value: object) -> str:
@@ -122,7 +190,9 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
     for requirement in requirements:
         for cell in result.cells:
             verdict = requirement.judge(cell.values(requirement.statistic.metric))
+            warning = judge_cell(cell).warning
             passed = "holds" if verdict.holds else "does not hold"
+            passed += f", but shows nothing: {warning}" if verdict.holds and warning else ""
             rows.append([*_names(cell), requirement.text, passed, verdict.sentence])
     table = _table(["trial", "navigator", "robot", "requirement", "verdict", "measured"], rows)
     return f"<h2>Requirements</h2>{table}" if table else ""
@@ -130,7 +200,7 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
 
 def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
     rows = [
-        [one.trial, one.robot or "-", one.metric.replace("_", " "), one.first, one.second, str(one.difference),
+        [one.trial, one.robot or "-", _with_unit(one.metric), one.first, one.second, str(one.difference),
          _p_value(one.p_value), _p_value(one.corrected)]
         for one in comparisons
         if not math.isnan(one.p_value)
@@ -154,11 +224,16 @@ def _effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
         for one in factor_effects(result, metric):
             groups.setdefault((one.trial, one.method, one.robot), []).append(one)
         for names, rows in groups.items():
-            title = html.escape(f"{metric.replace('_', ' ')}: {', '.join(filter(None, names))}")
+            title = html.escape(f"{_with_unit(metric)}: {', '.join(filter(None, names))}")
             cells = [(" and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)) for one in rows]
             parts.append(f"<h3>{title}</h3>{effects_svg(rows)}")
             parts.append(_table(["factor", "level", "mean", "effect"], cells))
     return "".join(parts)
+
+
+def _with_unit(metric: str) -> str:
+    unit = metric_unit(metric)
+    return f"{metric.replace('_', ' ')} [{unit}]" if unit else metric.replace("_", " ")
 
 
 def _p_value(value: float) -> str:

@@ -89,7 +89,7 @@ def parse_requirement(text: str, metrics: dict[str, object] | None = None) -> Re
 
     >>> requirement = parse_requirement("collision-rate<0.01@95%")
     >>> requirement.judge(np.zeros(100)).sentence
-    'collision-rate is 0 in 100 runs, at most 0.02634 with 95 % confidence, required < 0.01'
+    'collision-rate is 0 in 100 runs, at most 0.02951 with 95 % confidence, required < 0.01'
     >>> requirement.judge(np.zeros(400)).holds
     True
     """

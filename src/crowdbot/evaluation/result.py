@@ -27,6 +27,8 @@ from .statistic import Statistic, parse_statistic
 __all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "result_schema"]
 
 SCHEMA = "crowdbot-evaluation/1"
+COMPARED = ("success", "person_collision", "wall_collision", "time_to_goal")
+"""Metrics of which navigators are compared."""
 MOST_BYTES = 2_000_000_000
 
 
@@ -99,7 +101,7 @@ class EvaluationResult:
         """Runs whose navigator failed, which all tables count."""
         return [(cell, row) for cell in self.cells for row in cell.runs if row.outcome == "error"]
 
-    def compare(self, metrics: Sequence[str] = ("success", "collision", "time_to_goal")) -> list[PairedComparison]:
+    def compare(self, metrics: Sequence[str] = COMPARED) -> list[PairedComparison]:
         """Return the paired comparisons of all navigators of each trial and robot, with corrected p-values.
 
         Args:

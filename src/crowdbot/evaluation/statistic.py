@@ -12,21 +12,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
-from crowdbot.metrics import metric_table
+from crowdbot.metrics import Metric, metric_table
 
-from .intervals import Estimate, bootstrap_interval, wilson_interval
+from .intervals import Estimate, bootstrap_interval, exact_interval
 from .own_metric import metric_name
 
-__all__ = ["RATES", "Statistic", "parse_statistic"]
+__all__ = ["RATES", "Statistic", "metric_unit", "parse_statistic"]
 
 Floats = NDArray[np.float64]
 RATES = {
     "success-rate": "success",
     "collision-rate": "collision",
+    "person-collision-rate": "person_collision",
+    "wall-collision-rate": "wall_collision",
+    "object-collision-rate": "object_collision",
+    "robot-collision-rate": "robot_collision",
     "timeout-rate": "timeout",
     "error-rate": "error",
 }
-"""Names of the shares of runs, with their metric."""
+"""Names of the shares of runs, with their metric; ``collision`` is a contact that ends a run, whatever is touched."""
 QUANTILE = re.compile(r"p(\d{1,2})")
 TAIL = re.compile(r"cvar(\d{1,2})")
 OWN = re.compile(r"(?P<kind>[a-z]\w*:)?(?P<address>[^:]*(?:\.py|/):[A-Za-z_]\w*)")
@@ -50,6 +54,16 @@ class Statistic:
     kind: str
     address: str = ""
 
+    @property
+    def title(self) -> str:
+        """Name with the unit of its metric, as the head of a column.
+
+        >>> parse_statistic("p95:time-to-goal").title, parse_statistic("success-rate").title
+        ('p95:time-to-goal [s]', 'success-rate [share]')
+        """
+        unit = "share" if self.kind == "rate" else metric_unit(self.metric)
+        return f"{self.name} [{unit}]" if unit else self.name
+
     def estimate(self, values: Floats, confidence: float = 0.95) -> Estimate:
         """Return the statistic of one value for each run, with its interval.
 
@@ -61,7 +75,7 @@ class Statistic:
         kept = np.asarray(values, dtype=np.float64)
         kept = kept[~np.isnan(kept)]
         if self.kind == "rate":
-            return wilson_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
+            return exact_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
         if not len(kept):
             return bootstrap_interval(kept, confidence=confidence)
         function = _FUNCTIONS.get(self.kind) or _of_percentile(self.kind)
@@ -72,7 +86,7 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     """Return the statistic with a name.
 
     Args:
-        name: ``success-rate``, ``collision-rate``, ``timeout-rate`` or ``error-rate``; a metric, of which the mean is
+        name: a share of runs, such as ``success-rate`` or ``person-collision-rate``; a metric, of which the mean is
             taken; or a metric after ``median:``, ``min:``, ``max:``, a percentile such as ``p95:`` or the mean of the
             tail above it, ``cvar95:``. A metric of users has its address: ``mine.py:TimeNear``.
         metrics: known metrics, to refuse others.
@@ -109,11 +123,27 @@ _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {
 }
 
 
+def metric_unit(metric: str) -> str:
+    """Return the unit of a metric, ``1`` for numbers and shares; empty if it is in no table.
+
+    >>> metric_unit("min_clearance"), metric_unit("impact_severity_hand"), metric_unit("mine")
+    ('m', '1', '')
+    """
+    row = _row_of(metric)
+    return "" if row is None else row.unit
+
+
 def _is_better_lower(metric: str) -> bool:
     """Return whether the table says that a metric is better when it is lower."""
-    table = metric_table()
-    row = table.get("impact_severity_*" if metric.startswith("impact_severity_") else metric)
+    row = _row_of(metric)
     return row is not None and row.better == "lower"
+
+
+def _row_of(metric: str) -> Metric | None:
+    """Return the row of a metric in the table; those of body regions share one."""
+    table = metric_table()
+    family = next((name for name in table if name.endswith("*") and metric.startswith(name[:-1])), metric)
+    return table.get(metric) or table.get(family)
 
 
 def _of_percentile(kind: str) -> Callable[[Floats], Floats]:

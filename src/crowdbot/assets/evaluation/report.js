@@ -30,9 +30,22 @@ function body(agent) {
   if (!place) return;
   const reach = agent.radius * scale();
   pen.fillStyle = agent.robot ? "#2f9e5b" : "#5b8fd6";
-  pen.beginPath();
-  pen.arc(px(place[0]), py(place[1]), Math.max(2, reach), 0, 2 * Math.PI);
-  pen.fill();
+  const heading = agent.heading[frame];
+  if (agent.outline.length && Number.isFinite(heading)) {
+    // The outline turns with the robot; the disc around it is what the planar world knows.
+    const [c, s] = [Math.cos(heading), Math.sin(heading)];
+    path(agent.outline.map(([x, y]) => [place[0] + c * x - s * y, place[1] + s * x + c * y]), true);
+    pen.fill();
+    pen.strokeStyle = "#2f9e5b88";
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.arc(px(place[0]), py(place[1]), reach, 0, 2 * Math.PI);
+    pen.stroke();
+  } else {
+    pen.beginPath();
+    pen.arc(px(place[0]), py(place[1]), Math.max(2, reach), 0, 2 * Math.PI);
+    pen.fill();
+  }
   pen.strokeStyle = "#fff";
   pen.lineWidth = 2;
   path([place, [place[0] + agent.radius * Math.cos(agent.heading[frame]),

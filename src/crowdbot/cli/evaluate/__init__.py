@@ -10,14 +10,25 @@ from typing import TYPE_CHECKING
 from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
 from crowdbot.cli.settings import add_robots, add_settings, add_world
 
+from .again import print_worst, worst_lines, worst_values
 from .plan_options import add_plan_options, plan_of, statistic_names
 from .recordings import add_recording_options, present_recordings
-from .tables import print_comparisons, print_effects, print_result, print_runs, print_verdicts, result_values
+from .tables import (
+    print_answers,
+    print_comparisons,
+    print_effects,
+    print_result,
+    print_runs,
+    print_verdicts,
+    result_values,
+)
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
 
-STATISTICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", "min-clearance")
+STATISTICS = (
+    "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
+)  # fmt: skip
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -122,13 +133,18 @@ def _present(
     if options.out is not None:
         _write(options, plan, result, statistics, requirements)
     if options.json:
-        print_json(result_values(result, statistics, comparisons, verdicts))
+        values = result_values(result, statistics, comparisons, verdicts, requirements)
+        for row, cell in zip(values["cells"], result.cells, strict=True):
+            row["worst"] = worst_values(cell, options)
+        print_json(values)
     else:
+        print_answers(result, requirements)
         print_result(result, statistics, wall)
         print_effects(result, statistics)
         print_comparisons(result, comparisons)
         print_verdicts(verdicts)
         print_runs(result)
+        print_worst(result, options)
         if options.out is not None:
             print(f"report    {options.out / 'report.html'}\nresult    {options.out / 'result.json'}")
     return 0 if all(verdict.holds for _, _, verdict in verdicts) else 1
@@ -150,6 +166,7 @@ def _write(
         options.out / "report.html",
         statistics,
         worst=worst_runs(plan, result, options.worst),
+        again=worst_lines(result, options),
         requirements=requirements,
         comparisons=result.compare(),
     )

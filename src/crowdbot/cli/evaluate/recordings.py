@@ -114,13 +114,15 @@ def _simulate(options: argparse.Namespace) -> int:
     from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_seeds, place_reality, recorded_trial
     from crowdbot.trials import apply_values
 
+    seeds = parse_seeds(options.seeds or "0:100")
+    _check_runs(len(seeds), "seeds")
     recording = _load(options.real, options)
     real, results = recording.metrics(), []
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if options.out is None else options.out
         for method in parse_methods(options.navigators):
             trial = apply_values(recorded_trial(recording, folder, mirror=not method.type), settings(options))
-            plan = EvaluationPlan([trial], [method], seeds=parse_seeds(options.seeds or "0:100"))
+            plan = EvaluationPlan([trial], [method], seeds=seeds)
             with progress(options.json) as report:
                 result = evaluate(
                     plan,
@@ -129,6 +131,7 @@ def _simulate(options: argparse.Namespace) -> int:
                     cluster=options.cluster,
                     progress=lambda share: report("evaluate", share),
                 )
+            _check_runs(len(result.cells[0].valid), "runs that are possible")
             results.append((result.cells[0], place_reality(real, result.cells[0].valid, not method.type)))
     values = [_values(options, cell, rows) for cell, rows in results]
     if options.out is not None:
@@ -141,6 +144,18 @@ def _simulate(options: argparse.Namespace) -> int:
     if options.out is not None:
         print(f"pictures  {options.out / 'reality.html'}\nresult    {options.out / 'reality.json'}")
     return 0
+
+
+def _check_runs(count: int, what: str) -> None:
+    """Refuse a comparison with so few runs that every metric would be left out."""
+    from crowdbot.core import InputError
+    from crowdbot.evaluation import FEWEST_RUNS
+
+    if count < FEWEST_RUNS:
+        raise InputError(
+            f"--real has {count} {what}; where a recording lies among its simulations needs at least {FEWEST_RUNS},"
+            " and 40 for the ends of the central 95 %: --seeds 0:100"
+        )
 
 
 def _values(options: argparse.Namespace, cell: CellResult, rows: list[RealPlacement]) -> dict[str, Any]:

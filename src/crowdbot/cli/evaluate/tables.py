@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,17 +17,38 @@ if TYPE_CHECKING:
         PairedComparison,
         Requirement,
         RequirementVerdict,
+        SafetyVerdict,
         Statistic,
     )
 
+WIDTH = 120
+"""Width of a line of sentences [characters]."""
 MOST_ROWS = 20
 """Largest number of messages of failed or invalid runs that are printed."""
+
+
+def print_answers(result: EvaluationResult, requirements: Sequence[Requirement]) -> None:
+    """Print what the runs show: a sentence for each row, and what their number can show at most."""
+    from crowdbot.evaluation import judge_cell, person_contacts
+
+    verdicts = [judge_cell(cell, requirements) for cell in result.cells]
+    for cell, verdict in zip(result.cells, verdicts, strict=True):
+        print(textwrap.fill(verdict.sentence, WIDTH))
+        for contact in person_contacts(cell)[:1]:
+            where = f"at the {contact.region}" if contact.region else "at an unknown body region"
+            print(
+                f"  hardest contact: seed {contact.seed}, {where}, {contact.speed:.2f} m/s,"
+                f" severity {contact.severity} (force over the limit of ISO/TS 15066)"
+            )
+    for limit in dict.fromkeys(verdict.limit for verdict in verdicts):
+        print(textwrap.fill(limit, WIDTH))
+    print()
 
 
 def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall: float) -> None:
     """Print a table with a row for each navigator for each trial."""
     robots = any(cell.robot for cell in result.cells)
-    head = ["navigator", *(["robot"] if robots else []), "visible", "runs", *(one.name for one in statistics)]
+    head = ["navigator", *(["robot"] if robots else []), "visible", "runs", *map(_head, statistics)]
     count = sum(len(cell.runs) for cell in result.cells)
     for trial in dict.fromkeys(cell.trial for cell in result.cells):
         rows = [
@@ -40,14 +63,27 @@ def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall
             if cell.trial == trial
         ]
         print_table(trial, head, rows, words=2 if robots else 1)
-    print(f"{count} runs in {wall:.1f} s; intervals of 95 %: Wilson for rates, bootstrap for others\n")
+    print(f"{count} runs in {wall:.1f} s; intervals of 95 %: exact (Clopper-Pearson) for rates, bootstrap for others\n")
+
+
+def _head(statistic: Statistic) -> str:
+    """Return the head of a column on lines of its own, with the unit below the name."""
+    name, _, unit = statistic.title.partition(" [")
+    return "\n".join([*textwrap.wrap(name, 10, break_long_words=False), *([f"[{unit}"] if unit else [])])
+
+
+def _metric_title(metric: str) -> str:
+    from crowdbot.evaluation import metric_unit
+
+    unit = metric_unit(metric)
+    return metric.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
 def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComparison]) -> None:
     """Print the comparisons of each navigator with the first one."""
     first = result.cells[0].method
     rows = [
-        [one.trial, one.second, one.metric.replace("_", " "), str(one.difference), _p_value(one.corrected)]
+        [one.trial, one.second, _metric_title(one.metric), str(one.difference), _p_value(one.corrected)]
         for one in comparisons
         if one.first == first and not math.isnan(one.p_value)
     ]
@@ -71,15 +107,19 @@ def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> 
             if len(one.factors) == 1 or one.effect.low > 0.0 or one.effect.high < 0.0
         ]
         head = ("trial", "navigator", "factor", "level", "mean", "effect")
-        print_table(f"effects on {metric.replace('_', ' ')}", head, rows, caption, words=4)
+        print_table(f"effects on {_metric_title(metric)}", head, rows, caption, words=4)
 
 
 def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:
-    """Print whether the requirements hold."""
+    """Print whether the requirements hold, and whether that shows anything."""
+    from crowdbot.evaluation import judge_cell
+
     for cell, requirement, verdict in verdicts:
         word = "holds" if verdict.holds else "DOES NOT HOLD"
         where = ", ".join(filter(None, (cell.trial, cell.method, cell.robot)))
         print(f"{requirement.text}: {word} for {where}: {verdict.sentence}")
+        if verdict.holds and (warning := judge_cell(cell).warning):
+            print(f"WARNING: {requirement.text} holds, but shows nothing: {warning}")
 
 
 def print_runs(result: EvaluationResult) -> None:
@@ -100,29 +140,46 @@ def result_values(
     statistics: Sequence[Statistic],
     comparisons: Sequence[PairedComparison],
     verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]],
+    requirements: Sequence[Requirement] = (),
 ) -> dict[str, Any]:
     """Return the values of all tables."""
+    from crowdbot.evaluation import judge_cell, person_contacts
+
     return {
         "provenance": dict(result.provenance),
         "cells": [
             {
                 **_names(cell),
+                "verdict": _verdict_values(judge_cell(cell, requirements)),
+                "contacts": [one._asdict() for one in person_contacts(cell)],
                 "runs": len(cell.valid),
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
                 "statistics": {one.name: cell.estimate(one)._asdict() for one in statistics},
+                "titles": {one.name: one.title for one in statistics},
             }
             for cell in result.cells
         ],
         **({"effects": effect_values(result, statistics)} if any(cell.factors for cell in result.cells) else {}),
         "comparisons": [one._asdict() | {"difference": one.difference._asdict()} for one in comparisons],
         "requirements": [
-            {**_names(cell), "requirement": requirement.text, "holds": verdict.holds, "sentence": verdict.sentence}
+            {
+                **_names(cell),
+                "requirement": requirement.text,
+                "holds": verdict.holds,
+                "sentence": verdict.sentence,
+                "warning": judge_cell(cell).warning if verdict.holds else "",
+            }
             for cell, requirement, verdict in verdicts
         ],
         "failed": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.failures],
         "invalid": [{**_names(cell), "seed": row.seed, "message": row.message} for cell, row in result.invalid],
     }
+
+
+def _verdict_values(verdict: SafetyVerdict) -> dict[str, Any]:
+    shares = {name: getattr(verdict, name)._asdict() for name in ("person", "obstacle", "missed")}
+    return dataclasses.asdict(verdict) | shares | {"interval": "exact binomial (Clopper-Pearson), 95 %"}
 
 
 def effect_values(result: EvaluationResult, statistics: Sequence[Statistic]) -> list[dict[str, Any]]:

@@ -14,11 +14,9 @@ from crowdbot.evaluation import (
     CellResult,
     EvaluationResult,
     PairedComparison,
-    Statistic,
     load_evaluation,
     parse_statistic,
 )
-from crowdbot.metrics import metric_table
 from crowdbot.recording import record
 from crowdbot.trials import Trial, builtin_trials, trial_titles, trial_xml
 from crowdbot.web.command import command
@@ -30,7 +28,9 @@ from .imported_result import RESULT, cell_of_result, import_result
 
 __all__ = ["EvaluationDesk"]
 
-METRICS = ("success-rate", "collision-rate", "timeout-rate", "time-to-goal", "min-clearance")
+METRICS = (
+    "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
+)  # fmt: skip
 FOLDER = "evaluations"
 BEFORE = 5.0
 """Time [s] before the end of a run from which it is watched."""
@@ -125,7 +125,7 @@ class EvaluationDesk(Desk):
             "command": request.command(folder) if request else shlex.join(made),
             "python": request.python(folder) if request else "",
             "statistics": list(names),
-            "titles": [_title(parse_statistic(one, result.metrics)) for one in names],
+            "titles": [parse_statistic(one, result.metrics).title for one in names],
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
             "comparisons": [_sentence(one) for one in result.compare() if not math.isnan(one.p_value)],
             "report": (self._folder(name) / "report.html").is_file(),
@@ -223,13 +223,6 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
             for row in cell.runs
         ],
     }
-
-
-def _title(statistic: Statistic) -> str:
-    """Return a statistic with the unit of its metric."""
-    known = metric_table().get(statistic.metric)
-    unit = "" if known is None else known.unit
-    return f"{statistic.name} [{unit}]" if unit and statistic.kind != "rate" else statistic.name
 
 
 def _plain(value: float | None) -> float | None:
