@@ -39,7 +39,7 @@ def readings(text: str) -> list[str]:
     for names, test in marked_tests(tree):
         if names & set(OUTSIDE):
             continue
-        seen = {test.name: test}
+        seen: dict[str, Definition] = {test.name: test}
         waiting: list[Definition] = [test, *(places[name] for name in always)]
         while waiting:
             for name in words_of(waiting.pop()):
@@ -49,7 +49,7 @@ def readings(text: str) -> list[str]:
         fixtures = {argument.arg for node in seen.values() for argument in arguments_of(node)}
         if fixtures & LIVE_FIXTURES:
             continue
-        clocks = [found for node in [*seen.values(), *(places[name] for name in always)] for found in calls(node, full)]
+        clocks = [call for node in (*seen.values(), *map(places.get, always)) if node for call in calls(node, full)]
         found += [
             f"{line}: {test.name} reads {clock}: give it a clock of its own, or mark it with @pytest.mark.live"
             for line, clock in sorted(set(clocks))
