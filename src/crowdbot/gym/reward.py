@@ -17,8 +17,8 @@ Bools = NDArray[np.bool_]
 class Reward:
     """Terms of the reward of one control step.
 
-    The defaults are those of CrowdNav with two changes, without which proximal policy optimisation learns to stand
-    still: a reward of progress, and a collision that costs more than the progress of 10 m.
+    The defaults are those of CrowdNav with two changes: a reward of progress, since proximal policy optimisation learns
+    to stand still from CrowdNav's own, and a collision that costs as much as the progress of 10 m.
 
     * Progress is shaping by the potential ``-progress * distance to the goal``: over an episode, its sum is
       ``progress * (distance at the start - distance at the end)``, whatever the path, and 0 for a robot that stands.
