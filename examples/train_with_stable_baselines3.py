@@ -1,21 +1,32 @@
 """Train a robot with PPO of stable-baselines3 in many environments of one simulation.
 
     pip install 'crowdbot[gym]' stable-baselines3
-    python train_with_stable_baselines3.py --steps 1000000
+    python train_with_stable_baselines3.py
+
+The environment is that of the defaults of ``crowdbot.gym``: observation, action and reward. At the end, the robot is
+tested without random actions in cases that the training has not seen. Ctrl-C ends the training early and keeps what it
+has learned.
 
 Stable-baselines3 has an interface of its own for several environments; ``CrowdVecEnv`` gives it those of
 ``crowdbot.gym.CrowdVectorEnv``, which advance together and are many times faster than one after another.
 """
 
 import argparse
+import time
 from collections import deque
 
 import numpy as np
+import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnv
 
+from crowdbot.evaluation import wilson_interval
 from crowdbot.gym import CrowdVectorEnv
+
+OUTCOMES = ("success", "collision", "timeout")
+FIRST_CASE = 2**31
+"""Smallest seed of the cases of the test; the seeds that a training draws are below it."""
 
 
 class CrowdVecEnv(VecEnv):
@@ -63,39 +74,76 @@ class CrowdVecEnv(VecEnv):
         return [False] * len(list(self._get_indices(indices)))
 
 
-class Outcomes(BaseCallback):
-    """Print the outcomes of the last 200 episodes after each update."""
+class OutcomeTable(BaseCallback):
+    """Print a row with the outcomes of the last 200 episodes, whose actions are random, after some updates."""
 
-    def __init__(self):
+    def __init__(self, updates):
         super().__init__()
+        self.updates, self.done = updates, 0
         self.last = deque(maxlen=200)
+
+    def _on_training_start(self):
+        print("  ".join(f"{name:>10}" for name in ("steps", *OUTCOMES, "CPU [s]")), flush=True)
 
     def _on_step(self):
         self.last.extend(info["outcome"] for info in self.locals["infos"] if "outcome" in info)
         return True
 
     def _on_rollout_end(self):
-        count = max(1, len(self.last))
-        shares = "  ".join(
-            f"{name} {self.last.count(name) / count:.2f}" for name in ("success", "collision", "timeout")
-        )
-        print(f"{self.num_timesteps} steps  {shares}", flush=True)
+        self.done += 1
+        if self.done % self.updates == 0:
+            shares = [self.last.count(name) / max(1, len(self.last)) for name in OUTCOMES]
+            texts = [f"{self.num_timesteps}", *(f"{share:.3f}" for share in shares), f"{time.process_time():.0f}"]
+            print("  ".join(f"{text:>10}" for text in texts), flush=True)
+
+
+def test_policy(model, trial, action, cases):
+    """Return the outcome of each case, with the most probable actions."""
+    envs = CrowdVectorEnv(trial, cases, action=action)
+    observations, _ = envs.reset(seed=FIRST_CASE)
+    outcomes = np.full(cases, "", dtype="U16")
+    while (outcomes == "").any():
+        actions, _ = model.predict(observations, deterministic=True)
+        observations, _, _, _, info = envs.step(actions)
+        if "outcome" in info:  # an environment that has ended begins another case, which does not count
+            outcomes = np.where(outcomes == "", info["outcome"], outcomes)
+    return outcomes.tolist()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trial", default="crowdnav-circle-5")
-    parser.add_argument("--steps", type=int, default=1_000_000)
+    parser.add_argument("--trial", default="circle-crossing")
+    parser.add_argument("--action", default="velocity", help="holonomic for a robot that moves in every direction")
+    parser.add_argument("--steps", type=int, default=1_500_000)
     parser.add_argument("--environments", type=int, default=64)
-    parser.add_argument("--out", default="crowdnav-ppo.zip", help="file of the trained model")
+    parser.add_argument("--cases", type=int, default=200, help="number of unseen cases of the test")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", default="crowd-ppo.zip", help="file of the trained model")
     options = parser.parse_args()
-    envs = CrowdVecEnv(options.trial, options.environments, action="holonomic")
+    torch.set_num_threads(1)  # small networks: more threads only wait for each other
+    envs = CrowdVecEnv(options.trial, options.environments, action=options.action)
     length = max(8, min(256, options.steps // options.environments))
-    model = PPO("MultiInputPolicy", envs, n_steps=length, batch_size=1024, gamma=0.99, seed=0, device="cpu")
-    model.learn(options.steps, callback=Outcomes())
+    model = PPO(
+        "MultiInputPolicy",
+        envs,
+        n_steps=length,
+        batch_size=min(1024, length * options.environments),
+        learning_rate=lambda left: 3e-4 * left,  # falls to 0: the last policies differ little
+        seed=options.seed,
+        device="cpu",
+    )
+    try:
+        model.learn(options.steps, callback=OutcomeTable(updates=10 if length == 256 else 1))
+    except KeyboardInterrupt:
+        print("the training ends early")
     model.save(options.out)
+    print(f"{model.num_timesteps} steps, {time.process_time():.0f} s of processor time, model in {options.out}")
+    outcomes = test_policy(model, options.trial, options.action, options.cases)
+    for name in OUTCOMES:
+        count = outcomes.count(name)
+        share, low, high = wilson_interval(count, len(outcomes))[:3]
+        print(f"{name:>10}  {count} of {len(outcomes)} unseen cases: {share:.3f} [{low:.3f}, {high:.3f}]")
     envs.close()
-    print(f"{model.num_timesteps} steps, model in {options.out}")
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import missing_packages
-from gate_guard import GateGuard
+from gate_guard import LIVE_FIXTURES, GateGuard
 
 settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("hunt", deadline=None)
@@ -200,10 +200,6 @@ def reference() -> Path:
 def pytest_configure(config: pytest.Config) -> None:
     """Watch the tests of the gate, the doctests of the package among them."""
     config.pluginmanager.register(GateGuard())
-
-
-LIVE_FIXTURES = {"browser", "chromium", "domain", "modules", "namespaces", "ros1", "roslaunch", "rviz"}
-"""Fixtures that make a test a live one: another program, or packages of the npm registry."""
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

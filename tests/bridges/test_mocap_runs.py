@@ -15,6 +15,7 @@ from motion_senders import Motive, Sender
 from test_mocap_files import WALK, mvnx
 
 from crowdbot.bridges import MotionBinding, MotionCapture, open_stream, parse_captures
+from crowdbot.bridges.motion_capture import XsensStream
 from crowdbot.cli import main
 from crowdbot.core import InputError, PacedClock
 from crowdbot.recording import open_run, read_episode, record, replay
@@ -120,9 +121,9 @@ def test_the_example_sender_is_understood() -> None:
 
 
 def test_a_pose_that_no_person_can_have_is_counted_and_the_run_goes_on() -> None:
-    stream = open_stream("xsens:0")
+    stream = XsensStream(port=0, monotonic=lambda: 5.0)
     capture = MotionCapture(stream, [MotionBinding("guide")])
-    stream.take(senders.mxtp02(senders.posed({}, (0.0, 0.0, 50.0)), 1, 0.0), "127.0.0.1:1", time.monotonic())
+    stream.take(senders.mxtp02(senders.posed({}, (0.0, 0.0, 50.0)), 1, 0.0), "127.0.0.1:1", 5.0)
     running = SimulationRun(Simulation(TRIAL), sources=[capture])
     running.step()
     assert running.outcome is None

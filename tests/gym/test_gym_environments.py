@@ -151,7 +151,7 @@ def test_rewards_have_their_terms() -> None:
         np.array([0.1, 0.0, 0.0, 0.2]),
         0.25,
     )
-    np.testing.assert_allclose(values, [0.2, -0.5 * 0.1 * 0.25, -0.25, 1.4])
+    np.testing.assert_allclose(values, [0.2, -0.5 * 0.1 * 0.25, -1.0, 1.4])
 
 
 def test_holonomic_actions_stay_within_the_maximum_speed() -> None:

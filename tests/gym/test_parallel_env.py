@@ -64,11 +64,14 @@ def test_an_agent_ends_at_its_goal_and_the_other_goes_on() -> None:
     env.reset(seed=1)
     infos: dict[str, Any] = {}
     while "second" in env.agents:
+        before = env.ports["second"].goal_distance()[0]
         _, rewards, terminations, truncations, infos = env.step({name: np.array([0.5, 0.0]) for name in env.agents})
     assert terminations["second"]
     assert not truncations["second"]
     assert infos["second"]["outcome"] == "success"
-    assert rewards["second"] == pytest.approx(1.0)
+    gain = before - env.ports["second"].goal_distance()[0]
+    assert gain > 0.0
+    assert rewards["second"] == pytest.approx(1.0 + 0.1 * gain)
     assert env.agents == ["robot"]
     place = env.simulation.world.scene.position[0, env.ports["second"].control.agent].copy()
     last: dict[str, Any] = {}
@@ -90,9 +93,11 @@ def test_robots_in_contact_end_with_a_collision() -> None:
     infos: dict[str, Any] = {}
     rewards: dict[str, float] = {}
     while env.agents:
+        before = {name: env.ports[name].goal_distance()[0] for name in env.agents}
         _, rewards, _, _, infos = env.step({name: np.array([1.0, 0.0]) for name in env.agents})
     assert {name: info["outcome"] for name, info in infos.items()} == {"robot": "collision", "second": "collision"}
-    assert rewards == {"robot": -0.25, "second": -0.25}
+    gains = {name: distance - env.ports[name].goal_distance()[0] for name, distance in before.items()}
+    assert rewards == pytest.approx({name: -1.0 + 0.1 * gain for name, gain in gains.items()})
 
 
 def test_wrong_values_are_refused() -> None:

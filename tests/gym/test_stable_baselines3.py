@@ -38,6 +38,17 @@ assert infos[e]["terminal_observation"]["robot"].tobytes() == info["final_obs"][
 assert infos[e]["outcome"] in ("success", "collision", "timeout")
 print("ends", ends)
 """
+STOP = """
+import sys
+sys.path.insert(0, sys.argv.pop(1))
+import train_with_stable_baselines3 as example
+
+def stop(self):
+    raise KeyboardInterrupt
+
+example.OutcomeTable._on_rollout_end = stop
+example.main()
+"""
 
 
 def run(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -48,11 +59,27 @@ def run(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.program
 def test_the_first_2000_steps(tmp_path: Path) -> None:
-    done = run(EXAMPLE, "--steps", 2000, "--environments", 16, "--out", "model.zip", cwd=tmp_path)
+    words = ["--steps", 2000, "--environments", 16, "--cases", 4, "--out", "model.zip"]
+    done = run(EXAMPLE, *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "model.zip").is_file()
-    assert done.stdout.splitlines()[-1] == "2000 steps, model in model.zip"
-    assert done.stdout.startswith("2000 steps  success")
+    lines = done.stdout.splitlines()
+    assert lines[0].split() == ["steps", "success", "collision", "timeout", "CPU", "[s]"]
+    assert lines[1].split()[0] == "2000"
+    assert lines[2].startswith("2000 steps, ")
+    assert [line.split()[0] for line in lines[3:]] == ["success", "collision", "timeout"]
+    assert sum(int(line.split()[1]) for line in lines[3:]) == 4
+    assert all(" of 4 unseen cases: " in line for line in lines[3:])
+
+
+@pytest.mark.program
+def test_a_training_that_is_stopped_keeps_its_weights(tmp_path: Path) -> None:
+    words = ["--steps", 4000, "--environments", 2, "--cases", 2, "--out", "model.zip"]
+    done = run("-c", STOP, EXAMPLE.parent, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "model.zip").is_file()
+    assert "the training ends early\n512 steps, " in done.stdout
+    assert " of 2 unseen cases: " in done.stdout
 
 
 @pytest.mark.program

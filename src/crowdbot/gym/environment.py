@@ -36,7 +36,7 @@ class CrowdEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         trial: a trial, a trial file, or a built-in name.
         observation: ``people``, ``scan``, ``both`` or ``occupancy``, or an :class:`ObservationForm`.
         action: ``velocity``, ``acceleration`` or ``holonomic``, or an :class:`ActionForm`.
-        reward: terms of the reward (default: those of CrowdNav).
+        reward: terms of the reward (default: those of :class:`Reward`).
         robot: name of the robot (default: the first).
         render_mode: ``rgb_array`` for images of a camera by :meth:`render`, or None.
         camera: name of the camera (default: the first of the trial, or its overview).

@@ -38,7 +38,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
         trial: a trial, a trial file, or a built-in name; robots have the same control period.
         observation: ``people``, ``scan``, ``both`` or ``occupancy``, or an :class:`ObservationForm`.
         action: ``velocity``, ``acceleration`` or ``holonomic``, or an :class:`ActionForm`.
-        reward: terms of the reward of each agent (default: those of CrowdNav).
+        reward: terms of the reward of each agent (default: those of :class:`Reward`).
         render_mode: ``rgb_array`` for images of a camera by :meth:`render`, or None.
         camera: name of the camera (default: the first of the trial, or its overview).
         values: values by path for a trial that is loaded, such as ``duration=20``.
