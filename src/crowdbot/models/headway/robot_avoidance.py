@@ -227,4 +227,6 @@ def _cost(
     total += LEFT if turn > MOST_TURNS else 0.0
     total += INERTIA * ((vx - person[VX]) ** 2 + (vy - person[VY]) ** 2) / (wish * wish)
     total += weight * _closeness(near, count, vx, vy)
-    return total + (_wall_cost(person, vx, vy, walls, wall, held) if held > 0 else 0.0)
+    if held > 0:
+        total += float(_wall_cost(person, vx, vy, walls, wall, held))
+    return total
