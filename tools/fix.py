@@ -30,6 +30,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 CODE = ("src", "tests", "tools")
 LONG = {
+    "docs/results/around-robots.md": "python tools/around_robots.py --data RECORDINGS --sets FILE --out FILE",
     "docs/results/calibrated-crowds.md": "python tools/schemes.py SHARED docs/results",
     "docs/results/contacts.md": "crowdbot validate --contacts --starts 20 --out docs/results",
     "docs/results/energy.md": "python tools/measure_energy.py --data RECORDINGS --out docs/results/energy.md",

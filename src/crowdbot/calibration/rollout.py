@@ -75,6 +75,7 @@ class Rollout:
             goal=np.where(here[..., None], self.goal.resolve(known), place),
             active=here,
             external=past.robot,
+            robot=past.robot if np.any(past.robot) else None,
             walls=Walls.of(past.walls),
         )
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)

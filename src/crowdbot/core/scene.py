@@ -61,6 +61,7 @@ class Scene:
         active: ``[E, A]`` bool, False for an absent agent.
         visible: ``[E, A]`` bool, whether other agents react to this one.
         external: ``[E, A]`` bool, True for agents that models consider but do not move (robots, replayed people).
+        robot: ``[E, A]`` bool, which agents are robots; None if nobody is. Worlds set it for the crowd model.
         group: ``[E, A]`` int, number of the group; -1 for none.
         walls: shared by all environments.
         preferred_velocity: ``[E, A, 2]`` [m/s]; None derives it from goal and preferred speed.
@@ -88,6 +89,7 @@ class Scene:
     group: NDArray[np.int64]
     walls: Walls
     preferred_velocity: Floats | None = None
+    robot: Bools | None = None
     time: float | Floats = 0.0
     memory: Mapping[str, Floats] = field(default_factory=dict)
     bodies: Bodies | None = None
@@ -109,6 +111,7 @@ class Scene:
         active: ArrayLike = True,
         visible: ArrayLike = True,
         external: ArrayLike = False,
+        robot: ArrayLike | None = None,
         group: ArrayLike = -1,
         walls: Any = (),
         time: ArrayLike = 0.0,
@@ -143,6 +146,7 @@ class Scene:
             active=here,
             visible=_spread(visible, shape, BOOL),
             external=_spread(external, shape, BOOL),
+            robot=None if robot is None else _spread(robot, shape, BOOL),
             group=_spread(group, shape, INTEGER),
             walls=Walls.of(walls),
             preferred_velocity=wish,

@@ -86,6 +86,15 @@ class CrowdModel(abc.ABC):
         """Initial values in ``Scene.memory`` for a new agent, by name; empty for models without memory."""
         return {}
 
+    @property
+    def is_individual(self) -> bool:
+        """Whether :meth:`individual` draws differences between people."""
+        return False
+
+    def individual(self, agents: int, rng: np.random.Generator) -> CrowdModel:
+        """Return the model with the differences between ``agents`` people; the model itself if it has none."""
+        return self
+
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later."""
         return scene.advance(self.velocity(scene, dt, rng), dt)

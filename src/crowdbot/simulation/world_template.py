@@ -180,7 +180,7 @@ class WorldTemplate:
     def _own_models(self) -> bool:
         """Whether the model depends on the seed."""
         trial = self.trial
-        drawn = isinstance(trial.crowd, Crowds | RandomizedModel)
+        drawn = isinstance(trial.crowd, Crowds | RandomizedModel) or trial.crowd.is_individual
         return drawn or any(isinstance(one, Agent) and one.parameters for one in trial.agents)
 
     @functools.cached_property

@@ -96,8 +96,9 @@ def is_drawn(text: str) -> bool:
 
 
 def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -> CrowdModel:
-    """Return a model with drawn parameters, and with the given values by agent and name."""
+    """Return a model with drawn parameters, its own differences between people, and the given values by agent."""
     whole = model.resolve(seed, crowd, agents) if isinstance(model, RandomizedModel) else model
+    whole = whole.individual(agents, stream(seed, "crowd", crowd, "individual"))
     if not values:
         return whole
     changed: dict[str, Floats] = {}

@@ -30,7 +30,7 @@ from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
 from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
-from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, step_models, widen_robots
+from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, show_robots, step_models
 from .phases.people_exchange import exchange_people
 from .phases.pushes import without_drift
 from .phases.robot_contacts import find_contacts
@@ -341,15 +341,15 @@ class PlanarWorld(PlanarLiveChanges):
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
-        wide = widen_robots(before.radius, self.twists, self.robot_margin)
-        start = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
+        moving = self._traffic.desired_motion(before, self.heading_jitter)
+        start = show_robots(moving, self.twists, self.robot_margin)
         resolve, radius = self._resolve_overlaps, before.radius
         step: Callable[[Scene, float], Scene] = self._step_model
         if self.reactions is not None:
             start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
         earlier, crowd = move_people(start, step, resolve, self.limits, self.dt, self.substeps, radius)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
-        own["preferred_speed"] = before.preferred_speed
+        own |= {"preferred_speed": before.preferred_speed, "robot": None}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:

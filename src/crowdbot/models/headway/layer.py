@@ -18,9 +18,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Neighbors, PerAgent, Scene, parameter, per_agent, unread_fields
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.agent_rows import begin_rows
 from crowdbot.models.mixture import Mixture
 from crowdbot.models.model import CrowdModel, begin_step, launch, rows
+from crowdbot.models.parameter_rows import parameter_rows
 
+from .robot_avoidance import AVOIDANCE, avoid_robots, avoid_robots_part, robots_in
 from .space_ahead import HeadwayRows, limit_speeds, limit_speeds_part
 
 __all__ = ["HeadwayLayer", "arguments_of", "copy_field", "find_layered", "make_class", "with_headway"]
@@ -29,6 +32,8 @@ Floats = NDArray[np.float64]
 
 MOST = 16
 """Number of nearest agents that are compared: more do not fit around a body within the corridor."""
+DEVIATIONS = 2.0
+"""Limit of the caution of a person, in standard deviations."""
 OWN = "crowdbot, fitted to single file"
 
 
@@ -47,6 +52,13 @@ class HeadwayLayer(CrowdModel):
         headway_sliding: share of the velocity alongside others and walls that people keep when their way ends there, 0
             to 1. Above 0, each person takes at most half of the gap to others in a step, and none enters a wall.
         headway_distance: maximum distance of people ahead [m].
+
+        robot_gap: clearance to robots that people try to keep [m]; 0: a robot is one more person.
+        robot_horizon: time ahead for which people foresee the way of robots [s].
+        robot_weight: cost of a gap that is missing as a whole, relative to 1 for a turn by 1 rad.
+        robot_slowing: cost of standing, relative to 1 for a turn by 1 rad.
+        robot_behind: share of gap and horizon for robots behind the person, 0 to 1.
+        robot_caution: standard deviation of the logarithm of gap and horizon between people, the same draw for both.
 
     The corridor lies along the velocity that the model chooses. The space is the way to contact of the two discs, and
     the speed never exceeds what this way allows in one step. Without sliding, the layer turns nobody, does not look at
@@ -75,6 +87,12 @@ class HeadwayLayer(CrowdModel):
     headway_reaction_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.0, source="Tordeux et al. 2016")
     headway_sliding: PerAgent = parameter(0.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
     headway_distance: PerAgent = parameter(4.0, unit="m", low=1.0, high=10.0, source="free speed times time gap")
+    robot_gap: PerAgent = parameter(0.0, unit="m", low=0.2, high=2.0, source="off by default")
+    robot_horizon: PerAgent = parameter(4.0, unit="s", low=1.0, high=8.0, source="off by default", min=1e-2)
+    robot_weight: PerAgent = parameter(4.0, unit="1", low=0.5, high=20.0, source="off by default")
+    robot_slowing: PerAgent = parameter(1.0, unit="1", low=0.1, high=5.0, source="off by default")
+    robot_behind: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
+    robot_caution: PerAgent = parameter(0.0, unit="1", low=0.0, high=0.6, source="off by default", max=2.0)
 
     suffix: ClassVar[str] = "+headway"
     """End of the names of models with the layer, such as ``orca+headway``."""
@@ -102,18 +120,57 @@ class HeadwayLayer(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]."""
+        scene = self._avoid_robots(scene, dt)
         return self._limit(scene, self.model.velocity(scene, dt, rng), dt)
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, with the headings and the memory of the model under the layer."""
-        after = self.model.step(scene, dt, rng)
-        later = scene.advance(self._limit(scene, after.velocity, dt), dt)
+        seen = self._avoid_robots(scene, dt)
+        after = self.model.step(seen, dt, rng)
+        later = scene.advance(self._limit(seen, after.velocity, dt), dt)
         return later.replace(heading=after.heading, memory=after.memory)
+
+    @property
+    def is_individual(self) -> bool:
+        """Whether :meth:`individual` draws differences between people."""
+        return bool(np.any(self.robot_caution) and np.any(self.robot_gap))
+
+    def individual(self, agents: int, rng: np.random.Generator) -> CrowdModel:
+        """Return the model with a gap and a horizon for each of ``agents`` people, drawn around the common ones.
+
+        Values that differ from person to person already are kept.
+
+        >>> from crowdbot.models import People
+        >>> People(robot_gap=0.8, robot_caution=0.3).individual(3, np.random.default_rng(1)).robot_gap.round(2).tolist()
+        [0.89, 1.02, 0.88]
+        """
+        if not self.is_individual:
+            return self
+        changed: dict[str, Floats] = {}
+        factor = np.exp(self.robot_caution * np.clip(rng.standard_normal(agents), -DEVIATIONS, DEVIATIONS))
+        for name in ("robot_gap", "robot_horizon"):
+            if np.ndim(value := getattr(self, name)) == 0:
+                changed[name] = value * factor
+        return dataclasses.replace(self, **changed, robot_caution=0.0)
 
     def __reduce__(self) -> Any:
         """Pickle the class by the model under the layer: classes with the layer are made on demand."""
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         return _restore, (type(self).base, type(self).__name__, values)
+
+    def _avoid_robots(self, scene: Scene, dt: float) -> Scene:
+        """Return the scene with the desired velocities of people who keep away from robots."""
+        laws = parameter_rows(self, AVOIDANCE, scene.shape)
+        if scene.robot is None or not np.any(laws[:, 0]):
+            return scene
+        robots = robots_in(scene.robot & scene.active & scene.visible)
+        if robots.shape[1] == 0:
+            return scene
+        start = begin_rows(scene, dt)
+        wish = np.empty((*scene.shape, 2))
+        values = start.agents, start.walking, robots, laws
+        launch(avoid_robots, avoid_robots_part, rows(wish), *values, scene.walls.segments())
+        return scene.replace(preferred_velocity=wish)
 
     def _limit(self, scene: Scene, chosen: Floats, dt: float) -> Floats:
         wish, walking, seen, _ = begin_step(scene, dt)

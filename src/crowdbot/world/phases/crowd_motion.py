@@ -14,21 +14,22 @@ from crowdbot.world.crowd.contact import ContactModel, ContactSurfaces
 from crowdbot.world.crowd.environment_rows import stack_scenes
 from crowdbot.world.crowd.limits import CrowdLimits
 
-__all__ = ["contact_surfaces", "move_people", "resolve_overlaps", "step_models", "widen_robots"]
+__all__ = ["contact_surfaces", "move_people", "resolve_overlaps", "show_robots", "step_models"]
 
 Floats = NDArray[np.float64]
 
 
-def widen_robots(radius: Floats, robots: Iterable[int], margin: float) -> Floats:
-    """Return radii ``[E, A]`` [m] in which those of robots are larger by a margin, for the crowd model.
+def show_robots(scene: Scene, robots: Iterable[int], margin: float) -> Scene:
+    """Return the scene for the crowd model: it knows which agents are robots, and their radii are larger by a margin.
 
-    >>> widen_robots(np.full((1, 2), 0.3), [1], 0.1).tolist()
-    [[0.3, 0.4]]
+    >>> shown = show_robots(Scene.of([[0.0, 0.0], [3.0, 0.0]], radius=0.3), [1], 0.1)
+    >>> shown.radius.tolist(), shown.robot.tolist()
+    ([[0.3, 0.4]], [[False, True]])
     """
-    wide = radius.copy()
-    for robot in robots:
-        wide[:, robot] += margin
-    return wide
+    index, wide, robot = list(robots), scene.radius.copy(), np.zeros(scene.shape, dtype=np.bool_)
+    wide[:, index] += margin
+    robot[:, index] = True
+    return scene.replace(radius=wide, robot=robot if index else None)
 
 
 def move_people(

@@ -44,6 +44,8 @@ ASIDE = math.pi / 4.0
 class RobotReactions:
     """Which people react to robots, and how.
 
+    People whose reaction chooses their way do not keep the gap to robots that their model has beside that.
+
     Each person draws one of the reactions of their group, or none, by a random number that depends only on the seed
     and their id. Reactions change the goal and the preferred speed that the crowd model gets, so they work with every
     model. People with the reactions ``ignore`` and ``impassive`` take their step from a second call of the model,
@@ -147,7 +149,8 @@ class RobotReactions:
             dense(scene.max_speed, shape, FLOAT), active, wish, steers, toward,
         )  # fmt: skip
         looks = (state[..., 0] == REACTIONS.index("look")) & steers
-        return _with_wishes(scene, wish, steers), _turn_after(views, toward, looks)
+        led = _led_by_reaction(views, steers & ~looks)
+        return _with_wishes(scene, wish, steers), _turn_after(led, toward, looks)
 
     def _assign_new(self, scene: Scene, flow: PeopleFlow) -> Scene:
         """Return the scene with the reactions of people who have entered since the last step."""
@@ -257,6 +260,20 @@ def _with_wishes(scene: Scene, wish: Floats, steers: NDArray[np.bool_]) -> Scene
     goal = scene.position + AHEAD * np.where((length > 1e-3)[..., None], wish, 0.0)
     speed = np.where(steers & (length > 1e-3), length, scene.preferred_speed)
     return scene.replace(goal=np.where(steers[..., None], goal, scene.goal), preferred_speed=speed)
+
+
+def _led_by_reaction(step: Step, who: NDArray[np.bool_]) -> Step:
+    """Return a step in which the people ``who`` ``[E, A]`` follow their reaction and do not keep away from robots."""
+    if not np.any(who):
+        return step
+
+    def lead(scene: Scene, dt: float) -> Scene:
+        after = step(scene, dt)
+        if scene.robot is None:
+            return after
+        return _merge(after, step(scene.replace(robot=None), dt), who)
+
+    return lead
 
 
 def _turn_after(step: Step, toward: Floats, looks: NDArray[np.bool_]) -> Step:
