@@ -88,10 +88,10 @@ def test_imports_past_the_face_of_a_room_are_counted(house, tmp_path):
 
 def test_sizes(house, tmp_path):
     long = "def f():\n" + '    """One\n    two."""\n' + "    x = 1\n" * 60
-    found = breaches(house, tmp_path, a="x = 1\n" * 401, b=long, **{f"many__m{k}": "" for k in range(25)})
+    found = breaches(house, tmp_path, a="x = 1\n" * 901, b=long, **{f"many__m{k}": "" for k in range(25)})
     assert found == {
         "folders above 25 files": ["many: 26"],
-        "files above 400 lines": ["a.py: 401"],
+        "files above 900 lines": ["a.py: 901"],
         "functions above 60 lines": ["b.py:1 f has 61 lines"],
     }
 
@@ -115,13 +115,13 @@ def test_limits_are_lowered_and_never_raised(house, tmp_path, monkeypatch):
     shutil.copy(TOOL.with_suffix(".toml"), tmp_path / "house.toml")
     monkeypatch.setattr(house, "RULES", tmp_path / "house.toml")
     before = tomllib.loads((tmp_path / "house.toml").read_text(encoding="utf-8"))
-    house.tighten({"deep imports": 7, "files above 400 lines": 9999})
+    house.tighten({"deep imports": 7, "files above 900 lines": 9999})
     after = tomllib.loads((tmp_path / "house.toml").read_text(encoding="utf-8"))
     assert after == {**before, "limits": {**before["limits"], "deep imports": 7}}
 
 
 def test_a_figure_above_its_limit_fails_and_names_the_breaches(house, tmp_path, capsys):
     (tmp_path / "made").mkdir()
-    (tmp_path / "made" / "a.py").write_text("x = 1\n" * 401, encoding="utf-8")
+    (tmp_path / "made" / "a.py").write_text("x = 1\n" * 901, encoding="utf-8")
     assert house.main([str(tmp_path / "made")]) == 1
-    assert "above the limit\n         a.py: 401\n" in capsys.readouterr().out
+    assert "above the limit\n         a.py: 901\n" in capsys.readouterr().out

@@ -61,7 +61,7 @@ def test_the_parts_of_the_replaced_robot_are_logged(folder, caplog):
 def test_a_trial_overrides_its_own_robot_and_says_what(folder):
     trial = parse_trial(XML.format(parts=OTHER), folder=folder)
     assert trial.robots[0].drive.max_speed == 0.7
-    (remark,) = override_remarks(trial)
+    (remark,) = override_remarks(trial.robots)
     assert remark == (
         "robot 'robot' is mybot: differential-drive, at most 0.7 m/s, radius 0.2 m, sensors front (lidar2d), scan"
         " (lidar2d); the trial overrides drive (mybot: differential-drive, at most 1.9 m/s), sensor scan (added)"

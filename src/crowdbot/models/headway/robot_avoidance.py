@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, kernel, prange
-from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.agent_rows import RADIUS, VX, VY, WISH_X, WISH_Y, X, Y
+from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment, within
 
 __all__ = ["AVOIDANCE", "avoid_robots", "avoid_robots_part", "robots_in"]
 
@@ -86,14 +86,7 @@ def avoid_robots_part(
         if count == 0 or _closeness(near, count, wx, wy) == 0.0:
             continue
         reach = agents[row, RADIUS] + WALL_GAP + WALL_TIME * wish
-        held = int(np.int64(0))
-        for m in range(len(walls)):
-            nx, ny = nearest_on_segment(
-                agents[row, X], agents[row, Y], walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3]
-            )
-            if (nx - agents[row, X]) ** 2 + (ny - agents[row, Y]) ** 2 < reach * reach:
-                wall[held] = m
-                held += 1
+        held = within(walls, agents[row, X], agents[row, Y], reach, wall)
         out[row, 0], out[row, 1] = _best_velocity(agents[row], laws[law], near, count, walls, wall, held, wish)
 
 
@@ -223,10 +216,10 @@ def _cost(
 ) -> float:  # fmt: skip
     """Return the cost of a turn and of a share of the desired speed."""
     vx, vy = _turned(person, turn, speed)
-    total = float(ANGLES[turn]) ** 2 + slowing * (1.0 - speed / (SPEEDS * FINER)) ** 2
+    total: float = float(ANGLES[turn]) ** 2 + slowing * (1.0 - speed / (SPEEDS * FINER)) ** 2
     total += LEFT if turn > MOST_TURNS else 0.0
     total += INERTIA * ((vx - person[VX]) ** 2 + (vy - person[VY]) ** 2) / (wish * wish)
     total += weight * _closeness(near, count, vx, vy)
     if held > 0:
-        total += float(_wall_cost(person, vx, vy, walls, wall, held))
+        total += _wall_cost(person, vx, vy, walls, wall, held)
     return total

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import Element, builtin_name
@@ -12,7 +12,6 @@ from crowdbot.world import Drive
 
 if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
-    from crowdbot.trials.trial import Trial
 
 __all__ = ["describe_robot", "override_remarks", "replace_robot"]
 
@@ -70,9 +69,9 @@ def describe_robot(robot: RobotSpec) -> str:
     return f"{line}; the trial overrides {', '.join(overrides)}" if overrides else line
 
 
-def override_remarks(trial: Trial) -> list[str]:
+def override_remarks(robots: Iterable[RobotSpec]) -> list[str]:
     """Describe the robots of a trial that override something of their type, each in one line."""
-    return [describe_robot(robot) for robot in trial.robots if any(_overrides(robot))]
+    return [describe_robot(robot) for robot in robots if any(_overrides(robot))]
 
 
 def _overrides(robot: RobotSpec) -> Iterator[str]:

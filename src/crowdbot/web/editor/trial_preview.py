@@ -28,7 +28,7 @@ def read_trial(text: str, folder: Path) -> tuple[Trial | None, list[str], list[s
     try:
         with without_running_code():
             trial = parse_trial(text, folder=folder, quiet=True)
-            return trial, [], [*override_remarks(trial), *trial_remarks(trial)]
+            return trial, [], [*override_remarks(trial.robots), *trial_remarks(trial)]
     except TrialError as error:
         return None, list(error.problems), []
     except InputError as error:

@@ -112,7 +112,7 @@ class SimulatorDesk(PictureDesk):
         values = {key: str(value) for key, value in (settings or {}).items()}
         trial = self._load(name, values, variant)
         self._start(trial, name, values, trial.seed if seed is None else seed, variant, paused)
-        return {"remarks": [*override_remarks(trial), *trial_remarks(trial)]}
+        return {"remarks": [*override_remarks(trial.robots), *trial_remarks(trial)]}
 
     @command
     def open_episode(self, name: str, at: float | None = None, paused: bool = True) -> None:
