@@ -321,12 +321,12 @@ contact.
 
 ## What was not fitted
 
-The values of the preset `people` ({values}) are fitted to these recordings;
-the row above is no test. These are:
-{sets} sets of the six values ({set_seeds} seeds each) are compared on all recordings but one kind, and the best of them
-is applied to the kind that was held back; in the last row, to each single recording that was held back. The error is
-the mean of three distances to reality: least clearances and least speeds of the people, and the least clearance of a
-run. The values of the preset are rounded from good sets of an earlier search, by hand.
+The values of the preset `people` ({values}) are
+fitted to these recordings, so its row above is no test. The next table is one: {sets} sets of the six values
+({set_seeds} seeds each) are compared on all recordings but one kind, and the best of them is applied to the kind that
+was held back; in the last row, to each single recording that was held back. The error is the sum of three distances to
+reality: least clearances and least speeds of the people, and the least clearance of a run. *Set* has the values in the
+order above. The values of the preset are rounded by hand from good sets of an earlier search over all recordings.
 
 {held}
 
