@@ -126,7 +126,8 @@ def test_check_reads_experiments_and_trials(capsys, tmp_path):
     lines = capsys.readouterr().out.splitlines()
     assert "experiment.xml:1: <experiment> has no attribute 'sed', did you mean 'seed'" in lines[0]
     assert "experiment.xml:2: <trial> source='frontl': there is no trial 'frontl', did you mean 'frontal'" in lines[1]
-    assert lines[2:] == ["experiment.xml: 2 errors", "robot-speed: OK", "frontal: OK"]
+    robot = "  robot 'robot' is a disc: differential-drive, at most 1 m/s, radius 0.3 m, sensors scan (lidar2d)"
+    assert lines[2:] == ["experiment.xml: 2 errors", "robot-speed: OK", "frontal: OK", robot]
 
 
 def test_a_missing_answer_leaves_a_session_to_go_on_with(capsys, tmp_path, answers):

@@ -59,8 +59,9 @@ def test_without_a_gap_a_robot_is_one_more_person():
         encounter([-3.0, 0.0], [0.0, 0.0], [12.0, 0.0], [0.0, 0.0], visible=[True, False]),
         encounter([-3.0, 0.0], [0.0, 0.0], [12.0, 0.0], [0.0, 0.0], robot=[False, False]),
         encounter([-3.0, 0.0], [0.0, 0.0], [-3.0, 0.0], [0.0, 0.0]),
+        encounter([-3.0, 0.0], [0.0, 0.0], [12.0, 0.0], [-0.5, 0.0], walls=[[(-1.0, -2.0), (-1.0, 2.0)]]),
     ],
-    ids=["far", "drives-away", "beside", "unseen", "no-robot", "person-stands"],
+    ids=["far", "drives-away", "beside", "unseen", "no-robot", "person-stands", "behind-a-wall"],
 )
 def test_people_whom_no_robot_concerns_do_not_change_a_bit(scene):
     expected = WARY.velocity(scene.replace(robot=None), 0.1)

@@ -30,7 +30,7 @@ def program(tmp_path_factory):
 
 @pytest.mark.program
 def test_it_drives_towards_the_goal_and_turns_away_from_people(program):
-    trial = load_trial("frontal", duration=6.0)
+    trial = load_trial("frontal", {"duration": 6.0, "crowd/robot-gap": 0.0})
     navigator = ProcessNavigator(command=str(program), sandbox=False)
     trial = dataclasses.replace(trial, robots=(dataclasses.replace(trial.robots[0], navigator=navigator),))
     episode = simulate(trial, 0)

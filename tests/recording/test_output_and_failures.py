@@ -79,8 +79,8 @@ def test_run_refuses_to_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[
     before = file.read_bytes()
     capsys.readouterr()
     assert main([*words, "--seed", "7"]) == 2
-    said = capsys.readouterr().err
-    assert said == f"crowdbot: {file} already exists; use another path, or --force (force=True) to overwrite it\n"
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said == f"crowdbot: {file} already exists; use another path, or --force (force=True) to overwrite it"
     assert file.read_bytes() == before
     assert main([*words, "--seed", "7", "--force"]) == 0
     assert read_episode(file).seed == 7

@@ -66,7 +66,7 @@ def test_a_trial_overrides_its_own_robot_and_says_what(folder):
         "robot 'robot' is mybot: differential-drive, at most 0.7 m/s, radius 0.2 m, sensors front (lidar2d), scan"
         " (lidar2d); the trial overrides drive (mybot: differential-drive, at most 1.9 m/s), sensor scan (added)"
     )
-    assert not override_remarks(parse_trial(XML.format(parts=""), folder=folder))
+    assert not override_remarks(parse_trial(XML.format(parts=""), folder=folder).robots)
 
 
 @pytest.mark.parametrize("way", [["--set", "robot/type=mybot"], ["--robots", "mybot"]])

@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core import InputError
 from crowdbot.models import Mixture
-from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
+from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names, own
 from crowdbot.world import environment_seeds
 
 from .door_orders import check_doors, order_doors
@@ -61,7 +61,6 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         _scene(simulation, trial),
         [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources],
         seed,
-        model=_model(simulation, trial),
         drives=drives | {control.agent: robot.drive for control, robot in pairs},
         latency={control.agent: robot.latency for control, robot in pairs},
         robot_margin=trial.robot_margin,
@@ -71,6 +70,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,
         ghosts=[control.agent for control, robot in pairs if robot.ghost],
+        **_model(simulation, trial),
         **_router(old, trial),
     )
     order_doors(world, old.stage.doors, trial.stage.doors)
@@ -218,14 +218,18 @@ def _scene(simulation: Simulation, trial: Trial) -> Any:
     return scene.replace(**columns)
 
 
-def _model(simulation: Simulation, trial: Trial) -> Any:
-    """Return the crowd model; with several crowds, each person keeps theirs."""
+def _model(simulation: Simulation, trial: Trial) -> dict[str, Any]:
+    """Return the crowd model if it changes.
+
+    With several crowds, each person keeps theirs. Differences between people are drawn again as for the first seed.
+    """
+    if trial.crowd == simulation.trial.crowd:
+        return {}
+    world: Any = simulation.world
     if not isinstance(trial.crowd, Crowds):
-        return trial.crowd
-    known: Any = simulation.world
-    known = known.model
-    assert isinstance(known, Mixture)
-    return Mixture(trial.crowd.models, known.which)
+        return {"model": own(trial.crowd, simulation.seeds[0], 0, world.scene.shape[1], {})}
+    assert isinstance(world.model, Mixture)
+    return {"model": Mixture(trial.crowd.models, world.model.which)}
 
 
 def _router(old: Trial, new: Trial) -> dict[str, Any]:

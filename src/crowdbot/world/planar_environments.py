@@ -154,7 +154,7 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
         models[e] = _models(other)[k]
         if world._bodies is not None and other._bodies is not None:
             world._bodies[e] = other._bodies[k]
-    if any(model is not models[0] for model in models):
+    if any(model is not world.model for model in models):
         set_models(world, models)
     world.slots[index] = other.slots
     if world.avatars is not None and other.avatars is not None:

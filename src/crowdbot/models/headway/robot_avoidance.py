@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, kernel, prange
 from crowdbot.models.agent_rows import RADIUS, VX, VY, WISH_X, WISH_Y, X, Y
-from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment, within
+from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
 
 __all__ = ["AVOIDANCE", "avoid_robots", "avoid_robots_part", "robots_in"]
 
@@ -82,7 +82,7 @@ def avoid_robots_part(
         law = row if len(laws) > 1 else 0
         if not walking[row] or wish < 1e-6 or laws[law, 0] <= 0.0:
             continue
-        count = _robots_near(agents, robots[row // A], row, row - row % A, laws[law], wish, near)
+        count = _robots_near(agents, robots[row // A], row, row - row % A, laws[law], wish, walls, wall, near)
         if count == 0 or _closeness(near, count, wx, wy) == 0.0:
             continue
         reach = agents[row, RADIUS] + WALL_GAP + WALL_TIME * wish
@@ -91,8 +91,11 @@ def avoid_robots_part(
 
 
 @kernel
-def _robots_near(agents: Floats, robots: Integers, row: int, first: int, law: Floats, wish: float, near: Floats) -> int:
-    """Write the robots that a person may come close to within the horizon; return their number."""
+def _robots_near(
+    agents: Floats, robots: Integers, row: int, first: int, law: Floats, wish: float, walls: Floats, wall: Integers,
+    near: Floats,
+) -> int:  # fmt: skip
+    """Write the robots that a person sees and may come close to within the horizon; return their number."""
     count = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
     for number in range(len(robots)):
         if robots[number] < 0:
@@ -106,6 +109,9 @@ def _robots_near(agents: Floats, robots: Integers, row: int, first: int, law: Fl
         contact = agents[row, RADIUS] + agents[other, RADIUS]
         fast = math.sqrt(agents[other, VX] ** 2 + agents[other, VY] ** 2)
         if gap <= 0.0 or distance - contact - gap > horizon * (wish + fast):
+            continue
+        held = within(walls, agents[row, X], agents[row, Y], distance, wall)
+        if held > 0 and is_hidden(walls, wall, held, agents[row, X], agents[row, Y], dx, dy):
             continue
         near[count, 0], near[count, 1] = dx, dy
         near[count, 2], near[count, 3] = agents[other, VX], agents[other, VY]

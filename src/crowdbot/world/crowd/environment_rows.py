@@ -151,7 +151,7 @@ def join_models(models: Sequence[CrowdModel], agents: int) -> CrowdModel | None:
     """
     first: Any = models[0]
     if all(model is first for model in models):
-        return models[0]
+        return _widen_model(models[0], agents)
     if not all(_is_alike(first, model) for model in models[1:]):
         return None
     changes: dict[str, Any] = {}
@@ -165,6 +165,21 @@ def join_models(models: Sequence[CrowdModel], agents: int) -> CrowdModel | None:
             changes[part.name] = np.broadcast_to(_pad_row(values[0], agents), (len(models), agents)).copy()
     found: CrowdModel = dataclasses.replace(first, **changes) if changes else first
     return found
+
+
+def _widen_model(model: CrowdModel, agents: int) -> CrowdModel:
+    """Return a model whose parameters by agent reach for this number of agents."""
+    changes: dict[str, Any] = {}
+    for part in dataclasses.fields(model):
+        value = getattr(model, part.name)
+        if part.name == "models" and isinstance(model, Mixture):
+            wide = tuple(_widen_model(one, agents) for one in value)
+            if any(one is not other for one, other in zip(wide, value, strict=True)):
+                changes["models"] = wide
+        elif isinstance(value, np.ndarray) and value.ndim and 1 < value.shape[-1] < agents:
+            more = np.repeat(value[..., -1:], agents - value.shape[-1], axis=-1)
+            changes[part.name] = np.concatenate([value, more], axis=-1)
+    return dataclasses.replace(model, **changes) if changes else model
 
 
 def _is_alike(first: CrowdModel, other: CrowdModel) -> bool:
