@@ -345,8 +345,8 @@ Medians, in m.
 
 ## Published distances
 
-* In a corridor, people rated a lateral distance of 0.4 m to a robot of 0.6 m/s that signals at 6 m as best of 0.2 to
-  0.4 m (Pacchierotti, Christensen, Jensfelt 2006, doi:10.1109/ROMAN.2006.314436).
+* In a corridor, 10 people found a robot that enters their intimate zone less comfortable, and a very large distance
+  unnecessary (Pacchierotti, Christensen, Jensfelt 2006, doi:10.1109/ROMAN.2006.314436).
 * Comfort rises with the passing distance and falls with the speed of the robot; people keep more distance if the robot
   starts near their line (Neggers et al. 2022, doi:10.3389/frobt.2022.915972).
 * People who cross the way of a robot let it pass, also where they would be first (Vassallo et al. 2017,
@@ -359,8 +359,8 @@ Medians, in m.
 
 * Recorded people wait for a fast cart that crosses: their least speed is near 0, that of simulated people 0.7 m/s.
 * Where the cart yields, recorded people walk on; simulated people expect that it drives on, and slow down.
-* All recordings show one cart. For small robots the gap is taken over from it; no recordings of small robots among
-  walking people are public with tracks of both.
+* All recordings show one cart. The gap to small robots is that to the cart; it is not compared with recordings of
+  small robots.
 * People who stand do not step aside for a robot; the [reaction](../how-to/reactions.md) `give-way` does.
 """
 
