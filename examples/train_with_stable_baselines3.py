@@ -21,7 +21,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnv
 
-from crowdbot.evaluation import wilson_interval
+from crowdbot.evaluation import proportion_interval
 from crowdbot.gym import CrowdVectorEnv
 
 OUTCOMES = ("success", "collision", "timeout")
@@ -141,7 +141,7 @@ def main():
     outcomes = test_policy(model, options.trial, options.action, options.cases)
     for name in OUTCOMES:
         count = outcomes.count(name)
-        share, low, high = wilson_interval(count, len(outcomes))[:3]
+        share, low, high = proportion_interval(count, len(outcomes), method="wilson")[:3]
         print(f"{name:>10}  {count} of {len(outcomes)} unseen cases: {share:.3f} [{low:.3f}, {high:.3f}]")
     envs.close()
 

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.evaluation import bootstrap_interval, wilson_interval
+from crowdbot.evaluation import bootstrap_interval, proportion_interval
 from crowdbot.navigation import Navigator, ORCANavigator, PolicyNavigator, PolicyWeights, Straight
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
@@ -70,7 +70,7 @@ def run_cases(trial: Any, navigator: Navigator, cases: int) -> dict[str, Any]:
                 impact[e] = max(0.0, float((scene.velocity[e, agent] - scene.velocity[e, other]) @ normal))
     won = outcomes == "success"
     row: dict[str, Any] = {
-        name: list(wilson_interval(int((outcomes == name).sum()), cases)[:3])
+        name: list(proportion_interval(int((outcomes == name).sum()), cases, method="wilson")[:3])
         for name in ("success", "collision", "timeout")
     }
     row["time"] = list(bootstrap_interval(times[won])[:3]) if won.any() else None

@@ -28,7 +28,7 @@ from crowdbot.evaluation import (
     evaluate,
     parse_methods,
     parse_statistic,
-    wilson_interval,
+    proportion_interval,
 )
 from crowdbot.trials import builtin_trials, load_trial
 
@@ -158,7 +158,7 @@ def _estimate(found: CellResult, column: str) -> Estimate:
     if statistic.kind != "rate":
         return found.estimate(statistic)
     values = found.values(statistic.metric)
-    return wilson_interval(int(np.nansum(values)), int(np.sum(~np.isnan(values))))
+    return proportion_interval(int(np.nansum(values)), int(np.sum(~np.isnan(values))), method="wilson")
 
 
 def lines_of_page(page: str) -> Lines:

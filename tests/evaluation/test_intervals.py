@@ -16,20 +16,22 @@ from crowdbot.evaluation import (
     paired_comparison,
     parse_requirement,
     parse_statistic,
-    wilson_interval,
+    proportion_interval,
 )
 from crowdbot.metrics import correct_p_values
 
 
 @given(successes=st.integers(0, 200), more=st.integers(0, 200), level=st.sampled_from([0.8, 0.9, 0.95, 0.99]))
-def test_wilson_is_that_of_scipy(successes: int, more: int, level: float) -> None:
+def test_wilson_is_the_published_formula(successes: int, more: int, level: float) -> None:
     count = successes + more
     if not count:
-        assert math.isnan(wilson_interval(0, 0).value)
+        assert math.isnan(proportion_interval(0, 0, method="wilson").value)
         return
-    found = wilson_interval(successes, count, level)
-    wanted = stats.binomtest(successes, count).proportion_ci(level, method="wilson")
-    assert (found.low, found.high) == pytest.approx((wanted.low, wanted.high), abs=1e-12)
+    found = proportion_interval(successes, count, level, "wilson")
+    z, share = float(stats.norm.ppf(0.5 + level / 2.0)), successes / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    assert (found.low, found.high) == pytest.approx((middle - half, middle + half), abs=1e-12)
     assert found.low <= found.value <= found.high
 
 
@@ -107,14 +109,14 @@ def test_corrected_p_values_are_larger_and_keep_their_order(values: list[float])
 @pytest.mark.parametrize("level", [0.0, 1.0, 1.5])
 def test_a_confidence_out_of_range_is_refused(level: float) -> None:
     with pytest.raises(InputError, match="must be between 0 and 1"):
-        wilson_interval(1, 2, level)
+        proportion_interval(1, 2, level, "wilson")
     with pytest.raises(InputError, match="must be between 0 and 1"):
         bootstrap_interval(np.ones(3), confidence=level)
 
 
 def test_more_successes_than_runs_are_refused() -> None:
     with pytest.raises(InputError, match="successes = 3 must be from 0 to the number of runs, 2"):
-        wilson_interval(3, 2)
+        proportion_interval(3, 2, method="wilson")
 
 
 def test_the_tail_is_the_mean_of_the_largest_values() -> None:

@@ -18,10 +18,10 @@ from crowdbot.evaluation import (
     EvaluationResult,
     RunRow,
     episode_metrics,
-    exact_interval,
     judge_cell,
     junit_xml,
     parse_requirement,
+    proportion_interval,
     runs_without_event,
 )
 from crowdbot.simulation import simulate_seeds
@@ -102,26 +102,26 @@ def test_the_limit_is_that_of_the_requirement() -> None:
 def test_the_number_of_runs_is_the_least_that_shows_a_rate(rate: float, confidence: float) -> None:
     count = runs_without_event(rate, confidence)
     slack = 1e-9
-    assert exact_interval(0, count, 2.0 * confidence - 1.0).high <= rate + slack
+    assert proportion_interval(0, count, 2.0 * confidence - 1.0).high <= rate + slack
     if count > 1:
-        assert exact_interval(0, count - 1, 2.0 * confidence - 1.0).high > rate - slack
+        assert proportion_interval(0, count - 1, 2.0 * confidence - 1.0).high > rate - slack
 
 
 @given(st.integers(0, 40), st.integers(1, 40))
 def test_the_exact_interval_covers_its_level(successes: int, more: int) -> None:
     count = successes + more
-    low, high = exact_interval(successes, count)[1:3]
+    low, high = proportion_interval(successes, count)[1:3]
     assert stats.binom.cdf(successes, count, high) == pytest.approx(0.025)
     if successes:
         assert stats.binom.sf(successes - 1, count, low) == pytest.approx(0.025)
 
 
 def test_an_exact_interval_without_runs_and_with_wrong_numbers() -> None:
-    assert math.isnan(exact_interval(0, 0).value)
+    assert math.isnan(proportion_interval(0, 0).value)
     with pytest.raises(InputError, match="successes = 3 must be from 0 to the number of runs, 2"):
-        exact_interval(3, 2)
+        proportion_interval(3, 2)
     with pytest.raises(InputError, match="confidence = 1.5 must be between 0 and 1"):
-        exact_interval(1, 2, 1.5)
+        proportion_interval(1, 2, 1.5)
 
 
 def test_what_is_touched_is_that_of_the_bodies_of_the_world() -> None:

@@ -4,7 +4,7 @@ from .comparison import PairedComparison, paired_comparison
 from .decision_metrics import DECISION_METRICS
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
-from .intervals import Estimate, bootstrap_interval, exact_interval, wilson_interval
+from .intervals import Estimate, bootstrap_interval, proportion_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
@@ -113,7 +113,6 @@ __all__ = [
     "estimate_scores",
     "estimate_strata",
     "evaluate",
-    "exact_interval",
     "factor_effects",
     "families_of",
     "find_ogm_split",
@@ -136,6 +135,7 @@ __all__ = [
     "plot_scan_scores",
     "plot_tracks",
     "plot_video_run",
+    "proportion_interval",
     "read_camera",
     "read_drow",
     "read_frog",
@@ -157,7 +157,6 @@ __all__ = [
     "sweep_trials",
     "track_people",
     "track_video",
-    "wilson_interval",
     "with_safety",
     "worst_rows",
     "worst_runs",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from scipy import special, stats
 
 from crowdbot.core import InputError, stream
 
-__all__ = ["Estimate", "bootstrap_interval", "exact_interval", "wilson_interval"]
+__all__ = ["Estimate", "bootstrap_interval", "proportion_interval"]
 
 Floats = NDArray[np.float64]
 RESAMPLES = 2000
@@ -39,57 +39,36 @@ class Estimate(NamedTuple):
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
 
-def exact_interval(successes: int, count: int, confidence: float = 0.95) -> Estimate:
-    """Return a proportion with its exact binomial interval, which covers the true one at least as often as it says.
+def proportion_interval(
+    successes: int, count: int, confidence: float = 0.95, method: Literal["exact", "wilson"] = "exact"
+) -> Estimate:
+    """Return a proportion with its binomial confidence interval, by SciPy.
 
-    Clopper and Pearson 1934, The use of confidence or fiducial limits illustrated in the case of the binomial,
-    https://doi.org/10.1093/biomet/26.4.404.
+    ``exact`` is the interval of Clopper and Pearson, which covers the true proportion at least as often as its level
+    (1934, https://doi.org/10.1093/biomet/26.4.404); ``wilson`` is the shorter score interval of Wilson, which covers it
+    about as often (1927, https://doi.org/10.1080/01621459.1927.10502953).
 
     Args:
         successes: number of successes, 0 to ``count``.
         count: number of runs; 0 gives NaN.
         confidence: level, between 0 and 1.
+        method: ``exact`` or ``wilson``.
 
     Raises:
         InputError: a number is out of range.
 
-    >>> [round(value, 4) for value in exact_interval(0, 100)[:3]]
+    >>> [round(value, 4) for value in proportion_interval(0, 100)[:3]]
     [0.0, 0.0, 0.0362]
-    """
-    _check_count(successes, count, confidence)
-    if count == 0:
-        return Estimate(math.nan, math.nan, math.nan, 0)
-    low, high = stats.binomtest(successes, count).proportion_ci(confidence, method="exact")
-    return Estimate(successes / count, float(low), float(high), count)
-
-
-def wilson_interval(successes: int, count: int, confidence: float = 0.95) -> Estimate:
-    """Return a proportion with its Wilson score interval.
-
-    Wilson 1927, Probable inference, the law of succession, and statistical inference,
-    https://doi.org/10.1080/01621459.1927.10502953.
-
-    Args:
-        successes: number of successes, 0 to ``count``.
-        count: number of runs; 0 gives NaN.
-        confidence: level, between 0 and 1.
-
-    Raises:
-        InputError: a number is out of range.
-
-    >>> [round(value, 4) for value in wilson_interval(8, 10)[:3]]
+    >>> [round(value, 4) for value in proportion_interval(8, 10, method="wilson")[:3]]
     [0.8, 0.4902, 0.9433]
     """
-    _check_count(successes, count, confidence)
+    _check(confidence)
+    if not 0 <= successes <= count:
+        raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
     if count == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
-    z = float(special.ndtri(0.5 + confidence / 2.0))
-    share = successes / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
-    low = 0.0 if successes == 0 else max(0.0, middle - half)
-    high = 1.0 if successes == count else min(1.0, middle + half)
-    return Estimate(share, low, high, count)
+    low, high = stats.binomtest(successes, count).proportion_ci(confidence, method=method)
+    return Estimate(successes / count, float(low), float(high), count)
 
 
 def bootstrap_interval(
@@ -143,12 +122,6 @@ def bootstrap_interval(
 
 def _mean(rows: Floats) -> Floats:
     return np.asarray(np.mean(rows, axis=1))
-
-
-def _check_count(successes: int, count: int, confidence: float) -> None:
-    _check(confidence)
-    if not 0 <= successes <= count:
-        raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
 
 
 def _check(confidence: float) -> None:

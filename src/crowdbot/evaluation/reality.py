@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.metrics import metric_table
 
-from .intervals import wilson_interval
+from .intervals import proportion_interval
 from .job import RunRow
 
 __all__ = ["FEWEST_RUNS", "RealPlacement", "place_reality", "reality_svg"]
@@ -77,7 +77,7 @@ def place_reality(real: Mapping[str, float], runs: Sequence[RunRow], mirror: boo
             continue
         near = np.isclose(values, value, rtol=1e-9, atol=1e-12)
         below = float(np.sum((values < value) & ~near)) + 0.5 * float(near.sum())
-        about = wilson_interval(round(below), len(values))
+        about = proportion_interval(round(below), len(values), method="wilson")
         first, median, last = (float(one) for one in np.quantile(values, [INSIDE[0], 0.5, INSIDE[1]]))
         slack = 1e-9 * max(1.0, abs(value))
         found.append(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import Metric, metric_table
 
-from .intervals import Estimate, bootstrap_interval, exact_interval
+from .intervals import Estimate, bootstrap_interval, proportion_interval
 from .own_metric import metric_name
 
 __all__ = ["RATES", "Statistic", "metric_unit", "parse_statistic"]
@@ -75,7 +75,7 @@ class Statistic:
         kept = np.asarray(values, dtype=np.float64)
         kept = kept[~np.isnan(kept)]
         if self.kind == "rate":
-            return exact_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
+            return proportion_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
         if not len(kept):
             return bootstrap_interval(kept, confidence=confidence)
         function = _FUNCTIONS.get(self.kind) or _of_percentile(self.kind)

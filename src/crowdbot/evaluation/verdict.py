@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .intervals import Estimate, exact_interval
+from .intervals import Estimate, proportion_interval
 from .requirement import Requirement
 from .result import CellResult
 
@@ -118,7 +118,7 @@ def _either(first: Floats, second: Floats) -> Floats:
 
 def _share(values: Floats) -> Estimate:
     known = values[~np.isnan(values)]
-    return exact_interval(int(np.sum(known > 0.5)), len(known), CONFIDENCE)
+    return proportion_interval(int(np.sum(known > 0.5)), len(known), CONFIDENCE)
 
 
 def _counts(cell: CellResult, person: Estimate, obstacle: Estimate, missed: Estimate) -> str:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.evaluation import wilson_interval
+from crowdbot.evaluation import proportion_interval
 
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
@@ -32,5 +32,5 @@ class PlainSampling(Sampling):
             count = min(self.batch, runner.remaining)
             runner.run(rng.standard_normal((count, runner.dimensions)), rng.integers(0, MOST_SEEDS, count))
         valid = [sample for sample in runner.samples if sample.valid]
-        estimate = wilson_interval(sum(sample.fails for sample in valid), len(valid))
+        estimate = proportion_interval(sum(sample.fails for sample in valid), len(valid), method="wilson")
         return SamplingResult(estimate, np.ones(len(runner.samples)))
