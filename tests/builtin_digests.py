@@ -16,7 +16,6 @@ import os
 import platform
 import subprocess
 import sys
-import time
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -101,7 +100,6 @@ def write(file: Path = FILE) -> None:
         whole["runs"] = {key: row for key, row in whole["runs"].items() if key not in gone}
         _store(whole, file)
     for key in missing:
-        begin = time.monotonic()
         row = entry(key)
         if row["outcome"] == "interrupted":
             raise KeyboardInterrupt
@@ -109,7 +107,7 @@ def write(file: Path = FILE) -> None:
         if abs(np.subtract(row["state"], old["state"])).max() > 1e-6:
             raise SystemExit(f"{key} is another run on {level()}: {row['state']}, not {old['state']}")
         old["digest"] = dict(sorted({**old["digest"], level(): row["digest"]}.items(), reverse=True))
-        print(f"{key} {level()} {row['digest']} {time.monotonic() - begin:.1f} s", flush=True)
+        print(f"{key} {level()} {row['digest']}", flush=True)
         _store(whole, file)
 
 

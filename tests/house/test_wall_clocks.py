@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -14,52 +15,152 @@ TESTS = Path(__file__).parents[1]
 CLOCKS = {
     f"time.{name}{unit}" for name in ("time", "monotonic", "perf_counter", "process_time") for unit in ("", "_ns")
 } | {f"{prefix}{name}" for prefix in ("", "datetime.") for name in ("datetime.now", "datetime.utcnow", "date.today")}
+REMEDY = "give it a clock of its own, or mark it with @pytest.mark.live"
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
-def readings(text: str) -> list[str]:
-    """Return a sentence for each test of the gate in a file that reads a clock, itself or by what it uses there."""
-    tree = ast.parse(text)
-    full = {
-        name.asname or name.name: f"{node.module}.{name.name}"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.level == 0
-        for name in node.names
-    }
-    full |= {
-        name.asname: name.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Import)
-        for name in node.names
-        if name.asname
-    }
-    places = {node.name: node for node in tree.body if isinstance(node, Definition)}
-    always = [node.name for node in places.values() if "autouse=True" in decorators(node)]
+@dataclass(frozen=True, eq=False)
+class TestFile:
+    """A file of the tests by its syntax tree.
+
+    Attributes:
+        path: the file.
+        tree: its syntax tree.
+        places: functions and classes at its top, by name.
+        fixtures: those of them that are fixtures, by the name that tests ask for.
+        always: fixtures that every test of the file has.
+        full: full names of imported names, such as ``time.monotonic`` for ``monotonic``.
+        modules: imported modules, by the name that the file gives them.
+    """
+
+    __test__ = False
+
+    path: Path
+    tree: ast.Module
+    places: dict[str, Definition]
+    fixtures: dict[str, Definition]
+    always: list[Definition]
+    full: dict[str, str]
+    modules: dict[str, str]
+
+    @classmethod
+    def read(cls, path: Path) -> TestFile:
+        """Read a file; imports inside functions count, too."""
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        full, modules = {}, {}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.level == 0:
+                full |= {name.asname or name.name: f"{node.module}.{name.name}" for name in node.names}
+            elif isinstance(node, ast.Import):
+                full |= {name.asname: name.name for name in node.names if name.asname}
+                modules |= {name.asname or name.name: name.name for name in node.names}
+        places = {node.name: node for node in tree.body if isinstance(node, Definition)}
+        fixtures = {fixture_name(node): node for node in places.values() if is_fixture(node)}
+        always = [node for node in fixtures.values() if "autouse=True" in decorators(node)]
+        return cls(path, tree, places, fixtures, always, full, modules)
+
+
+Found = tuple[TestFile, Definition]
+
+
+class Imports:
+    """Finds the functions and classes of the tests that a file uses, also in other files of the tests.
+
+    Args:
+        tests: folder of the tests; a module there is known by the name of its file, as pytest imports it.
+    """
+
+    def __init__(self, tests: Path) -> None:
+        self._tests = tests
+        self._files: dict[Path, TestFile] = {}
+        self._paths: dict[str, list[Path]] = {}
+        self._used: dict[Found, list[Found]] = {}
+        self._clocks: dict[Found, set[tuple[Path, int, str]]] = {}
+        for path in sorted(tests.rglob("*.py")):
+            self._paths.setdefault(path.stem, []).append(path)
+
+    def file(self, path: Path) -> TestFile:
+        """Return a file, which is read once."""
+        if path not in self._files:
+            self._files[path] = TestFile.read(path)
+        return self._files[path]
+
+    def module(self, name: str, user: TestFile) -> TestFile | None:
+        """Return the file of the tests that a file imports by a name; that of its own folder comes first."""
+        paths = self._paths.get(name, [])
+        near = [path for path in paths if path.parent in (user.path.parent, self._tests)]
+        return self.file(max(near or paths, key=lambda path: len(path.parts))) if paths else None
+
+    def fixtures(self, user: TestFile) -> list[TestFile]:
+        """Return the files whose fixtures a file has: itself, and each conftest.py from its folder up."""
+        folders = [folder for folder in user.path.parents if folder.is_relative_to(self._tests)]
+        return [user, *(self.file(path) for folder in folders if (path := folder / "conftest.py").exists())]
+
+    def used_by(self, user: TestFile, node: Definition) -> list[Found]:
+        """Return the functions and classes of the tests that a function or class uses, and its fixtures."""
+        if (user, node) not in self._used:
+            self._used[user, node] = list(self._search(user, node))
+        return self._used[user, node]
+
+    def clocks_of(self, user: TestFile, node: Definition) -> set[tuple[Path, int, str]]:
+        """Return file, line and name of each clock that a function or class itself reads."""
+        if (user, node) not in self._clocks:
+            self._clocks[user, node] = {(user.path, *call) for call in calls(node, user.full)}
+        return self._clocks[user, node]
+
+    def _search(self, user: TestFile, node: Definition) -> Iterator[Found]:
+        for name in words_of(node):
+            if found := self._named(user, name):
+                yield found
+        for name in asked_by(node) | texts_of(node):
+            for file in self.fixtures(user):
+                if (found := file.fixtures.get(name)) is not None:
+                    yield file, found
+                    break
+        for one in ast.walk(node):
+            if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id in user.modules:
+                file = self.module(user.modules[one.value.id], user)
+                if file and (found := self._named(file, one.attr)):
+                    yield found
+
+    def _named(self, file: TestFile, name: str) -> Found | None:
+        """Return what a name in a file means, if it is a function or class of the tests."""
+        if name in file.places:
+            return file, file.places[name]
+        module, _, original = file.full.get(name, "").rpartition(".")
+        other = self.module(module, file) if module else None
+        return self._named(other, original) if other and other is not file else None
+
+
+def readings(path: Path, imports: Imports) -> list[str]:
+    """Return a sentence for each test of the gate in a file that reads a clock, itself or by what it uses."""
+    file = imports.file(path)
+    always = [(place, node) for place in imports.fixtures(file) for node in place.always]
     found = []
-    for names, test in marked_tests(tree):
+    for names, test in marked_tests(file.tree):
         if names & set(OUTSIDE):
             continue
-        seen: dict[str, Definition] = {test.name: test}
-        waiting: list[Definition] = [test, *(places[name] for name in always)]
+        waiting: list[Found] = [(file, test), *always]
+        seen: dict[Found, None] = dict.fromkeys(waiting)
         while waiting:
-            for name in words_of(waiting.pop()):
-                if name in places and name not in seen:
-                    seen[name] = places[name]
-                    waiting.append(places[name])
-        fixtures = {argument.arg for node in seen.values() for argument in arguments_of(node)}
-        if fixtures & LIVE_FIXTURES:
+            for one in imports.used_by(*waiting.pop()):
+                if one not in seen:
+                    seen[one] = None
+                    waiting.append(one)
+        if LIVE_FIXTURES & {name for _, node in seen if node is test or is_fixture(node) for name in asked_by(node)}:
             continue
-        clocks = [call for node in (*seen.values(), *map(places.get, always)) if node for call in calls(node, full)]
+        clocks = set().union(*(imports.clocks_of(*one) for one in seen))
         found += [
-            f"{line}: {test.name} reads {clock}: give it a clock of its own, or mark it with @pytest.mark.live"
-            for line, clock in sorted(set(clocks))
+            f"{line if where == path else test.lineno}: {test.name} reads {clock}"
+            f"{'' if where == path else f' in {where.name}:{line}'}: {REMEDY}"
+            for where, line, clock in sorted(clocks)
         ]
     return found
 
 
 def marked_tests(tree: ast.Module) -> Iterator[tuple[set[str], ast.FunctionDef | ast.AsyncFunctionDef]]:
     """Yield the tests of a file, each with the names of its markers that move it out of the gate."""
-    values = {ast.unparse(node.targets[0]): node.value for node in tree.body if isinstance(node, ast.Assign)}
+    values = dict(assigned for node in tree.body if isinstance(node, ast.Assign) for assigned in assignments(node))
     of_all = values.get("pytestmark", ast.List([]))
     whole = marks(of_all.elts if isinstance(of_all, ast.List) else [of_all], values)
     for node in tree.body:
@@ -68,6 +169,14 @@ def marked_tests(tree: ast.Module) -> Iterator[tuple[set[str], ast.FunctionDef |
         for test in inside:
             if isinstance(test, ast.FunctionDef | ast.AsyncFunctionDef) and test.name.startswith("test"):
                 yield shared | marks(test.decorator_list, values), test
+
+
+def assignments(node: ast.Assign) -> Iterator[tuple[str, ast.expr]]:
+    """Yield names and values of an assignment, also of several at once."""
+    target, value = node.targets[0], node.value
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        yield from zip(map(ast.unparse, target.elts), value.elts, strict=False)
+    yield ast.unparse(target), value
 
 
 def marks(nodes: list[ast.expr], values: dict[str, ast.expr]) -> set[str]:
@@ -94,16 +203,32 @@ def decorators(node: Definition) -> str:
     return " ".join(ast.unparse(one) for one in node.decorator_list)
 
 
-def arguments_of(node: Definition) -> list[ast.arg]:
-    """Return the arguments of a function, which may be fixtures."""
-    return [] if isinstance(node, ast.ClassDef) else [*node.args.args, *node.args.kwonlyargs]
+def is_fixture(node: Definition) -> bool:
+    """Return whether a function is a fixture."""
+    return "fixture" in decorators(node)
+
+
+def fixture_name(node: Definition) -> str:
+    """Return the name of a fixture, which its decorator may give."""
+    words = [word for one in node.decorator_list if isinstance(one, ast.Call) for word in one.keywords]
+    return next((ast.literal_eval(word.value) for word in words if word.arg == "name"), node.name)
+
+
+def asked_by(node: Definition) -> set[str]:
+    """Return the names of fixtures that a function asks for: its arguments, and what ``usefixtures`` names."""
+    arguments = [] if isinstance(node, ast.ClassDef) else [*node.args.args, *node.args.kwonlyargs]
+    marks = [one for one in node.decorator_list if "usefixtures" in ast.unparse(one)]
+    return {one.arg for one in arguments}.union(*map(texts_of, marks))
+
+
+def texts_of(node: ast.AST) -> set[str]:
+    """Return the texts in a part of a file, which may name fixtures, as for ``getfixturevalue``."""
+    return {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
 
 
 def words_of(node: Definition) -> set[str]:
-    """Return the names that a function or class uses, and its fixtures."""
-    names = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
-    used = {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
-    return names | used | {one.arg for one in arguments_of(node)}  # usefixtures("name") names a fixture in a string
+    """Return the names that a function or class uses."""
+    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
 
 
 def calls(node: Definition, full: dict[str, str]) -> Iterator[tuple[int, str]]:
@@ -117,10 +242,11 @@ def calls(node: Definition, full: dict[str, str]) -> Iterator[tuple[int, str]]:
 
 
 def test_no_test_of_the_gate_reads_a_clock() -> None:
+    imports = Imports(TESTS)
     found = [
         f"{path.relative_to(TESTS.parent)}:{sentence}"
         for path in sorted(TESTS.rglob("test_*.py"))
-        for sentence in readings(path.read_text(encoding="utf-8"))
+        for sentence in readings(path, imports)
     ]
     assert not found, "\n".join(found)
 
@@ -142,6 +268,9 @@ SAMPLES = {
     "@pytest.mark.live\ndef test_x():\n    time.time()": "",
     "pytestmark = [pytest.mark.live]\ndef test_x():\n    time.time()": "",
     "@pytest.mark.sweep\nclass TestA:\n    def test_x(self):\n        time.time()": "",
+    "SHORT, LONG = pytest.param(1, marks=pytest.mark.sweep), pytest.param(9, marks=pytest.mark.soak)\n"
+    "@pytest.mark.parametrize('n', [SHORT, LONG])\ndef test_x(n):\n    tick()": "",
+    "@pytest.mark.usefixtures('browser')\ndef test_x():\n    time.time()": "",
     "def test_x(browser):\n    time.time()": "",
     "def test_x(monkeypatch):\n    monkeypatch.setattr(time, 'time', lambda: 5.0)": "",
     "def unused():\n    time.time()\ndef test_x():\n    time.sleep(0.01)": "",
@@ -149,16 +278,54 @@ SAMPLES = {
 """Test files, each with the clock that its test must not read."""
 
 
+HELPERS = {
+    "conftest.py": "import time\nimport pytest\n"
+    "@pytest.fixture(name='now')\ndef now_fixture():\n    return time.time()\n",
+    "elsewhere/waits.py": "def wait():\n    pass\n",
+    "here/waits.py": "from time import monotonic\nimport deep\n"
+    "def wait():\n    monotonic()\ndef wait_twice():\n    deep.wait()\ndef add(browser):\n    monotonic()\n",
+    "elsewhere/deep.py": "import time\ndef wait():\n    time.time_ns()\n"
+    "class Robot:\n    def move(self):\n        time.time()\n",
+}
+"""Other files of the tests, which the files below are beside in the folder here."""
+IMPORTS = {
+    "from waits import wait\ndef test_x():\n    wait()": "time.monotonic in waits.py:4",
+    "from waits import wait as until\ndef test_x():\n    until()": "time.monotonic in waits.py:4",
+    "def test_x():\n    from waits import wait\n    wait()": "time.monotonic in waits.py:4",
+    "import waits\ndef test_x():\n    waits.wait()": "time.monotonic in waits.py:4",
+    "import waits\ndef test_x():\n    waits.wait_twice()": "time.time_ns in deep.py:3",
+    "from waits import add\ndef test_x():\n    add(1)": "time.monotonic in waits.py:8",
+    "from deep import Robot\ndef test_x():\n    Robot().move()": "time.time in deep.py:6",
+    "def test_x(now):\n    pass": "time.time in conftest.py:5",
+    "import pytest\nfrom waits import wait\n@pytest.mark.live\ndef test_x():\n    wait()": "",
+    "from waits import wait\ndef test_x():\n    pass": "",
+    "import waits\ndef wait():\n    pass\ndef test_x():\n    wait()": "",
+}
+"""Test files that use others, each with the clock that its test must not read."""
+
+
 @pytest.mark.parametrize(("text", "clock"), SAMPLES.items())
-def test_a_clock_is_seen_through_names_helpers_and_fixtures(text: str, clock: str) -> None:
+def test_a_clock_is_seen_through_names_helpers_and_fixtures(text: str, clock: str, tmp_path: Path) -> None:
     file = HEAD + text
-    found = readings(file)
+    path = tmp_path / "test_sample.py"
+    path.write_text(file, encoding="utf-8")
+    found = readings(path, Imports(tmp_path))
     assert len(found) == bool(clock)
     if clock:
-        words = f"test_x reads {clock}: give it a clock of its own, or mark it with @pytest.mark.live"
+        words = f"test_x reads {clock}: {REMEDY}"
         (line,) = (
             k
             for k, row in enumerate(file.splitlines(), 1)
             if k > 3 and any(call in row for call in ("time.time", "time.monotonic(", "tick(", "now("))
         )
         assert found == [f"{line}: {words}"]
+
+
+@pytest.mark.parametrize(("text", "clock"), IMPORTS.items())
+def test_a_clock_is_seen_in_other_files_of_the_tests(text: str, clock: str, tmp_path: Path) -> None:
+    for name, content in {**HELPERS, "here/test_sample.py": text}.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    found = readings(tmp_path / "here" / "test_sample.py", Imports(tmp_path))
+    line = next(k for k, row in enumerate(text.splitlines(), 1) if "def test_x" in row)
+    assert found == ([f"{line}: test_x reads {clock}: {REMEDY}"] if clock else [])

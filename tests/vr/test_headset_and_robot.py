@@ -130,6 +130,7 @@ def test_a_real_robot_drives_beside_a_headset_and_stops_with_the_pause(tmp_path)
     assert replay(trial / "episode.mcap").equal
 
 
+@pytest.mark.live
 def test_one_word_rehearses_the_same_trial_with_a_simulated_robot(tmp_path):
     words = 'type="real-robot" bridge="{}" driver="straight" parameters="speed=0.4" area="-20,-20,20,20"'
     trial, state = run_visit(tmp_path / "files", f"<navigator {words.format('simulated')}/>", 3.0)
@@ -145,6 +146,7 @@ def test_one_word_rehearses_the_same_trial_with_a_simulated_robot(tmp_path):
     assert dataclasses.replace(real.navigator, bridge="simulated").driver == "straight"
 
 
+@pytest.mark.live
 def test_the_tab_of_the_operator_stops_a_linked_robot_of_the_simulator(tmp_path):
     navigator = '<navigator type="real-robot" driver="straight" parameters="speed=0.4"/>'
     with open_session(tmp_path / "files", {"meet.xml": TRIAL.format(duration=300, navigator=navigator)}) as session:

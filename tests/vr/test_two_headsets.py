@@ -17,6 +17,7 @@ def place(person):
     return person.summary().get("place")
 
 
+@pytest.mark.live
 def test_each_headset_has_its_own_avatar_and_room(tmp_path):
     with open_session(tmp_path / "files", {"meet.xml": TRIAL}) as session:
         vr = session.desk("vr")

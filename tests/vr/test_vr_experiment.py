@@ -28,6 +28,7 @@ def session(tmp_path):
         yield opened
 
 
+@pytest.mark.live
 def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
     desk, vr, folder = session.desk("experiments"), session.desk("vr"), session.workspace.folder
     vr.set({"timeout": 8.0, "pause_when_lost": False})  # a busy machine is not a lost headset
@@ -73,6 +74,7 @@ def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
     assert list(folder.rglob("*.headset")) == []
 
 
+@pytest.mark.live
 def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     folder = session.workspace.folder
     (folder / "meet.xml").write_text(TRIAL.format(duration=300))

@@ -1,7 +1,7 @@
 """A prediction desk without a server, for tests."""
 
 import json
-import time
+import threading
 
 from crowdbot.web import JobBoard, SessionLimits, Workspace, call_command
 from crowdbot.web.prediction import PredictionDesk
@@ -13,11 +13,13 @@ class LonelySession:
     name = "main"
 
     def __init__(self, folder, readable=()):
-        self.workspace, self.events = Workspace(folder, readable), []
+        self.workspace, self.events, self.changed = Workspace(folder, readable), [], threading.Condition()
         self.jobs = JobBoard(self.workspace, SessionLimits(), self.tell)
 
     def tell(self, event, data):
-        self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
+        with self.changed:
+            self.events.append((event, json.loads(json.dumps(data, allow_nan=False))))
+            self.changed.notify_all()
 
     def show(self, frame):
         raise AssertionError("the prediction desk sends no frames by itself")
@@ -44,11 +46,9 @@ class DeskCaller:
         return self.wait(before, seconds)
 
     def wait(self, before, seconds=400):
-        end = time.monotonic() + seconds
-        while len(self.events("ended")) == before:
-            if time.monotonic() > end:
+        with self.session.changed:
+            if not self.session.changed.wait_for(lambda: len(self.events("ended")) > before, seconds):
                 raise TimeoutError(str(self.session.events[-3:]))
-            time.sleep(0.02)
         return self.events("ended")[-1]
 
     def predictor(self, label):

@@ -64,6 +64,7 @@ def test_a_recording_survives_its_file():
     assert again.frame(5, 1).encode() == shipped.frame(5, 1).encode()
 
 
+@pytest.mark.live
 def test_it_plays_again_and_again_until_it_is_stopped(tmp_path):
     windows = Windows(tmp_path)
     shipped = shipped_beginning()
@@ -78,6 +79,7 @@ def test_it_plays_again_and_again_until_it_is_stopped(tmp_path):
     assert (player.active, len(windows.frames)) == (False, sent)
 
 
+@pytest.mark.live
 def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_path, monkeypatch):
     gate, inner = threading.Event(), live_run.open_run
 
@@ -108,6 +110,7 @@ def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_
         assert not desk._status()["recorded"]
 
 
+@pytest.mark.live
 def test_a_run_that_is_ready_late_is_shown_from_its_start(tmp_path, monkeypatch):
     monkeypatch.setattr(live_run, "SEAMLESS", 0.0)
     with simulator(tmp_path) as desk:

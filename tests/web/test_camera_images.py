@@ -185,6 +185,7 @@ class SlowWindows:
         self.frames.append(frame)
 
 
+@pytest.mark.live
 def test_a_slow_window_never_delays_the_run(simulation):
     windows = SlowWindows()
     feed = CameraFeed(windows)

@@ -75,6 +75,7 @@ def test_everything_a_user_does_is_an_order_and_replays(tmp_path):
     assert replay(tmp_path / saved).equal
 
 
+@pytest.mark.live
 def test_a_driven_robot_moves_as_it_is_told_and_stops_when_let_go(tmp_path):
     with simulator(tmp_path) as desk:
         opened(desk, paused=False)
@@ -90,6 +91,7 @@ def test_a_driven_robot_moves_as_it_is_told_and_stops_when_let_go(tmp_path):
             desk.drive("robot", 0.4, 0.0)
 
 
+@pytest.mark.live
 def test_a_person_walks_is_recorded_and_stops_at_walls(tmp_path):
     with simulator(tmp_path) as desk:
         opened(desk, "frontal", paused=False)
@@ -158,6 +160,7 @@ def test_errors_of_a_trial_are_those_of_check(tmp_path):
             desk.play()
 
 
+@pytest.mark.live
 def test_a_new_window_gets_the_state_and_the_history(tmp_path):
     with simulator(tmp_path) as desk:
         desk._greeted = True  # no first trial
