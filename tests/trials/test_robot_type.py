@@ -58,6 +58,22 @@ def test_the_parts_of_the_replaced_robot_are_logged(folder, caplog):
     assert line.startswith("robot 'robot' becomes mybot, with its own drive and sensors instead of <drive type=")
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["evaluate", "doorway", "--robots", "nosuch"],
+        ["evaluate", "doorway", "--robots", "mybot,nosuch"],
+        ["evaluate", "doorway", "--set", "robot/type=nosuch"],
+        ["falsify", "doorway", "--robots", "nosuch"],
+        ["run", "doorway", "--set", "robot/type=nosuch"],
+    ],
+)
+def test_an_unknown_robot_is_an_error_without_remarks(folder, capsys, words):
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'type="nosuch" is not a robot' in line
+
+
 def test_a_trial_overrides_its_own_robot_and_says_what(folder):
     trial = parse_trial(XML.format(parts=OTHER), folder=folder)
     assert trial.robots[0].drive.max_speed == 0.7

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import Element, InputError, TrialError, format_xml
-from crowdbot.trials import Trial, element_from, parse_trial, replace_robot
+from crowdbot.trials import Trial, element_from, parse_trial, remarks_at_end, replace_robot
 
 __all__ = ["Method", "own_method", "parse_methods", "with_safety"]
 
@@ -42,6 +42,7 @@ class Method:
     parameters: tuple[tuple[str, str], ...] = ()
     safety: bool | None = None
 
+    @remarks_at_end()
     def put_into(self, trial: Trial, robot_type: str = "", trust: bool = True) -> Trial:
         """Return the trial with this navigator for its first robot.
 

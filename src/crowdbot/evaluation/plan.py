@@ -13,7 +13,7 @@ from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import Trial, expand_sweeps, trial_xml
+from crowdbot.trials import Trial, expand_sweeps, remarks_at_end, trial_xml
 
 from .episode_metrics import check_families
 from .method import Method, own_method
@@ -115,6 +115,7 @@ class EvaluationPlan:
     factors: Mapping[str, tuple[str, Mapping[str, str]]] = dataclasses.field(default_factory=dict)
     cells: tuple[EvaluationCell, ...] = dataclasses.field(init=False)
 
+    @remarks_at_end()
     def __post_init__(self) -> None:
         check_families(self.families)
         lists = {"trials": self.trials, "navigators": self.methods, "robots": self.robots, "seeds": self.seeds}

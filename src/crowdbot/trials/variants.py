@@ -11,6 +11,7 @@ from typing import Any
 from crowdbot.core import InputError, TrialError, format_xml
 
 from .parser import parse_trial
+from .robots.robot_parts import remarks_at_end
 from .sweep import MOST_VARIANTS
 from .trial import Trial
 from .value_path import set_values, text_of
@@ -20,6 +21,7 @@ from .xml.writer import element_of
 __all__ = ["apply_values", "expand_sweeps"]
 
 
+@remarks_at_end()
 def apply_values(
     trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool | None = None
 ) -> Trial:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Iterable, Iterator
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import Element, builtin_name
@@ -13,20 +15,44 @@ from crowdbot.world import Drive
 if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
 
-__all__ = ["describe_robot", "override_remarks", "replace_robot"]
+__all__ = ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot"]
 
 logger = logging.getLogger(__name__)
 
 ATTRIBUTES = ("radius", "height", "mass", "latency", "rider", "default-sensors")
 CHILDREN = ("drive", "sensor", "joint")
 """Attributes and elements of ``<robot>`` that belong to the body of its type."""
+_remarks: ContextVar[list[str] | None] = ContextVar("_remarks", default=None)
+"""Lines of the log that wait for the end of :func:`remarks_at_end`; None outside of it."""
+
+
+@contextlib.contextmanager
+def remarks_at_end() -> Iterator[list[str]]:
+    """Log the lines about replaced robots at the end of the outermost block, and not if an error ends it.
+
+    An error, such as a robot that does not exist, is then not preceded by remarks about what it would replace. Also a
+    decorator of functions.
+    """
+    outer = _remarks.get()
+    if outer is not None:
+        yield outer
+        return
+    lines: list[str] = []
+    token = _remarks.set(lines)
+    try:
+        yield lines
+    finally:
+        _remarks.reset(token)
+    for line in lines:
+        logger.info("%s", line)
 
 
 def replace_robot(robot: Element, kind: str) -> None:
     """Set the type of a robot; its body, drive and sensors become those of the type.
 
     Radius, height, mass, latency, rider, ``<drive>``, ``<sensor>`` and ``<joint>`` of the element describe the robot
-    that is replaced and are removed; one line of the log names them. Start, goal, navigator and faults stay.
+    that is replaced and are removed; one line of the log names them. Start, goal, navigator and faults stay. The line
+    is logged at the end of :func:`remarks_at_end`, if the caller uses it.
 
     Args:
         robot: element ``<robot>`` of a trial, changed in place.
@@ -43,7 +69,9 @@ def replace_robot(robot: Element, kind: str) -> None:
     robot.attributes["type"] = kind
     if gone:
         name = robot.attributes.get("name", "robot")
-        logger.info("robot %r becomes %s, with its own drive and sensors instead of %s", name, kind, ", ".join(gone))
+        line = f"robot {name!r} becomes {kind}, with its own drive and sensors instead of {', '.join(gone)}"
+        with remarks_at_end() as lines:
+            lines.append(line)
 
 
 def describe_robot(robot: RobotSpec) -> str:
