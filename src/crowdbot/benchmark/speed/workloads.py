@@ -63,6 +63,10 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     )
     if "power-law" in kinds:
         found["power-law-numpy"] = functools.partial(_against_numpy, kinds["power-law"])
+    found |= {
+        "people-robot-gap": functools.partial(_robot_gap, True),
+        "people-robot": functools.partial(_robot_gap, False),
+    }
     found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "lidar-1080-batch": _lidar_batch, "trial": _trial}
     found |= {name: functools.partial(tracking, *pair) for name, pair in TRACKING_PAIRS.items()}
@@ -139,6 +143,35 @@ def _against_numpy(kind: type) -> Measurement:
     return Measurement(
         "agent-steps/s", 20e3, lambda: [model.step(scene, DT) for _ in range(20)], words,
         other=lambda: power_law_in_numpy(scene), other_amount=1e3,
+    )  # fmt: skip
+
+
+def _robot_gap(same_robot: bool) -> Measurement:
+    """Time 100 people who keep a gap to a robot that drives through them.
+
+    Args:
+        same_robot: whether the other crowd has the robot, but people with ``robot-gap=0``; otherwise it has no robot.
+    """
+    from crowdbot.models import People
+
+    people, count = 100, 200
+    some = crowd(people)
+    middle = some.position[0].mean(axis=0)
+    is_robot = np.append(np.zeros(people, dtype=bool), True)
+    scene = Scene.of(
+        np.vstack([some.position[0], middle]), np.vstack([some.velocity[0], (0.7, 0.0)]),
+        goal=np.vstack([some.goal[0], middle]), max_speed=1.8, radius=np.where(is_robot, 0.35, 0.25),
+        external=is_robot, robot=is_robot,
+        active=is_robot | np.append(np.hypot(*(some.position[0] - middle).T) > 0.7, True),
+    )  # fmt: skip
+    model = People().individual(people + 1, stream(0, "robot-gap"))
+    kind: type = People
+    other = kind(robot_gap=0.0) if same_robot else model
+    other_scene = scene if same_robot else scene.replace(active=scene.active & ~is_robot)
+    return Measurement(
+        "agent-steps/s", count * people, functools.partial(_repeat, lambda: model.step(scene, DT), count),
+        "the same 100 people and robot with robot-gap=0" if same_robot else "the same 100 people without a robot",
+        other=functools.partial(_repeat, lambda: other.step(other_scene, DT), count), other_amount=count * people,
     )  # fmt: skip
 
 
