@@ -301,6 +301,7 @@ def test_the_page_holds_table_words_and_plots(done):
     assert "* **orca**: people in single file walk at" in text
     assert "Runs (starts and densities) with a steady state" in text
     assert all(check.criterion in text for check in CHECKS)
+    assert "[People around robots](around-robots.md)" in text
     assert "The verdicts mean little" in text
     assert "compares with published curves only" in text
     assert "| anticipation-velocity" not in text

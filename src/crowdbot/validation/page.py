@@ -57,6 +57,12 @@ DEFINITIONS = {
     f" {bottleneck.SECONDS:g} s. Specific flow: flow / width (in the table: mean over widths).",
 }
 
+AROUND_A_ROBOT = (
+    "The experiments and tests of this page have no robot. [People around robots](around-robots.md) compares how people"
+    " of each model evade a robot, and how near they come to it, with recorded people around a golf cart. Of the models"
+    " here, the preset `people` alone keeps a gap to robots by default."
+)
+
 
 def write_page(done: Validation, out: Path, command: str) -> Path:
     """Write ``validation.md`` and its plots in the folder ``validation`` beside it; return the page.
@@ -82,6 +88,10 @@ def write_page(done: Validation, out: Path, command: str) -> Path:
             *case_table(shown),
             *time_step_table(shown),
             *preset_table(shown),
+            "## Around a robot",
+            "",
+            AROUND_A_ROBOT,
+            "",
             *_foot(done),
         ]
     )
