@@ -11,9 +11,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError
+import numpy as np
+
+from crowdbot.core import InputError, Walls
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import Trial, expand_sweeps, remarks_at_end, trial_xml
+from crowdbot.navigation import PathPlanner
+from crowdbot.trials import RobotSpec, Trial, expand_sweeps, remarks_at_end, trial_xml
 
 from .episode_metrics import check_families
 from .method import Method, own_method
@@ -22,6 +25,8 @@ __all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
 
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
+PASSAGE = 0.001
+"""Precision [m] of the width of a passage."""
 RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")
 
 
@@ -54,6 +59,11 @@ class EvaluationCell:
     def hash(self) -> str:
         """Hash of that text: SHA-256 in hexadecimal."""
         return hashlib.sha256(self.xml.encode()).hexdigest()
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader must know about this robot in this trial, such as a passage too narrow for its disc."""
+        return tuple(filter(None, (_passage_remark(self.variant),)))
 
     @property
     def protocol(self) -> dict[str, Any]:
@@ -157,6 +167,41 @@ class EvaluationPlan:
             for method in self.methods
         )
         object.__setattr__(self, "cells", cells)
+
+
+def _passage_remark(trial: Trial) -> str:
+    """Return why the first robot of a trial cannot reach its goal although its outline fits, or an empty text.
+
+    The planar world treats a robot as a disc. If walls leave the disc no path from start to goal, but a disc as wide as
+    the outline of the robot has one, the narrowest passage on the way of the robot is the reason.
+    """
+    robot = trial.robots[0]
+    if trial.world != "planar" or not robot.type or robot.ghost or robot.mirror is not None:
+        return ""
+    outline = float(np.ptp(robot.body.footprint[:, 1]))
+    fits, fails = 0.5 * outline, robot.radius
+    walls = trial.stage.as_walls()
+    if fits >= fails or _has_path(walls, robot, fails) or not _has_path(walls, robot, fits):
+        return ""
+    while fails - fits > 0.5 * PASSAGE:
+        middle = 0.5 * (fits + fails)
+        fits, fails = (middle, fails) if _has_path(walls, robot, middle) else (fits, middle)
+    if fits > float(trial.stage.clearance([robot.position, robot.goal.position]).min()) - PASSAGE:
+        return ""  # a wall beside start or goal, not a passage
+    return (
+        f"the narrowest passage on the way of the robot is {2.0 * fits:.2f} m wide: less than the diameter of its disc,"
+        f" {2.0 * robot.radius:.2f} m, and more than the width of its outline, {outline:.2f} m. In the planar world a"
+        " robot is a disc, so it cannot reach its goal, although its outline fits through."
+    )
+
+
+def _has_path(walls: Walls, robot: RobotSpec, radius: float) -> bool:
+    """Return whether a disc has a path from the start to the goal of the robot."""
+    try:
+        PathPlanner.of(walls, radius, margin=0.0).waypoints(robot.position, robot.goal.position)
+    except InputError:
+        return False
+    return True
 
 
 def _margin(navigator: object) -> float | None:

@@ -93,7 +93,8 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
     for cell in cells:
         verdict = judge_cell(cell, requirements)
         kind = "safe" if verdict.safe else "unsafe"
-        limit = f"<br><small>{html.escape(verdict.limit)}</small>"
+        small = (*(f"Note: {remark}" for remark in cell.remarks), verdict.limit)
+        limit = "".join(f"<br><small>{html.escape(text)}</small>" for text in small)
         parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
     return "".join(parts)
 

@@ -43,6 +43,7 @@ class CellResult:
         runs: one row for each seed, in the order of the plan.
         factors: levels of the factors of a sweep by name; empty without one.
         base: name of the trial without the levels.
+        remarks: what a reader must know about this robot in this trial, in sentences.
     """
 
     trial: str
@@ -53,6 +54,7 @@ class CellResult:
     runs: tuple[RunRow, ...]
     factors: Mapping[str, str] = dataclasses.field(default_factory=dict)
     base: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def valid(self) -> tuple[RunRow, ...]:
@@ -130,6 +132,7 @@ class EvaluationResult:
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
                 **({"factors": dict(cell.factors), "base": cell.base} if cell.factors else {}),
+                **({"remarks": list(cell.remarks)} if cell.remarks else {}),
                 "runs": [row_values(row) for row in cell.runs],
             }
             for cell in self.cells
@@ -193,7 +196,10 @@ def _cell(values: Mapping[str, Any]) -> CellResult:
     names = (str(values["trial"]), str(values["navigator"]), str(values["robot"]), str(values["hash"]))
     factors = {str(name): str(level) for name, level in dict(values.get("factors", {})).items()}
     runs = tuple(map(row_of, values["runs"]))
-    return CellResult(*names, dict(values["protocol"]), runs, factors, str(values.get("base", values["trial"])))
+    remarks = tuple(map(str, values.get("remarks", ())))
+    return CellResult(
+        *names, dict(values["protocol"]), runs, factors, str(values.get("base", values["trial"])), remarks
+    )
 
 
 def _pairs(cells: Sequence[CellResult]) -> Iterable[tuple[CellResult, CellResult]]:

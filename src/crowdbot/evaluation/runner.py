@@ -82,6 +82,7 @@ def evaluate(
             tuple(rows[k][seed] for seed in seeds),
             cell.factors,
             cell.base,
+            cell.remarks,
         )
         for k, cell in enumerate(plan.cells)
     )

@@ -40,9 +40,16 @@ def print_answers(result: EvaluationResult, requirements: Sequence[Requirement])
                 f"  hardest contact: seed {contact.seed}, {where}, {contact.speed:.2f} m/s,"
                 f" severity {contact.severity} (force over the limit of ISO/TS 15066)"
             )
+    for where, remark in dict.fromkeys((_place(cell), remark) for cell in result.cells for remark in cell.remarks):
+        print(textwrap.fill(f"Note on {where}: {remark}", WIDTH))
     for limit in dict.fromkeys(verdict.limit for verdict in verdicts):
         print(textwrap.fill(limit, WIDTH))
     print()
+
+
+def _place(cell: CellResult) -> str:
+    """Return trial and robot of a row in words."""
+    return cell.trial + (f" on {cell.robot}" if cell.robot else "")
 
 
 def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall: float) -> None:
@@ -152,6 +159,7 @@ def result_values(
                 **_names(cell),
                 "verdict": _verdict_values(judge_cell(cell, requirements)),
                 "contacts": [one._asdict() for one in person_contacts(cell)],
+                "remarks": list(cell.remarks),
                 "runs": len(cell.valid),
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
