@@ -102,6 +102,18 @@ def test_an_episode_replays_alone_when_its_code_is_trusted(moved: Path, capsys: 
     assert [path.name for path in moved.parent.iterdir()] == ["episode.mcap"]
 
 
+@pytest.mark.parametrize("verb", [["render", "--at", "0.2"], ["export"]])
+def test_films_and_pages_of_an_episode_take_the_folder_of_its_code(
+    made: Path, moved: Path, verb: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = moved.with_name("film.png" if verb[0] == "render" else "page.html")
+    words = [*verb, str(moved), "--out" if verb[0] == "render" else "--to", str(out)]
+    assert main(words) == 2
+    assert "name its folder with --folder" in capsys.readouterr().err
+    assert main([*words, "--folder", str(made)]) == 0
+    assert out.stat().st_size > 1000
+
+
 def test_code_beside_the_episode_runs_without_trust_only_as_it_was_recorded(
     moved: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

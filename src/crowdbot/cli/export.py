@@ -37,6 +37,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="write images and point clouds with boxes, masks and keypoints of people in this format to a folder",
     )
     parser.add_argument(
+        "--folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the trial files, for a page or labels (default: the folder of the episode)",
+    )
+    parser.add_argument(
         "--trust", action="store_true", help="allow code outside the folder of the trial, for a page or labels"
     )
     add_json(parser)
@@ -51,8 +57,8 @@ def main(options: argparse.Namespace) -> int:
         return _write_labels(options)
     if options.to.suffix.lower() == ".html":
         return _write_page(options)
-    if options.period is not None or options.trust:
-        raise InputError("--period and --trust are for a page or labels; give --to FILE.html, or --labels")
+    if options.period is not None or options.trust or options.folder is not None:
+        raise InputError("--period, --folder and --trust are for a page or labels; give --to FILE.html, or --labels")
     rows = export(options.episode, options.to, options.table, options.force)
     has_images = rows > 0 and options.table == "pictures"
     images = {"images": str(folder_of(options.to))} if has_images else {}
@@ -77,7 +83,7 @@ def _write_labels(options: argparse.Namespace) -> int:
     with progress(options.json) as report:
         found = export_labels(
             options.episode, options.to, options.labels, options.force, options.trust,
-            lambda share: report(f"label {options.episode.name}", share),
+            lambda share: report(f"label {options.episode.name}", share), options.folder,
         )  # fmt: skip
     if options.json:
         print_json({"episode": str(options.episode), **found._asdict(), "folder": str(found.folder)})
@@ -96,6 +102,7 @@ def _write_page(options: argparse.Namespace) -> int:
     with progress(options.json) as report:
         page = write_player(
             options.episode, options.to, period=options.period, force=options.force, trust=options.trust,
+            folder=options.folder,
             progress=lambda share: report(f"play {options.episode.name}", share),
         )  # fmt: skip
     if options.json:

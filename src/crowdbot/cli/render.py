@@ -44,6 +44,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--list", action="store_true", help="list the cameras of the trial and exit")
     parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the trial files of an episode (default: the folder of the episode)",
+    )
     parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
     add_world(parser)
     add_settings(parser)
@@ -53,10 +59,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Render the image or the video."""
+    from crowdbot.core import InputError
     from crowdbot.trials import load_trial
 
     if options.trial.lower().endswith(".mcap"):
         return _render_episode(options)
+    if options.folder is not None:
+        raise InputError("--folder is for an episode; the files of a trial are in its own folder")
     trial = select_variant(load_trial(options.trial, settings(options), trust=options.trust), options.variant)
     return _render(options, trial, trial.seed if options.seed is None else options.seed)
 
@@ -68,7 +77,7 @@ def _render_episode(options: argparse.Namespace) -> int:
 
     if settings(options) or options.variant is not None or options.seed is not None:
         raise InputError("an episode is rendered as it was recorded; leave out settings, --variant and --seed")
-    with open_rerun(options.trial, trust=options.trust) as rerun:
+    with open_rerun(options.trial, folder=options.folder, trust=options.trust) as rerun:
         return _render(options, rerun.trial, rerun.seed, sources=rerun.sources, prepare=rerun.prepare)
 
 

@@ -40,6 +40,7 @@ def export_labels(
     force: bool = False,
     trust: bool = False,
     progress: Callable[[float], object] | None = None,
+    folder: Path | None = None,
 ) -> LabelFiles:
     """Write images, point clouds and labels of an episode to a folder.
 
@@ -54,38 +55,41 @@ def export_labels(
         force: whether an existing folder is replaced.
         trust: whether code outside the folder of the trial may run.
         progress: called with the completed share, 0 to 1.
+        folder: folder of the trial files (default: the folder of the episode).
 
     Raises:
         InputError: the folder exists, the format is unknown, or the robots have no sensor with such labels.
         EpisodeError: the episode cannot be read or run again.
     """
-    folder = Path(to)
+    target = Path(to)
     if kind not in LABEL_FORMATS:
         raise InputError(f"there is no format {kind!r} of labels; choose {' or '.join(LABEL_FORMATS)}")
-    if folder.exists() and not (force and folder.is_dir()):
-        raise InputError(f"{folder} already exists; give a new folder, or --force to replace it")
-    tables = _labelled(Path(episode), trust, progress)
-    draft = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    if target.exists() and not (force and target.is_dir()):
+        raise InputError(f"{target} already exists; give a new folder, or --force to replace it")
+    tables = _labelled(Path(episode), folder, trust, progress)
+    draft = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
-        with explain_write_errors(folder):
+        with explain_write_errors(target):
             draft.mkdir(parents=True)
             files = _written(tables, draft, kind, Path(episode).name)
             if not files:
                 what = "colour camera" if kind == "coco" else "colour camera or 3-D laser scanner"
                 raise InputError(f"{episode}: its robots have no {what} that measured anything")
-            if folder.exists():
-                shutil.rmtree(folder)
-            draft.replace(folder)
+            if target.exists():
+                shutil.rmtree(target)
+            draft.replace(target)
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     images = sum(len(table["rgb"]) for table in tables.values() if "rgb" in table)
-    return LabelFiles(folder, images, sum(file.suffix == ".bin" for file in files), len(files))
+    return LabelFiles(target, images, sum(file.suffix == ".bin" for file in files), len(files))
 
 
-def _labelled(episode: Path, trust: bool, progress: Callable[[float], object] | None) -> Mapping[str, Table]:
+def _labelled(
+    episode: Path, folder: Path | None, trust: bool, progress: Callable[[float], object] | None
+) -> Mapping[str, Table]:
     """Return the tables of all sensors of an episode."""
     steps = read_episode(episode).steps
-    with open_rerun(episode, trust=trust) as rerun:
+    with open_rerun(episode, folder=folder, trust=trust) as rerun:
         trial = dataclasses.replace(rerun.trial, robots=tuple(with_masks(robot) for robot in rerun.trial.robots))
         simulation = Simulation(trial, rerun.seed)
         rerun.prepare(simulation)

@@ -78,6 +78,7 @@ def write_player(
     period: float | None = None,
     force: bool = False,
     trust: bool = False,
+    folder: Path | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> PlayerFile:
     """Write an episode as one HTML file that plays in any browser, without a server and without the net.
@@ -90,7 +91,7 @@ def write_player(
         to: the file, ``.html``.
         period: time between two frames [s] (default: that of the recording), a multiple of the time step.
         force: whether an existing file is replaced.
-        trust: see :func:`crowdbot.recording.replay`.
+        trust, folder: see :func:`crowdbot.recording.replay`.
         progress: called with the completed fraction, 0 to 1.
 
     Raises:
@@ -110,7 +111,7 @@ def write_player(
         raise InputError(f"{path}: the file of a player must end in .html")
     recorded = read_episode(episode)
     pack, frames, last = _Pack(), 0, 0.0
-    with lock_output(path, force), open_rerun(episode, trust=trust) as rerun:
+    with lock_output(path, force), open_rerun(episode, folder=folder, trust=trust) as rerun:
         simulation = Simulation(rerun.trial, rerun.seed, posed=True)
         rerun.prepare(simulation)
         schedule = simulation.world.clock.schedule(rerun.trial.recording.period if period is None else period)
