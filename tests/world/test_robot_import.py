@@ -101,6 +101,13 @@ def test_a_plugin_decides_and_an_option_decides_more(tmp_path):
         import_robot(file, "r", kind="mecanom")
 
 
+def test_a_receiver_in_all_directions_is_no_omnidirectional_base(tmp_path):
+    file = tmp_path / "r.xacro"
+    plugin = "<gazebo><plugin name='ir_omni_plugin' filename='libgazebo_ros_create_ir_opcode.so'/></gazebo>"
+    file.write_text(base_file("differential").replace("</robot>", f"{plugin}</robot>"))
+    assert import_robot(file, "r").kind == "differential"
+
+
 SENSORS = """
 <gazebo reference='laser'>
   <sensor name='cam' type='camera'><update_rate>15</update_rate><camera><horizontal_fov>1.2</horizontal_fov>

@@ -50,6 +50,12 @@ NAMES = {
 }
 
 
+SENSING = re.compile(
+    r"(?<![a-z])(ir|imu|gps|opcode|camera|laser|lidar|ray|sonar|range|bumper|contact|sensor)s?(?![a-z])"
+)
+"""Words in the names of plugins that measure, such as the omnidirectional infrared receiver of Create 3."""
+
+
 def _walk(element: Element) -> Iterator[Element]:
     yield element
     for child in element.children:
@@ -76,7 +82,7 @@ def read_drive_parameters(root: Element) -> DriveParameters:
     for plugin in [one for outer in root.each("gazebo") for one in outer.each("plugin")]:
         name = f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}".strip()
         words = ("drive", "move", "ackermann", "mecanum", "omni", "steer")
-        if not any(word in name.lower() for word in words):
+        if not any(word in name.lower() for word in words) or SENSING.search(name.lower()):
             continue
         plugins.append(name)
         for key, names in NAMES.items():
