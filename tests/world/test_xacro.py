@@ -281,3 +281,14 @@ def test_arguments_of_real_robots(urdf):
     husky = urdf / "husky/husky_description/urdf/husky.urdf.xacro"
     with_laser = read_urdf(husky, environment={"HUSKY_UST10_ENABLED": "1"}, colliders="hull")
     assert "front_laser" in with_laser.links
+
+
+def test_a_name_of_a_missing_include_names_the_include(tmp_path):
+    path = write(
+        tmp_path,
+        "r.xacro",
+        f"{HEAD}<xacro:include filename='$(find nowhere)/x.xacro'/><link name='a${{cm2m}}'/></robot>",
+    )
+    wanted = "'cm2m' is not defined; the included file package://nowhere/x.xacro is missing .give --package nowhere="
+    with pytest.raises(RobotError, match=wanted):
+        read_urdf(path)

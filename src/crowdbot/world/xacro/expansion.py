@@ -107,7 +107,7 @@ class _Expander:
         self.macros: dict[str, Macro] = {}
         self.declared: set[str] = set()
         self.ignored: list[str] = []
-        self.missing = False
+        self.missing = ""
         self.prefix = ""
         self.calls = self.includes = self.files = self.made = 0
         self.now: SourceElement | None = None
@@ -122,6 +122,8 @@ class _Expander:
         except (InputError, RecursionError, OSError) as error:
             at = self.now or root
             what = "the elements are nested too deep" if isinstance(error, RecursionError) else str(error)
+            if self.missing and "is not defined" in what:
+                what += f"; the included file {self.missing} is missing{_advice(self.missing)}"
             raise RobotError(f"{at.place}:{at.line}: <{at.tag[:60]}>: {what}") from None
 
     def copy(self, source: SourceElement, scope: Scope) -> SourceElement:
@@ -233,7 +235,7 @@ class _Expander:
         path = self.texts.find(name)
         if path is None:
             if not boolean(element.attributes.get("optional", "false")):
-                self.missing = True
+                self.missing = self.missing or name[:200]
                 self.ignored.append(
                     f"{element.place}:{element.line}: the included file {name[:200]} is missing; it is left out"
                     f"{_advice(name)}"
