@@ -71,6 +71,15 @@ def test_a_controller_file_of_the_package_is_found(tmp_path):
     assert next(guess for guess in made.guesses if guess.what == "max-speed").source == "base_controller in d.yaml"
 
 
+def test_wheels_with_a_prefix_of_the_launch_file_are_those_of_the_robot(tmp_path):
+    (tmp_path / "config").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>bot</name></package>")
+    (tmp_path / "r.xacro").write_text(base_file("differential"))
+    text = ROS_1.replace("'left_joint'", "'$(arg prefix)left_joint'").replace("right_joint", "$(var prefix)right_joint")
+    (tmp_path / "config" / "control.yaml").write_text(text)
+    assert values(import_robot(tmp_path / "r.xacro", "r"))["max-acceleration"] == ("1.9 m/s2", "file")
+
+
 def test_a_controller_file_that_the_robot_file_names_is_read(tmp_path):
     plugin = (
         "<gazebo><plugin filename='gz_ros2_control-system' name='x'><parameters>{}</parameters></plugin></gazebo>"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -40,6 +41,9 @@ WHEELS = (
     "left_wheel", "right_wheel", "left_wheel_names", "right_wheel_names", "front_wheels_names", "rear_wheels_names",
     "traction_joint_name", "traction_joints_names", "steering_joint_name", "steering_joints_names",
 )  # fmt: skip
+
+LAUNCH_ARGUMENT = re.compile(r"\$\((?:arg|var) [^()]*\)")
+"""An argument of the launch file in the name of a joint: a prefix, which is empty by default."""
 
 
 class ControllerFile(NamedTuple):
@@ -131,7 +135,7 @@ def _joints(rows: Mapping[str, Any]) -> tuple[str, ...]:
     for key in WHEELS:
         value = rows.get(key)
         rows_of = value if isinstance(value, list) else [value]
-        names += [one for one in rows_of if isinstance(one, str)]
+        names += [LAUNCH_ARGUMENT.sub("", one) for one in rows_of if isinstance(one, str)]
     return tuple(dict.fromkeys(names))
 
 
