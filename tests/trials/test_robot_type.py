@@ -113,3 +113,14 @@ def test_a_recording_of_a_built_in_trial_names_its_robot_with_the_folder(folder)
     done = record(trial, 1, folder / "elsewhere" / "episode.mcap")
     (folder / "mybot" / "robot.xml").unlink()
     assert main(["replay", str(done.path)]) == 0
+
+
+def test_the_line_of_a_robot_says_that_its_shape_is_replaced(folder, capsys):
+    text = URDF.replace('<cylinder radius="0.2" length="0.5"/>', '<mesh filename="body.stl"/>')
+    (folder / "mybot" / "mybot.urdf").write_text(text, encoding="utf-8")
+    assert main(["run", "doorway", "--set", "robot/type=mybot", "--set", "duration=0.2"]) == 0
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if " is mybot: " in line]
+    wanted = "; meshes of a link are missing or broken and replaced by other shapes, see crowdbot check mybot"
+    assert line.endswith(wanted)
+    assert main(["check", "mybot"]) == 0
+    assert "the mesh file body.stl is missing; for contacts, " in capsys.readouterr().out

@@ -77,6 +77,8 @@ def replace_robot(robot: Element, kind: str) -> None:
 def describe_robot(robot: RobotSpec) -> str:
     """Describe a robot in one line: type, drive, maximum speed, size, sensors, and what the trial overrides.
 
+    The line also says whether shapes of the robot are replaced, since meshes are missing.
+
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import RobotGoal, RobotSpec
     >>> from crowdbot.world import DifferentialDrive
@@ -93,6 +95,12 @@ def describe_robot(robot: RobotSpec) -> str:
         f"robot {robot.name!r} is {robot.type or 'a disc'}: {_drive(robot.drive)}, radius {robot.radius:.3g} m,"
         f" {f'sensors {sensors}' if sensors else 'no sensors'}"
     )
+    lost = robot.body.model.replaced_colliders if robot.type else 0
+    if lost:
+        links = "a link" if lost == 1 else f"{lost} links"
+        line += (
+            f"; meshes of {links} are missing or broken and replaced by other shapes, see crowdbot check {robot.type}"
+        )
     overrides = [*_overrides(robot)]
     return f"{line}; the trial overrides {', '.join(overrides)}" if overrides else line
 

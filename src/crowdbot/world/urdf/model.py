@@ -189,6 +189,11 @@ class RobotModel:
         return tuple(remark.text for remark in self.remarks)
 
     @property
+    def replaced_colliders(self) -> int:
+        """Number of links whose shape for contacts is not that of the file, since a mesh is missing or broken."""
+        return sum(remark.kind == "replaced" and "; for contacts, " in remark.text for remark in self.remarks)
+
+    @property
     def mass(self) -> float:
         """Total mass [kg]."""
         return sum(link.inertial.mass for link in self.links.values() if link.inertial)
