@@ -124,3 +124,19 @@ def test_the_line_of_a_robot_says_that_its_shape_is_replaced(folder, capsys):
     assert line.endswith(wanted)
     assert main(["check", "mybot"]) == 0
     assert "the mesh file body.stl is missing; for contacts, " in capsys.readouterr().out
+
+
+def test_a_type_of_the_command_line_lies_in_the_working_folder(folder, capsys):
+    """``--set robot/type`` and ``--robots`` name the same folder, wherever the trial file is."""
+    assert main(["new", "navigator", "mine.py"]) == 0
+    (folder / "halls").mkdir()
+    text = XML.format(parts="").replace('type="mybot"', 'type="cuybot"')
+    (folder / "halls" / "hall.xml").write_text(text, encoding="utf-8")
+    values = ["--set", "robot/type=mybot", "--set", "robot/navigator/type=mine.py:Mine", "--set", "duration=0.2"]
+    for words in (["run", "halls/hall.xml"], ["check", "halls/hall.xml"]):
+        assert main([*words, *values]) == 0
+        shown = capsys.readouterr()
+        assert "at most 1.9 m/s, radius 0.2 m, sensors front (lidar2d)" in shown.out + shown.err
+    assert main(["run", "halls/hall.xml", "--set", "robot/type=yourbot"]) == 2
+    (folder / "mybot").rename(folder / "halls" / "mybot")  # not in the working folder: beside the trial
+    assert main(["run", "halls/hall.xml", *values]) == 0

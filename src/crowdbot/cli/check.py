@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .output import add_json, print_json, robot_lines
-from .settings import add_settings, settings
+from .settings import add_settings, load_given, settings
 
 MOST_LINES = 20
 
@@ -77,7 +77,7 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.experiments import is_experiment, load_experiment
-    from crowdbot.trials import expand_sweeps, load_trial, trial_remarks
+    from crowdbot.trials import expand_sweeps, trial_remarks
 
     if Path(name).is_dir():
         return {"problems": [f"{name} is a folder without robot.xml; give a trial, an experiment, a URDF or a robot"]}
@@ -85,7 +85,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         if is_experiment(name):
             load_experiment(name, trust=options.trust)
             return {"problems": []}
-        trial = load_trial(name, settings(options), trust=options.trust)
+        trial = load_given(name, settings(options), options.trust)
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import add_json, number, print_json, print_table, progress
-from .settings import add_settings, add_world, select_variant, settings
+from .settings import add_settings, add_world, load_given, select_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.rendering import RenderRequest
@@ -60,13 +60,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Render the image or the video."""
     from crowdbot.core import InputError
-    from crowdbot.trials import load_trial
 
     if options.trial.lower().endswith(".mcap"):
         return _render_episode(options)
     if options.folder is not None:
         raise InputError("--folder is for an episode; the files of a trial are in its own folder")
-    trial = select_variant(load_trial(options.trial, settings(options), trust=options.trust), options.variant)
+    trial = select_variant(load_given(options.trial, settings(options), options.trust), options.variant)
     return _render(options, trial, trial.seed if options.seed is None else options.seed)
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import os
+from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_robots", "add_settings", "add_world", "robots", "select_variant", "settings"]
+__all__ = ["add_robots", "add_settings", "add_world", "load_given", "robots", "select_variant", "settings"]
 
 WORLDS = ("planar", "physics")
 
@@ -74,6 +77,33 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
             raise InputError(f"--world {world} must be {' or '.join(WORLDS)}{did_you_mean(world, WORLDS)}")
         found["world"] = world
     return found
+
+
+def load_given(source: str, values: Mapping[str, str], trust: bool = False) -> Trial:
+    """Load the trial of a command with its values.
+
+    A type names a robot folder or code in the working folder, as all other options do, or else in the folder of the
+    trial. Naming it allows it, also outside the folder of the trial.
+    """
+    from crowdbot.trials import apply_values, load_trial
+
+    path = Path(source)
+    given = {key: _seen_from(path.parent, value) for key, value in values.items() if key.endswith("/type")}
+    named = {key: value for key, value in given.items() if value != values[key]}
+    if not named or not path.is_file():
+        return load_trial(source, values, trust=trust)
+    trial = load_trial(source, trust=trust)
+    return apply_values(trial, {**values, **named}, place=trial.name, trust=True)
+
+
+def _seen_from(folder: Path, value: str) -> str:
+    """Return the address of a robot folder or of code in the working folder as seen from another folder."""
+    name, colon, rest = value.partition(":")
+    path, here = Path(name).resolve(), Path.cwd().resolve()
+    known = path.is_file() if colon else (path / "robot.xml").is_file()
+    if not known or folder.resolve() == here or not path.is_relative_to(here):
+        return value
+    return f"{Path(os.path.relpath(path, folder.resolve())).as_posix()}{colon}{rest}"
 
 
 def select_variant(trial: Trial, variant: int | None) -> Trial:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.settings import robots, settings
+from crowdbot.cli.settings import load_given, robots, settings
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan
@@ -60,21 +60,20 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         with_safety,
     )
     from crowdbot.metrics import LOG_FAMILIES
-    from crowdbot.trials import load_trial
 
     values = settings(options)
     factors = parse_factors([text for texts in options.sweep for text in texts])
     trials, levels = [], {}
     for name in options.trials:
         if not factors:
-            trials.append(load_trial(name, values, trust=options.trust))
+            trials.append(load_given(name, values, options.trust))
             continue
         again = [one.name for one in factors if one.name in values]
         if again:
             raise InputError(f"--sweep {again[0]} and --set {again[0]} conflict; give one of them")
-        base = load_trial(name, values, trust=options.trust).name
+        base = load_given(name, values, options.trust).name
         for trial, row in sweep_trials(
-            lambda row, name=name: load_trial(name, {**values, **row}, trust=options.trust),  # type: ignore[misc]
+            lambda row, name=name: load_given(name, {**values, **row}, options.trust),  # type: ignore[misc]
             factors,
         ):
             trials.append(trial)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, print_table, progress
-from crowdbot.cli.settings import add_settings, add_world, settings
+from crowdbot.cli.settings import add_settings, add_world, load_given, settings
 
 if TYPE_CHECKING:
     from crowdbot.generation import DataCard, GenerationPlan
@@ -103,12 +103,12 @@ def make_plan(options: argparse.Namespace) -> GenerationPlan:
 def _load(options: argparse.Namespace, name: str, values: dict[str, str]) -> Trial:
     from crowdbot.core import InputError, did_you_mean
     from crowdbot.generation import RECIPES
-    from crowdbot.trials import builtin_trials, load_trial
+    from crowdbot.trials import builtin_trials
 
     hint = did_you_mean(name, RECIPES)
     if hint and name not in builtin_trials() and not Path(name).exists():
         raise InputError(f"there is no trial or recipe {name!r}{hint}")
-    return load_trial(name, values | settings(options), trust=options.trust)
+    return load_given(name, values | settings(options), options.trust)
 
 
 def _print(card: DataCard, out: Path, wall: float) -> None:
