@@ -96,6 +96,16 @@ def test_wrong_input_is_told_in_a_sentence(words: list[str], message: str, capsy
     assert "Traceback" not in error
 
 
+def test_a_requirement_on_an_unknown_metric_is_refused_before_the_runs(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main([*QUICK, "--require", "collision-rat<0.5@95%", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert error.endswith("crowdbot: there is no metric 'collision-rat', did you mean 'collision-rate'?\n")
+    assert "evaluate" not in error
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.live
 def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = [

@@ -140,3 +140,10 @@ def test_a_type_of_the_command_line_lies_in_the_working_folder(folder, capsys):
     assert main(["run", "halls/hall.xml", "--set", "robot/type=yourbot"]) == 2
     (folder / "mybot").rename(folder / "halls" / "mybot")  # not in the working folder: beside the trial
     assert main(["run", "halls/hall.xml", *values]) == 0
+
+
+@pytest.mark.parametrize(("name", "hint"), [("mybto", ", did you mean 'mybot'?"), ("nothing-like-it", "")])
+def test_check_names_the_robot_that_was_meant(folder, capsys, name, hint):
+    assert main(["check", name]) == 2
+    wanted = f"there is no trial, experiment, robot, file or folder {name!r}{hint}\n{name}: 1 error\n"
+    assert capsys.readouterr().out == wanted

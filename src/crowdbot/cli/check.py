@@ -77,7 +77,7 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.experiments import is_experiment, load_experiment
-    from crowdbot.trials import expand_sweeps, trial_remarks
+    from crowdbot.trials import builtin_trials, expand_sweeps, trial_remarks
 
     if Path(name).is_dir():
         return {"problems": [f"{name} is a folder without robot.xml; give a trial, an experiment, a URDF or a robot"]}
@@ -85,6 +85,8 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         if is_experiment(name):
             load_experiment(name, trust=options.trust)
             return {"problems": []}
+        if not Path(name).exists() and not Path(name).suffix and name not in builtin_trials():
+            return {"problems": [_missing(name)]}
         trial = load_given(name, settings(options), options.trust)
     except TrialError as error:
         return {"problems": list(error.problems)}
@@ -92,6 +94,16 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         return {"problems": [str(error)]}
     variants = [one.name for one in expand_sweeps(trial)] if trial.sweeps else []
     return {"problems": [], "robots": robot_lines([trial]), "remarks": trial_remarks(trial), "variants": variants}
+
+
+def _missing(name: str) -> str:
+    """Return that nothing has a name, with the nearest name of a trial, a robot or a robot folder."""
+    from crowdbot.core import did_you_mean
+    from crowdbot.trials import builtin_trials
+    from crowdbot.world import builtin_robots
+
+    known = [*builtin_trials(), *builtin_robots(), *(path.parent.name for path in Path().glob("*/robot.xml"))]
+    return f"there is no trial, experiment, robot, file or folder {name!r:.200}{did_you_mean(name, known)}"
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:

@@ -29,7 +29,7 @@ from .result import CellResult, EvaluationResult, load_evaluation, result_schema
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .scan_prediction import SCAN_SCORES, SOGMP, ScanProtocol, ScanScores, TruePeople, plot_scan_scores, score_scans
-from .statistic import Statistic, metric_unit, parse_statistic
+from .statistic import Statistic, check_metrics, metric_unit, parse_statistic
 from .sweep_effects import FactorEffect, factor_effects
 from .tracking import (
     BAND_LIMITS,
@@ -107,6 +107,7 @@ __all__ = [
     "VideoRun",
     "WorstRun",
     "bootstrap_interval",
+    "check_metrics",
     "episode_log",
     "episode_metrics",
     "estimate_downstream",

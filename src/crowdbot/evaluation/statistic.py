@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from crowdbot.metrics import Metric, metric_table
 from .intervals import Estimate, bootstrap_interval, proportion_interval
 from .own_metric import metric_name
 
-__all__ = ["RATES", "Statistic", "metric_unit", "parse_statistic"]
+__all__ = ["RATES", "Statistic", "check_metrics", "metric_unit", "parse_statistic"]
 
 Floats = NDArray[np.float64]
 RATES = {
@@ -111,8 +111,27 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     metric = word.replace("-", "_")
     if metrics is not None and metric not in metrics:
         known = [*RATES, *(one.replace("_", "-") for one in metrics)]
-        raise InputError(f"there is no metric {word!r}{did_you_mean(word, known)}; known are {', '.join(known)}")
+        hint = did_you_mean(word, known) or f"; known are {', '.join(known)}"
+        raise InputError(f"there is no metric {word!r}{hint}")
     return Statistic(name, metric, kind)
+
+
+def check_metrics(statistics: Iterable[Statistic]) -> None:
+    """Check that the metrics of statistics exist, before any run.
+
+    Raises:
+        InputError: there is no such metric.
+
+    >>> check_metrics([parse_statistic("p95:time-to-goal")])
+    >>> check_metrics([parse_statistic("time-to-gaol")])
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: there is no metric 'time-to-gaol', did you mean 'time-to-goal'?
+    """
+    statistics = list(statistics)
+    own = {one.metric: None for one in statistics if one.address} | dict.fromkeys(RATES.values())
+    for one in statistics:
+        if one.metric not in own and _row_of(one.metric) is None:
+            parse_statistic(one.name, {**own, **metric_table()})
 
 
 _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {

@@ -89,9 +89,10 @@ def load_builtin_trial(
     values = {**(given or {}), **values}
     known = builtin_trials()
     if name not in known:
-        meant = did_you_mean(name, known)
-        names = "crowdbot list trials lists the built-in trials" if meant else f"built-in trials are {', '.join(known)}"
-        raise TrialError(f"there is no trial {name!r:.200}{meant}; it is neither a file nor a built-in name; {names}")
+        raise TrialError(
+            f"there is no trial {name!r:.200}{did_you_mean(name, known)}; it is neither a file nor a built-in name;"
+            " crowdbot list trials lists the built-in trials"
+        )
     preset = PRESETS.get(name)
     if preset is None:
         inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")

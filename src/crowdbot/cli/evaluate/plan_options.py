@@ -51,6 +51,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     from crowdbot.core import InputError
     from crowdbot.evaluation import (
         EvaluationPlan,
+        check_metrics,
         families_of,
         parse_factors,
         parse_methods,
@@ -79,6 +80,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
             trials.append(trial)
             levels[trial.name] = (base, row)
     statistics = [parse_statistic(one) for one in names]
+    check_metrics(statistics)
     own = dict.fromkeys(one.address for one in statistics if one.address)
     families = (*LOG_FAMILIES, *own, *families_of([one.metric for one in statistics]))
     methods = parse_methods(options.navigators)
