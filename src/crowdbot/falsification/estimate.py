@@ -33,7 +33,8 @@ def mixture_estimate(
     interval holds those of two methods: the bootstrap of runs within their proposals (bias-corrected and accelerated),
     and the gamma interval of weighted Poisson counts, which assumes one more failure with the largest weight seen. With
     fewer failures, the gamma interval assumes one with the largest possible weight; without a failure its lower end is
-    0, and its upper end is the rule of three: 3 of the smallest expected number of runs that see a failure.
+    0, and its upper end is the rule of three: 3 of the smallest expected number of runs that see a failure. If all
+    runs fail, the same rule holds for the probability of a run without a failure.
 
     Args:
         fails: ``[N]`` which runs fail.
@@ -51,10 +52,14 @@ def mixture_estimate(
     0.001
     >>> print(mixture_estimate(np.zeros(1000, dtype=bool), np.ones(1000), np.zeros(1000, dtype=int), 1.0))
     0 [0, 0.003]
+    >>> print(mixture_estimate(np.ones(1000, dtype=bool), np.full(1000, 0.4), np.zeros(1000, dtype=int), 1.0))
+    1 [0.997, 1]
     """
     count, hits = len(fails), int(np.sum(fails))
     if hits == 0:
         return Estimate(0.0, 0.0, min(1.0, -math.log(1.0 - confidence) * largest / count), count)
+    if hits == count:  # the same for the runs without a failure, of which there is none
+        return Estimate(1.0, max(0.0, 1.0 + math.log(1.0 - confidence) * largest / count), 1.0, count)
     values = weights[fails] / count
     mean = float(values.sum())
     low, high = _gamma_interval(values, float(values.max()) if hits >= FEW else largest / count, confidence)
