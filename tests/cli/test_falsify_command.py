@@ -21,6 +21,10 @@ CROSS = """<trial name="cross" duration="8" step="0.1"><crowd type="orca"/>
 <agent name="p" x="0" y="4.2" goal="0,-4" speed="1"/>
 <robot x="-3" y="0" visible="false"><goal x="3" y="0"/><drive type="differential-drive"/>
 <navigator type="straight" speed="0.8"/></robot></trial>"""
+WIDE_URDF = """<robot name="wide"><link name="base"><inertial><mass value="60"/>
+<inertia ixx="2" iyy="4" izz="5" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="0.96 0.6 0.4"/></geometry></collision></link></robot>"""
+WIDE = '<robot name="wide" urdf="wide.urdf"><drive type="differential-drive"/></robot>'
 OVER = ("--over", "agent[p]/y=normal(5.4, 0.4)", "--over", "agent[p]/speed=uniform(0.8,1.2)")
 
 
@@ -47,6 +51,36 @@ def test_the_table_is_printed_and_found_trials_run_with_the_same_digest(
     again = json.loads(capsys.readouterr().out)
     assert again["clusters"] == stored["clusters"]
     assert "http" not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_result_names_the_robot_and_a_passage_that_it_does_not_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wide").mkdir()
+    (tmp_path / "wide" / "robot.xml").write_text(WIDE, encoding="utf-8")
+    (tmp_path / "wide" / "wide.urdf").write_text(WIDE_URDF, encoding="utf-8")
+    words = [
+        "falsify",
+        "doorway",
+        "--robots",
+        "wide",
+        "--navigator",
+        "straight",
+        "--over",
+        "agent[1]/speed=uniform(1,2)",
+    ]
+    assert main([*words, "--set", "duration=8", "--runs", "6", "--out", "out"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    narrow = "the narrowest passage on the way of the robot is 0.95 m wide: less than the diameter of its disc, 1.13 m"
+    assert "doorway, straight on wide: collision" in text
+    assert narrow in text
+    assert "The failure probability is 1, 95 % interval" in text
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "doorway, straight on wide, failure: collision" in page
+    assert narrow in page
+    assert main(["run", "doorway", "--set", "robot/type=wide", "--set", "duration=1"]) == 0
+    assert narrow in " ".join(capsys.readouterr().out.split())
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from crowdbot.trials import RobotSpec, Trial, expand_sweeps, remarks_at_end, tri
 from .episode_metrics import check_families
 from .method import Method, own_method
 
-__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
+__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds", "passage_remark"]
 
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
@@ -63,7 +63,7 @@ class EvaluationCell:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader must know about this robot in this trial, such as a passage too narrow for its disc."""
-        return tuple(filter(None, (_passage_remark(self.variant),)))
+        return tuple(filter(None, (passage_remark(self.variant),)))
 
     @property
     def protocol(self) -> dict[str, Any]:
@@ -169,12 +169,14 @@ class EvaluationPlan:
         object.__setattr__(self, "cells", cells)
 
 
-def _passage_remark(trial: Trial) -> str:
+def passage_remark(trial: Trial) -> str:
     """Return why the first robot of a trial cannot reach its goal although its outline fits, or an empty text.
 
     The planar world treats a robot as a disc. If walls leave the disc no path from start to goal, but a disc as wide as
     the outline of the robot has one, the narrowest passage on the way of the robot is the reason.
     """
+    if not trial.robots:
+        return ""
     robot = trial.robots[0]
     if trial.world != "planar" or not robot.type or robot.ghost or robot.mirror is not None:
         return ""

@@ -11,6 +11,7 @@ import numpy as np
 
 from crowdbot.calibration import resolve_search
 from crowdbot.core import InputError, stream
+from crowdbot.evaluation import passage_remark
 
 from .cluster import find_clusters
 from .cross_entropy import CrossEntropy
@@ -98,6 +99,7 @@ def falsify(
             dataclasses.replace(one, file=f"found/{file.path.name}", same=file.same)
             for one, file in zip(kept, files, strict=True)
         ]
+    remark = passage_remark(space.trial)
     return FalsificationResult(
         space.trial.name,
         method,
@@ -111,6 +113,8 @@ def falsify(
         found.estimate,
         clusters,
         tuple(kept),
+        Path(space.trial.robots[0].type).name if space.trial.robots else "",
+        (remark,) if remark else (),
     )
 
 

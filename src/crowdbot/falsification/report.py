@@ -39,9 +39,7 @@ def write_report(result: FalsificationResult, space: SearchSpace, path: Path) ->
     page = Template(_asset("falsification", "report.html")).substitute(
         style=_asset("evaluation", "report.css"),
         script=_asset("evaluation", "report.js"),
-        lead=html.escape(
-            f"{result.trial}, navigator {result.method}, failure: {result.failure}. {describe_rarity(result)}"
-        ),
+        lead=html.escape(_lead(result)),
         summary=_summary(result),
         runs_plot=runs_svg(result),
         clusters=_clusters(result),
@@ -54,6 +52,12 @@ def write_report(result: FalsificationResult, space: SearchSpace, path: Path) ->
     with explain_write_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(page, encoding="utf-8")
+
+
+def _lead(result: FalsificationResult) -> str:
+    """Return what was searched, and what a reader must know of the robot."""
+    said = f"{result.title}, failure: {result.failure}. {describe_rarity(result)}"
+    return " ".join((said, *(f"Note: {remark}" for remark in result.remarks)))
 
 
 def _factors(result: FalsificationResult) -> str:
@@ -72,7 +76,7 @@ def describe_rarity(result: FalsificationResult) -> str:
         return f"None of {len(result.samples)} runs is possible; there is no estimate."
     if not result.failures:
         return f"No run fails; the failure probability is at most {high:.2g} (95 %)."
-    once = f", once in {1.0 / value:.3g} runs" if value > 0.0 else ""
+    once = f", once in {1.0 / value:.3g} runs" if 0.0 < value < 0.5 else ""
     return f"The failure probability is {value:.3g}, 95 % interval {low:.2g} to {high:.2g}{once}."
 
 

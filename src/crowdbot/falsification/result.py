@@ -61,6 +61,8 @@ class FalsificationResult:
         estimate: the failure probability with its 95 % interval, or None.
         clusters: clusters of failures, by their share of the probability.
         found: failures that are kept.
+        robot: type of the robot, a built-in name or the name of its folder; empty for a robot without a type.
+        remarks: what a reader must know about this robot in this trial, in sentences.
     """
 
     trial: str
@@ -75,6 +77,13 @@ class FalsificationResult:
     estimate: Estimate | None
     clusters: tuple[FailureCluster, ...]
     found: tuple[FoundFailure, ...]
+    robot: str = ""
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def title(self) -> str:
+        """Trial, navigator and robot."""
+        return f"{self.trial}, {self.method}{f' on {self.robot}' if self.robot else ''}"
 
     @property
     def failures(self) -> int:
@@ -116,6 +125,8 @@ class FalsificationResult:
         return {
             "trial": self.trial,
             "navigator": self.method,
+            "robot": self.robot,
+            "remarks": list(self.remarks),
             "failure": self.failure,
             "search": self.search,
             "seed": self.seed,

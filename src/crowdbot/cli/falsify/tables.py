@@ -29,7 +29,7 @@ def print_result(result: FalsificationResult, wall: float) -> None:
         str(result.invalid),
         estimate,
     )
-    print_table(f"{result.trial}: {result.failure}", head, [row], words=2)
+    print_table(f"{result.title}: {result.failure}", head, [row], words=2)
     _print_clusters(result)
     _print_found(result)
     for message, count in list(result.errors.items())[:MOST]:
@@ -37,6 +37,8 @@ def print_result(result: FalsificationResult, wall: float) -> None:
     invalid = next((sample.message for sample in result.samples if not sample.valid), "")
     if invalid:
         print(f"invalid: {result.invalid} runs, such as: {invalid}")
+    for remark in result.remarks:
+        print(f"note: {remark}")
     print(f"{describe_rarity(result)}\n{len(result.samples)} runs in {wall:.1f} s")
 
 
