@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from base_texts import BASES, base_file
+from base_texts import BASES, PAIR, base_file, wheels
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist
@@ -99,6 +99,16 @@ def test_a_plugin_decides_and_an_option_decides_more(tmp_path):
     assert import_robot(file, "r", kind="mecanum").kind == "mecanum"
     with pytest.raises(InputError, match=r"kind of base 'mecanom' must be .*did you mean 'mecanum'"):
         import_robot(file, "r", kind="mecanom")
+
+
+def test_wheels_that_roll_along_y_are_noted(tmp_path):
+    file = tmp_path / "r.xacro"
+    file.write_text(base_file("differential"))
+    assert not any("roll along y" in remark for remark in import_robot(file, "r").remarks)
+    across = wheels(("left", 0.2, 0, math.pi / 2), ("right", -0.2, 0, math.pi / 2))
+    file.write_text(base_file("differential").replace(wheels(*PAIR), across))
+    made = import_robot(file, "r", kind="differential")
+    assert any("the wheels roll along y, but the front of a robot is along x" in remark for remark in made.remarks)
 
 
 def test_a_receiver_in_all_directions_is_no_omnidirectional_base(tmp_path):

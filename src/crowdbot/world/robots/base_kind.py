@@ -83,6 +83,14 @@ class BaseKind(NamedTuple):
         return max(places) - min(places) if places else 0.0
 
     @property
+    def rolls_sideways(self) -> bool:
+        """Whether the wheels of a base that does not move sideways roll along y instead of x."""
+        fixed = [wheel for wheel in self.wheels if not wheel.steering]
+        return self.kind in ("differential", "skid-steer", "ackermann", "tricycle") and bool(
+            fixed and all(abs(wheel.axle[0]) > 0.9 for wheel in fixed)
+        )
+
+    @property
     def axles(self) -> int:
         """Number of axles: groups of wheels whose places differ by less than half a radius."""
         places = sorted(float(wheel.center[0]) for wheel in self.wheels)

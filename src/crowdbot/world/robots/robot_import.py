@@ -41,6 +41,10 @@ from .robot_urdf import (
 __all__ = ["Guess", "RobotFolder", "import_robot"]
 
 GROUND_LINK = "drive_center"
+SIDEWAYS = (
+    "the wheels roll along y, but the front of a robot is along x (REP 103), so it would drive sideways; turn the base"
+    " of the robot file by 90 degrees"
+)
 
 
 @dataclass
@@ -132,6 +136,8 @@ def import_robot(
     add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
+    if base.rolls_sideways:
+        remarks = [*remarks, SIDEWAYS]
     made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, done.mass
     made.texts["import.json"] = _record(made, source)
     return made
