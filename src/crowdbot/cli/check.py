@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .output import add_json, print_json, robot_lines
-from .settings import add_settings, load_given, settings
+from .settings import add_settings, load_settings_trial, settings
 
 MOST_LINES = 20
 
@@ -87,7 +87,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
             return {"problems": []}
         if not Path(name).exists() and not Path(name).suffix and name not in builtin_trials():
             return {"problems": [_missing(name)]}
-        trial = load_given(name, settings(options), options.trust)
+        trial = load_settings_trial(name, settings(options), options.trust)
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_robots", "add_settings", "add_world", "load_given", "robots", "select_variant", "settings"]
+__all__ = ["add_robots", "add_settings", "add_world", "load_settings_trial", "robots", "select_variant", "settings"]
 
 WORLDS = ("planar", "physics")
 
@@ -79,7 +79,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     return found
 
 
-def load_given(source: str, values: Mapping[str, str], trust: bool = False) -> Trial:
+def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = False) -> Trial:
     """Load the trial of a command with its values.
 
     A type names a robot folder or code in the working folder, as all other options do, or else in the folder of the

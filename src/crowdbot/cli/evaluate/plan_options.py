@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.settings import load_given, robots, settings
+from crowdbot.cli.settings import load_settings_trial, robots, settings
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan
@@ -67,14 +67,14 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     trials, levels = [], {}
     for name in options.trials:
         if not factors:
-            trials.append(load_given(name, values, options.trust))
+            trials.append(load_settings_trial(name, values, options.trust))
             continue
         again = [one.name for one in factors if one.name in values]
         if again:
             raise InputError(f"--sweep {again[0]} and --set {again[0]} conflict; give one of them")
-        base = load_given(name, values, options.trust).name
+        base = load_settings_trial(name, values, options.trust).name
         for trial, row in sweep_trials(
-            lambda row, name=name: load_given(name, {**values, **row}, options.trust),  # type: ignore[misc]
+            lambda row, name=name: load_settings_trial(name, {**values, **row}, options.trust),  # type: ignore[misc]
             factors,
         ):
             trials.append(trial)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
-from crowdbot.cli.settings import add_robots, add_settings, add_world, load_given, robots, settings
+from crowdbot.cli.settings import add_robots, add_settings, add_world, load_settings_trial, robots, settings
 
 from .tables import print_result
 
@@ -113,5 +113,5 @@ def _space(options: argparse.Namespace) -> SearchSpace:
     kinds = robots(options)
     if len(kinds) != 1:
         raise InputError(f"--robots {options.robots!r} names {len(kinds)} robots; give one")
-    trial = load_given(options.trial, settings(options), options.trust)
+    trial = load_settings_trial(options.trial, settings(options), options.trust)
     return SearchSpace(methods[0].put_into(trial, kinds[0]), tuple(parse_factor(text) for text in options.over))

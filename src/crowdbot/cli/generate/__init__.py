@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, print_table, progress
-from crowdbot.cli.settings import add_settings, add_world, load_given, settings
+from crowdbot.cli.settings import add_settings, add_world, load_settings_trial, settings
 
 if TYPE_CHECKING:
     from crowdbot.generation import DataCard, GenerationPlan
@@ -108,7 +108,7 @@ def _load(options: argparse.Namespace, name: str, values: dict[str, str]) -> Tri
     hint = did_you_mean(name, RECIPES)
     if hint and name not in builtin_trials() and not Path(name).exists():
         raise InputError(f"there is no trial or recipe {name!r}{hint}")
-    return load_given(name, values | settings(options), options.trust)
+    return load_settings_trial(name, values | settings(options), options.trust)
 
 
 def _print(card: DataCard, out: Path, wall: float) -> None:

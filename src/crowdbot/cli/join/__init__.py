@@ -12,7 +12,7 @@ from crowdbot.cli.bridge import add_bridge, open_bridges
 from crowdbot.cli.bridge.mocap import add_mocap, open_captures, print_captures
 from crowdbot.cli.output import add_json, note, print_warnings
 from crowdbot.cli.run import print_run
-from crowdbot.cli.settings import add_settings, add_world, load_given, settings
+from crowdbot.cli.settings import add_settings, add_world, load_settings_trial, settings
 
 from .stop_key import StopKey
 
@@ -69,7 +69,7 @@ def main(options: argparse.Namespace) -> int:
     if options.clock not in (None, "paced"):
         raise InputError(f"--clock {options.clock} does not fit a real robot, which needs real time")
     options.pace = None
-    trial = load_given(options.trial, settings(options), options.trust)
+    trial = load_settings_trial(options.trial, settings(options), options.trust)
     guard = _guard(options)
     begin = time.perf_counter()
     with contextlib.ExitStack() as stack:
