@@ -103,7 +103,6 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
     """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
-    from crowdbot.evaluation import passage_remark
     from crowdbot.trials import trial_remarks
 
     summary = {
@@ -123,7 +122,12 @@ def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int
         return _report_failure(done, options.debug)
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    for remark in filter(None, (*trial_remarks(done.trial), passage_remark(done.trial))):
+    remarks = trial_remarks(done.trial)
+    if done.trial.robots and done.trial.robots[0].type:  # the import takes a second
+        from crowdbot.evaluation import passage_remark
+
+        remarks += filter(None, [passage_remark(done.trial)])
+    for remark in remarks:
         print(f"note: {remark}")
     return _report_failure(done, options.debug)
 
