@@ -63,7 +63,7 @@ class Agent:
     goal_zone: Points = attribute(Points(), about="corners x,y of the goal zone", unit="m")
     journey: str = attribute("", about="name of the journey; not with a goal")
     speed: float = attribute(1.34, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
-    radius: float = attribute(0.25, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
+    radius: float = attribute(0.2, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     arrival: str = attribute("leave", about="behaviour at the goal", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of the crowd (default: the first)")
     group: int = attribute(-1, about="number of the group, -1 for none", min=-1, max=1e6)

@@ -48,6 +48,8 @@ class HeadwayLayer(CrowdModel):
         headway_taper: decrease of the time gap from the middle of the corridor to its edge (quadratic), 0 to 1.
         headway_anticipation: look-ahead time for people who walk ahead in the same direction [s].
         headway_oncoming: share of the time gap that people keep to those who walk towards them, 0 to 1.
+        headway_sidestep: speed with which people who slide step past somebody who wants to walk the other way [m/s].
+        headway_step_back: speed with which people who slide and are stuck step back from those whom they touch [m/s].
         headway_reaction_time: time constant with which the speed limit follows the space ahead [s]; 0: no delay.
         headway_sliding: share of the velocity alongside others and walls that people keep when their way ends there, 0
             to 1. Above 0, each person takes at most half of the gap to others in a step, and none enters a wall.
@@ -84,6 +86,8 @@ class HeadwayLayer(CrowdModel):
     headway_taper: PerAgent = parameter(0.0, unit="1", low=0.0, high=1.0, source="Tordeux et al. 2016", max=1.0)
     headway_anticipation: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.0, source="off by default")
     headway_oncoming: PerAgent = parameter(1.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
+    headway_sidestep: PerAgent = parameter(0.3, unit="m/s", low=0.1, high=0.8, source=OWN)
+    headway_step_back: PerAgent = parameter(0.0, unit="m/s", low=0.0, high=0.5, source="off by default")
     headway_reaction_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.0, source="Tordeux et al. 2016")
     headway_sliding: PerAgent = parameter(0.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
     headway_distance: PerAgent = parameter(4.0, unit="m", low=1.0, high=10.0, source="free speed times time gap")
@@ -197,6 +201,8 @@ class HeadwayLayer(CrowdModel):
             each("taper"),
             each("anticipation"),
             each("oncoming"),
+            each("sidestep"),
+            each("step_back"),
             each("reaction_time"),
             each("sliding"),
             rows(walking),

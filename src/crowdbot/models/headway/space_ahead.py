@@ -20,11 +20,15 @@ SLOWEST = 1e-9
 SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
 SIDESTEP = 0.3
-"""Speed [m/s] with which people who slide step aside when the space ahead stops them."""
+"""Speed [m/s] with which people who slide step past somebody who walks the same way, when the space ahead stops them."""
 ATTEMPTS = 20
 """Passes over the neighbours in which a sliding person looks for a free velocity."""
 LEEWAY = 1e-2
 """Speed away from others [m/s] that each pass adds, so that the search ends."""
+STUCK = 0.05
+"""People slower than this [m/s] step back from those whom they touch ahead."""
+CONTACT = 0.01
+"""Gap [m] below which people touch."""
 STANDING = 0.1
 """People slower than this [m/s] do not count as oncoming."""
 
@@ -43,6 +47,8 @@ class HeadwayRows(NamedTuple):
     taper: Floats
     anticipation: Floats
     oncoming: Floats
+    sidestep: Floats
+    back: Floats
     reaction: Floats
     sliding: Floats
     walking: NDArray[np.bool_]
@@ -61,9 +67,10 @@ def limit_speeds_part(
 ) -> None:
     """Limit the speed of the agents ``begin`` to ``end`` in spatial order."""
     # unpack the tuples outside of the loop: each access counts references
-    place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, reaction, sliding, walking = (
-        crowd
-    )
+    (
+        place, velocity, chosen, wish, radius, gap, spacing, width, taper, look, oncoming, sidestep, back, reaction,
+        sliding, walking,
+    ) = crowd  # fmt: skip
     agent, number, order = near
     A = agent.shape[1]
     wall = np.empty((len(walls), 3))
@@ -78,6 +85,7 @@ def limit_speeds_part(
         ux, uy = vx / speed, vy / speed
         limit, way = math.inf, math.inf
         bx, by = 0.0, 0.0  # the person who limits the speed most
+        meets = False  # whether this person wants to walk the other way
         e, a = row // A, row % A
         for n in range(number[e, a]):
             other = row - a + agent[e, a, n]
@@ -96,20 +104,27 @@ def limit_speeds_part(
                 bound = max(free, 0.0) / (gap[row] * max(share, SMALLEST_SHARE))
                 if bound < limit:
                     limit, bx, by = bound, dx, dy
+                    meets = wish[other, 0] * wish[row, 0] + wish[other, 1] * wish[row, 1] < 0.0
         if limit < math.inf and reaction[row] > 0.0:
             now = max(0.0, velocity[row, 0] * ux + velocity[row, 1] * uy)
             free_speed = math.sqrt(wish[row, 0] ** 2 + wish[row, 1] ** 2)
             limit = now + (min(limit, max(free_speed, now)) - now) * -math.expm1(-dt / reaction[row])
         wanted = min(limit, speed)
         if sliding[row] > 0.0:
-            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], (wanted + SIDESTEP) * dt, wall)
+            step = sidestep[row] if meets else SIDESTEP
+            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], (wanted + step) * dt, wall)
             for n in range(number[e, a]):
                 _aside(place, radius, row, row - a + agent[e, a, n], dt, aside[n])
             for n in range(count):
                 aside[number[e, a] + n] = wall[n]
                 aside[number[e, a] + n, 2] /= dt
-            wx, wy = _step_aside(ux, uy, bx, by, wanted, sliding[row] * (min(SIDESTEP, speed) - wanted))
-            sx, sy = _slide(aside[: number[e, a] + count], wx, wy, sliding[row])
+            wx, wy = _step_aside(ux, uy, bx, by, wanted, sliding[row] * (min(step, speed) - wanted), meets)
+            held = number[e, a] + count
+            sx, sy = _slide(aside[:held], wx, wy, sliding[row], False)
+            if back[row] > 0.0 and sx * sx + sy * sy < STUCK * STUCK:
+                rx, ry = _step_back(aside[: number[e, a]], ux, uy, dt, back[row])
+                if rx != 0.0 or ry != 0.0:
+                    sx, sy = _slide(aside[:held], rx, ry, 1.0, True)
             out[row, 0], out[row, 1] = sx, sy
             continue
         limit = min(limit, way / dt)
@@ -118,13 +133,37 @@ def limit_speeds_part(
 
 
 @kernel
-def _step_aside(ux: float, uy: float, bx: float, by: float, wanted: float, step: float) -> tuple[float, float]:
-    """Return the velocity in direction u, and in addition a step past the person at bx, by if it is above 0."""
+def _step_aside(
+    ux: float, uy: float, bx: float, by: float, wanted: float, step: float, meets: bool
+) -> tuple[float, float]:
+    """Return the velocity in direction u, and in addition a step past the person at bx, by if it is above 0.
+
+    The step is across the line to this person. If both want to walk the other way (``meets``) it has its full length,
+    and goes to the right of a person straight ahead; otherwise it is shorter the less this person is aside.
+    """
     distance = math.sqrt(bx * bx + by * by)
     if distance == 0.0 or step <= 0.0:
         return wanted * ux, wanted * uy
     ahead = (ux * bx + uy * by) / distance
-    return wanted * ux + step * (ux - ahead * bx / distance), wanted * uy + step * (uy - ahead * by / distance)
+    px, py = ux - ahead * bx / distance, uy - ahead * by / distance
+    long = math.sqrt(px * px + py * py) if meets else 1.0
+    if long < SLOWEST:
+        px, py, long = by / distance, -bx / distance, 1.0
+    return wanted * ux + step * px / long, wanted * uy + step * py / long
+
+
+@kernel
+def _step_back(aside: Floats, ux: float, uy: float, dt: float, speed: float) -> tuple[float, float]:
+    """Return the velocity away from the people in contact ahead, 0 if there are none."""
+    bx, by = 0.0, 0.0
+    for n in range(len(aside)):
+        if 2.0 * aside[n, 2] * dt < CONTACT and aside[n, 0] * ux + aside[n, 1] * uy > 0.0:
+            bx -= aside[n, 0]
+            by -= aside[n, 1]
+    length = math.sqrt(bx * bx + by * by)
+    if length < SLOWEST:
+        return 0.0, 0.0
+    return speed * bx / length, speed * by / length
 
 
 @kernel
@@ -155,10 +194,10 @@ def _aside(place: Floats, radius: Floats, row: int, other: int, dt: float, found
 
 
 @kernel
-def _slide(aside: Floats, vx: float, vy: float, share: float) -> tuple[float, float]:
+def _slide(aside: Floats, vx: float, vy: float, share: float, any_way: bool) -> tuple[float, float]:
     """Return a velocity within the largest speeds towards others and walls: a shorter one, and one alongside them.
 
-    The second is found by repeated projection, and is 0 if none is found.
+    The second is found by repeated projection, and is 0 if none is found; if it leads back, only with ``any_way``.
     """
     scale = 1.0
     for n in range(len(aside)):
@@ -180,7 +219,7 @@ def _slide(aside: Floats, vx: float, vy: float, share: float) -> tuple[float, fl
             break
         if attempt == ATTEMPTS - 1:
             sx, sy = 0.0, 0.0
-    if sx * vx + sy * vy < 0.0:
+    if sx * vx + sy * vy < 0.0 and not any_way:
         sx, sy = 0.0, 0.0
     return (1.0 - share) * scale * vx + share * sx, (1.0 - share) * scale * vy + share * sy
 

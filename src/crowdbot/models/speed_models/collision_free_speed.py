@@ -22,7 +22,7 @@ Bools = NDArray[np.bool_]
 
 STEEPEST = 100.0
 """Upper limit of exponents, against overflow; only the direction of a strong repulsion matters."""
-LAW = ("strength", "range", "wall_strength", "wall_range", "time_gap", "neighbor_distance")
+LAW = ("strength", "range", "wall_strength", "wall_range", "time_gap", "neighbor_distance", "oncoming")
 APART = 1e-9
 """Assumed distance of agents at the same position [m], along x, the first of them on the right."""
 
@@ -104,6 +104,7 @@ def _choose_part(
     distance, push, push_x, push_y = (
         np.empty(agent.shape[2]), np.empty(agent.shape[2]), np.empty(agent.shape[2]), np.empty(agent.shape[2])
     )  # fmt: skip
+    strength = np.empty(agent.shape[2])
     for k in range(begin, end):
         row = order[k]
         wish = math.sqrt(agents[row, WISH_X] ** 2 + agents[row, WISH_Y] ** 2)
@@ -123,8 +124,10 @@ def _choose_part(
             if dx == 0.0 and dy == 0.0:
                 dx = -APART if row < other else APART
             aside[held], along[held], contact[held] = dx, dy, radius + agents[other, RADIUS]
+            against = agents[other, WISH_X] * agents[row, WISH_X] + agents[other, WISH_Y] * agents[row, WISH_Y] < 0.0
+            strength[held] = laws[law, 0] * (laws[law, 6] if against else 1.0)
             held += 1
-        _repel(aside, along, contact, held, laws[law, 0], laws[law, 1], distance, push, push_x, push_y)
+        _repel(aside, along, contact, held, strength, laws[law, 1], distance, push, push_x, push_y)
         for n in range(held):  # one after the other: the order of a sum decides on its last bits
             ux, uy = ux - push_x[n], uy - push_y[n]
         ux, uy = push_by_walls(walls, found, count, x, y, radius, laws[law, 2], laws[law, 3], ux, uy)
@@ -143,7 +146,7 @@ def _choose_part(
 
 @kernel(inline=True)
 def _repel(
-    aside: Floats, along: Floats, contact: Floats, held: int, strength: float, scale: float, distance: Floats,
+    aside: Floats, along: Floats, contact: Floats, held: int, strength: Floats, scale: float, distance: Floats,
     push: Floats, push_x: Floats, push_y: Floats,
 ) -> None:  # fmt: skip
     """Write distance, repulsion and its components for each neighbour, in loops that the compiler vectorizes."""
@@ -152,7 +155,7 @@ def _repel(
     for n in range(held):
         push[n] = min((contact[n] - distance[n]) / scale, STEEPEST)
     for n in range(held):
-        push[n] = strength * math.exp(push[n])
+        push[n] = strength[n] * math.exp(push[n])
     for n in range(held):
         push_x[n] = push[n] * aside[n] / distance[n]
     for n in range(held):
@@ -170,6 +173,7 @@ class CollisionFreeSpeed(CrowdModel):
         wall_range: decay length of the repulsion by walls [m].
         time_gap: time gap to the next agent ahead at the chosen speed [s]; 0: the space ahead does not limit the speed,
             which is then left to the headway layer.
+        oncoming: share of the repulsion by neighbours who want to walk the other way, 0 to 1.
         neighbor_distance: maximum distance of neighbours and walls [m]; neighbours behind a wall are ignored.
         max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
@@ -202,6 +206,7 @@ class CollisionFreeSpeed(CrowdModel):
     wall_strength: PerAgent = parameter(5.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
     wall_range: PerAgent = parameter(0.02, unit="m", low=0.01, high=0.2, source="JuPedSim 1.4.2", min=1e-3)
     time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2")
+    oncoming: PerAgent = parameter(1.0, unit="1", low=0.0, high=1.0, source="off by default", max=1.0)
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
     max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None

@@ -55,7 +55,7 @@ def _count(density: float, length: float, width: float) -> int:
 
 def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
     """Return a corridor in which people walk east and west at densities [1/m2], and a robot goes east."""
-    y = width / 2.0 - 0.35
+    y = width / 2.0 - 0.25
     zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
     people = [flow(way, _count(density, LENGTH, width), zone, way) for way, density in flows.items()]
     people = [Spawner(**_fields(one), groups=pairs(groups)) for one in people if one.count]
