@@ -335,11 +335,11 @@ know it.
 
 ## Encounters in the open
 
-One person (radius 0.17 to 0.23 m, speed 1.34 +- 0.26 m/s, as trials draw them) walks 24 m straight on; a robot of radius
-0.35 m stands in the way, drives straight on against it, or crosses so that both would meet. {seeds} seeds. Cells: where
-the evasion begins (0.1 m aside of the straight way, or below 80 % of the free speed; *none*: in less than half of the
-runs), the least gap with its 10 and 90 % quantiles over people, and the least speed as a share of the free speed.
-Medians, in m.
+One person (radius 0.17 to 0.23 m, speed 1.34 +- 0.26 m/s, as trials draw them) walks 24 m straight on; a robot of
+radius 0.35 m stands in the way, drives straight on against it, or crosses so that both would meet. {seeds} seeds.
+Cells: where the evasion begins (0.1 m aside of the straight way, or below 80 % of the free speed; *none*: in less than
+half of the runs), the least gap with its 10 and 90 % quantiles over people, and the least speed as a share of the free
+speed. Medians, in m.
 
 {encounters}
 

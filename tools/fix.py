@@ -37,6 +37,7 @@ LONG = {
     "docs/results/measured.md": "python tools/measured.py SHARED > docs/results/measured.md",
     "docs/results/people.md": "python tools/predict_people.py --data RECORDINGS --out docs/results/people.md",
     "docs/results/people-values.md": "python tools/fit_people.py --data RECORDINGS --state FILE --profiles FILE",
+    "docs/results/trial-crowds.md": "python tools/trial_crowds.py --out docs/results/trial-crowds.md",
     "docs/results/validation.md": "crowdbot validate --data RECORDINGS --out docs/results",
 }
 """Generated pages that no step writes, with their commands."""

@@ -152,3 +152,15 @@ def test_without_a_time_gap_only_the_direction_is_chosen():
     file = Scene.of([[0.0, 0.0], [0.41, 0.0]], radius=0.2, goal=[[9.0, 0.0], [9.0, 0.0]], preferred_speed=1.3)
     found = CollisionFreeSpeed(time_gap=0.0, strength=0.5).velocity(file, 0.1)[0]
     assert np.linalg.norm(found, axis=-1) == pytest.approx([1.3, 1.3])
+
+
+def test_people_who_want_to_walk_the_other_way_repel_by_their_share():
+    def turn(other: float, **values: float) -> float:
+        wish = [[1.3, 0.0], [other, 0.0]]
+        scene = Scene.of([[0.0, 0.0], [0.5, 0.2]], radius=0.2, preferred_velocity=wish)
+        vx, vy = CollisionFreeSpeed(**values).velocity(scene, 0.1)[0, 0]
+        return float(np.arctan2(vy, vx))
+
+    assert turn(-1.3) == turn(1.3) < 0.0
+    assert turn(1.3, oncoming=0.2) == turn(1.3)
+    assert turn(-1.3) < turn(-1.3, oncoming=0.2) < turn(-1.3, oncoming=0.0) == 0.0

@@ -226,3 +226,49 @@ def test_single_file_has_a_fundamental_diagram(kind, density):
         x, gone = x + dt * speed, gone + dt * speed
     assert gone.mean() / 20.0 == pytest.approx((length / count - 0.36) / 1.06, abs=0.2)
     assert np.all(np.diff(x) > 0.39)
+
+
+def head_on(offset: float = 0.0) -> Scene:
+    """Return two people in contact who want to walk through each other."""
+    return Scene.of(
+        [(0.0, 0.0), (0.4, offset)], radius=0.2, preferred_speed=1.3, preferred_velocity=[(1.3, 0.0), (-1.3, 0.0)]
+    )
+
+
+def test_two_people_in_contact_head_on_step_past_each_other():
+    model, scene = with_headway(Straight)(headway_sliding=1.0, headway_sidestep=0.6), head_on()
+    least = np.inf
+    for _ in range(60):
+        scene = model.step(scene.replace(preferred_velocity=head_on().preferred_velocity), 0.05)
+        least = min(least, float(np.hypot(*(scene.position[0, 0] - scene.position[0, 1]))))
+    assert scene.position[0, 0, 0] > scene.position[0, 1, 0]  # they have passed
+    assert least > 0.4 - 1e-9
+    assert np.all(scene.position[0, 0, 1] < scene.position[0, 1, 1])  # each on the own right
+
+
+def test_the_sidestep_has_its_speed_only_for_people_who_want_to_walk_the_other_way():
+    model = with_headway(Straight)(headway_sliding=1.0, headway_sidestep=0.6)
+    assert model.velocity(head_on(), 0.05)[0, 0].round(9).tolist() == [0.0, -0.6]
+    same = head_on().replace(preferred_velocity=np.array([[(1.3, 0.0), (1.3, 0.0)]]))
+    assert np.hypot(*model.velocity(same, 0.05)[0, 0]) <= 0.3 + 1e-9
+
+
+def test_people_who_are_stuck_step_back_from_those_whom_they_touch_ahead():
+    # three walls leave the first person no way but back
+    walls = [[(-2.0, 0.2), (2.0, 0.2)], [(-2.0, -0.2), (2.0, -0.2)]]
+    scene = Scene.of(
+        [(0.0, 0.0), (0.4, 0.0)], radius=0.2, preferred_velocity=[(1.3, 0.0), (-1.3, 0.0)], walls=walls
+    )  # fmt: skip
+    stands = with_headway(Straight)(headway_sliding=1.0).velocity(scene, 0.05)
+    assert np.allclose(stands, 0.0)
+    back = with_headway(Straight)(headway_sliding=1.0, headway_step_back=0.2).velocity(scene, 0.05)
+    assert back[0, :, 0].round(9).tolist() == [-0.2, 0.2]
+    assert np.allclose(back[0, :, 1], 0.0)
+
+
+def test_people_who_have_a_way_do_not_step_back():
+    scene = file(0.0, 1.0)
+    plain = with_headway(Straight)(headway_sliding=1.0).velocity(scene, 0.05)
+    assert with_headway(Straight)(headway_sliding=1.0, headway_step_back=0.2).velocity(scene, 0.05).tobytes() == (
+        plain.tobytes()
+    )

@@ -223,3 +223,12 @@ def test_every_parameter_has_a_line_for_people() -> None:
         assert preset.about.endswith(".")
         assert all(str(option).strip() and option.value(option.default) == option.default
                    for option in preset.options.values())  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [2.0, 4.0, 20.0])
+@pytest.mark.parametrize("name", ["one-way-with", "one-way-against", "two-way"])
+def test_every_density_of_a_corridor_can_be_placed(name: str, width: float) -> None:
+    trial = load_trial(name, density=3.0, width=width)
+    assert trial.people == pytest.approx(3.0 * 40.0 * width, abs=1)
+    for seed in (0, 1, 2):
+        check_trial(trial, seed)  # people who do not fit are an error

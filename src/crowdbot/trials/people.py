@@ -22,7 +22,7 @@ __all__ = ["Group", "SourceSpec", "Spawner"]
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
 """Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
 BODY_RADIUS = Distribution("uniform", (0.17, 0.23))
-"""Radius of bodies [m]: discs of about the area of a trunk. Its mean is the radius of the validation page and of JuPedSim."""
+"""Radius of bodies [m]: discs of about the area of a trunk, in the mean as large as those of the validation page."""
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,8 @@ DEFINITIONS = {
 AROUND_A_ROBOT = (
     "The experiments and tests of this page have no robot. [People around robots](around-robots.md) compares how people"
     " of each model evade a robot, and how near they come to it, with recorded people around a golf cart. Of the models"
-    " here, the preset `people` alone keeps a gap to robots by default."
+    " here, the preset `people` alone keeps a gap to robots by default. [Crowds in trials](trial-crowds.md) measures"
+    " the preset in longer corridors and doors of trials, with the bodies of their people."
 )
 
 

@@ -20,7 +20,7 @@ SLOWEST = 1e-9
 SMALLEST_SHARE = 1e-3
 """Lower limit of the share of the time gap, against division by zero."""
 SIDESTEP = 0.3
-"""Speed [m/s] with which people who slide step past somebody who walks the same way, when the space ahead stops them."""
+"""Speed [m/s] of a step past somebody who walks the same way, of people who slide and whom the space ahead stops."""
 ATTEMPTS = 20
 """Passes over the neighbours in which a sliding person looks for a free velocity."""
 LEEWAY = 1e-2
@@ -73,7 +73,6 @@ def limit_speeds_part(
     ) = crowd  # fmt: skip
     agent, number, order = near
     A = agent.shape[1]
-    wall = np.empty((len(walls), 3))
     aside = np.empty((agent.shape[2] + len(walls), 3))  # direction of neighbours and walls, and speed towards them
     for k in range(begin, end):
         row = order[k]
@@ -83,9 +82,8 @@ def limit_speeds_part(
         if not walking[row] or speed < SLOWEST:
             continue
         ux, uy = vx / speed, vy / speed
-        limit, way = math.inf, math.inf
-        bx, by = 0.0, 0.0  # the person who limits the speed most
-        meets = False  # whether this person wants to walk the other way
+        # b is the person who limits the speed most, meets: whether this person wants to walk the other way
+        limit, way, bx, by, meets = math.inf, math.inf, 0.0, 0.0, False
         e, a = row // A, row % A
         for n in range(number[e, a]):
             other = row - a + agent[e, a, n]
@@ -112,20 +110,15 @@ def limit_speeds_part(
         wanted = min(limit, speed)
         if sliding[row] > 0.0:
             step = sidestep[row] if meets else SIDESTEP
-            count = _near_walls(walls, place[row, 0], place[row, 1], radius[row], (wanted + step) * dt, wall)
             for n in range(number[e, a]):
                 _aside(place, radius, row, row - a + agent[e, a, n], dt, aside[n])
-            for n in range(count):
-                aside[number[e, a] + n] = wall[n]
-                aside[number[e, a] + n, 2] /= dt
+            count = _near_walls(
+                walls, place[row, 0], place[row, 1], radius[row], wanted + step, dt, aside[number[e, a] :]
+            )
             wx, wy = _step_aside(ux, uy, bx, by, wanted, sliding[row] * (min(step, speed) - wanted), meets)
-            held = number[e, a] + count
-            sx, sy = _slide(aside[:held], wx, wy, sliding[row], False)
-            if back[row] > 0.0 and sx * sx + sy * sy < STUCK * STUCK:
-                rx, ry = _step_back(aside[: number[e, a]], ux, uy, dt, back[row])
-                if rx != 0.0 or ry != 0.0:
-                    sx, sy = _slide(aside[:held], rx, ry, 1.0, True)
-            out[row, 0], out[row, 1] = sx, sy
+            out[row, 0], out[row, 1] = _find_way(
+                aside[: number[e, a] + count], number[e, a], ux, uy, wx, wy, sliding[row], back[row], dt
+            )
             continue
         limit = min(limit, way / dt)
         if limit < speed:
@@ -153,6 +146,19 @@ def _step_aside(
 
 
 @kernel
+def _find_way(
+    aside: Floats, people: int, ux: float, uy: float, wx: float, wy: float, sliding: float, back: float, dt: float
+) -> tuple[float, float]:
+    """Return the velocity of a person who slides: the wanted one alongside others, a step back if it leads nowhere."""
+    sx, sy = _slide(aside, wx, wy, sliding, False)
+    if back > 0.0 and sx * sx + sy * sy < STUCK * STUCK:
+        rx, ry = _step_back(aside[:people], ux, uy, dt, back)
+        if rx != 0.0 or ry != 0.0:
+            return _slide(aside, rx, ry, 1.0, True)
+    return sx, sy
+
+
+@kernel
 def _step_back(aside: Floats, ux: float, uy: float, dt: float, speed: float) -> tuple[float, float]:
     """Return the velocity away from the people in contact ahead, 0 if there are none."""
     bx, by = 0.0, 0.0
@@ -167,16 +173,16 @@ def _step_back(aside: Floats, ux: float, uy: float, dt: float, speed: float) -> 
 
 
 @kernel
-def _near_walls(walls: Floats, x: float, y: float, radius: float, way: float, found: Floats) -> int:
-    """Write direction and free distance of the walls in reach of a way [m] to ``found [K, 3]``; return their number."""
+def _near_walls(walls: Floats, x: float, y: float, radius: float, speed: float, dt: float, found: Floats) -> int:
+    """Write direction of the walls in reach of a step, and largest speed towards them; return their number."""
     count = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
     for m in range(len(walls)):
         nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
         dx, dy = nx - x, ny - y
         distance = math.sqrt(dx * dx + dy * dy)
-        if 0.0 < distance <= radius + way:
+        if 0.0 < distance <= radius + speed * dt:
             found[count, 0], found[count, 1] = dx / distance, dy / distance
-            found[count, 2] = max(distance - radius, 0.0)
+            found[count, 2] = max(distance - radius, 0.0) / dt
             count += 1
     return count
 
