@@ -117,7 +117,7 @@ def test_predictors_are_compared_on_true_and_tracked_people(capsys):
     assert list(found) == ["constant-velocity", "kalman"]
     for inputs in found.values():
         true, tracked, uncertain = (inputs[name] for name in ("true", "tracked", "tracked, uncertain"))
-        assert true["ade"]["value"] <= tracked["ade"]["value"] < 1.8 * true["ade"]["value"]
+        assert true["ade"]["value"] <= tracked["ade"]["value"] < true["ade"]["value"] + 0.35
         assert uncertain["inside_90"]["value"] > 0.2
     assert main(["track", "crossing-flows", "--duration", "2", "--predictor", "kalman"]) == 2
     assert "nobody is tracked and seen on for 6.4 s" in capsys.readouterr().err

@@ -17,6 +17,7 @@ from old_files import EXPECTED, FILES, SAME_MACHINE, array_hash, copy, describe
 from builtin_digests import level_environment
 from crowdbot.cli import main
 from crowdbot.recording import RecordedEpisode, branch, export, read_episode, record, repair, replay, run
+from crowdbot.recording.provenance import Provenance
 from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
 
@@ -139,7 +140,7 @@ def make_again(old: RecordedEpisode, folder: Path) -> Path:
     """Run the trial of an episode, and branch where the episode did."""
     rows = json.loads(old.metadata.get("origin", "[]"))
     rows.append({"tick": old.metadata.get("begin", 0), "trial": old.xml, "seed": old.seed})
-    trials = [parse_trial(row["trial"], folder=FILES / "trials", quiet=True) for row in rows]
+    trials = [part.trial for part in Provenance.of(old.path, FILES / "trials").parts]
     path = folder / "again.mcap"
     record(trials[0], int(rows[0]["seed"]), path)
     for row, trial in zip(rows[1:], trials[1:], strict=True):

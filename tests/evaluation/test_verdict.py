@@ -127,7 +127,7 @@ def test_an_exact_interval_without_runs_and_with_wrong_numbers() -> None:
 def test_what_is_touched_is_that_of_the_bodies_of_the_world() -> None:
     trial = load_trial("doorway", {"robot/navigator/type": "straight", "world": "physics", "crowd/robot-gap": 0.0})
     kinds = set()
-    for episode in simulate_seeds(trial, range(4)):
+    for episode in simulate_seeds(trial, range(6)):
         flags = episode_metrics(episode, ["task"])
         touched = {one.second.kind for one in episode.collisions}
         kinds |= touched

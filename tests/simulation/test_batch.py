@@ -79,7 +79,7 @@ def test_who_ends_early_leaves_the_others_alone() -> None:
 
 def test_the_last_environment_has_its_own_number_of_people() -> None:
     """Environments with more people end first; the arrays of the last one are wider than its scene."""
-    trial, seeds = load_trial("bottleneck", {"crowd/robot-gap": 0.0}), (8, 1)
+    trial, seeds = load_trial("bottleneck", {"crowd/robot-gap": 0.0}), (9, 1)
     singles = [run(trial, seed) for seed in seeds]
     assert singles[0].steps < singles[1].steps
     assert [one.digest for one in simulate_seeds(trial, seeds)] == [one.digest for one in singles]

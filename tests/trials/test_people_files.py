@@ -70,7 +70,7 @@ def test_an_agent_without_goal_stands_and_looks_where_it_is_told() -> None:
     ("agent", "sentence"),
     [
         ('<agent x="0.5" y="2"/>', "t.xml:16: <agent> stands at 0.5,2, 0.00 m from a wall"),
-        ('<agent x="-5.9" y="0"/>', "stands at -5.9,0, 0.10 m from a wall, and the radius is 0.25 m"),
+        ('<agent x="-5.9" y="0"/>', "stands at -5.9,0, 0.10 m from a wall, and the radius is 0.2 m"),
         ('<agent x="-2" y="-2.3"/>', "stands at -2,-2.3 and overlaps a person or a robot"),
         ('<agent x="1" y="0" goal="2,0" journey="a"/>', "has both a goal and a journey"),
         ('<agent x="1" y="0" journey="a"/>', 'journey="a" is not the name of a journey'),
@@ -101,8 +101,8 @@ def test_groups_begin_together_and_share_goal_and_speed() -> None:
     away = np.hypot(*(people.position[:, None] - people.position[None]).transpose(2, 0, 1))
     gap = away - people.radius[:, None] - people.radius[None] + np.eye(80) * 9.0
     assert gap.min() > 0.0
-    full, problems = place(Stage(), [dataclasses.replace(spawner, count=400, groups=[Group(4)])], [], 0)
-    assert problems[0][1].startswith(f"only {len(full)} of 400 people fit")
+    full, problems = place(Stage(), [dataclasses.replace(spawner, count=800, groups=[Group(4)])], [], 0)
+    assert problems[0][1].startswith(f"only {len(full)} of 800 people fit")
     assert len(full) % 4 == 0
 
 

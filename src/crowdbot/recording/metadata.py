@@ -41,7 +41,8 @@ KEYS = ("trial", "trial_name", "seed", "version", "walls", "robots")
 """Required keys of the record at the start (text values)."""
 END_KEYS = ("digest", "outcome", "steps", "people", "metrics")
 """Required keys of the record at the end. In format 1, a single record at the end had all keys."""
-FORMAT = "2"
+FORMAT = "3"
+"""Format of episode files. Up to format 2, people without a radius in the text of the trial have larger bodies."""
 DIGEST = "/crowdbot/digest"
 """Topic of the digest up to each recorded step, as if interrupted there."""
 TWIST = ("linear_x", "angular_z", "linear_y")
