@@ -69,6 +69,7 @@ DOOR = """<trial name="door" duration="180" step="0.05" heading-jitter="0.001">
 CORNER = """<trial name="corner" duration="60" step="0.05" heading-jitter="0.001">
   <crowd type="people"/>
   <contact/>
+  <routing radius="0.3"/>
   <stage>
     <wall points="-2,2 10,2 10,14"/>
     <wall points="-2,0 12,0 12,14"/>
@@ -236,7 +237,6 @@ What does not agree with experiments:
 * Two-way flows of 2 people/m2 jam, and some of 1.5 people/m2; people walk on.
 * One-way crowds of 2 people/m2 and more are too fast. Below 1 person/m2 they are too slow, since people overtake late.
 * At a door of 0.8 m, less than twice as wide as the largest bodies, crowds of 60 clog in some runs.
-* At corners, people queue for one point of their route, and one may stand there until the end.
 
 A disc cannot be a body that is 0.45 m wide and 0.25 m deep. Discs with the half width of the shoulders (0.20 to 0.30 m,
 the bodies of trials before) jam in two-way flows at 1 person/m2, where people walk, and 3 people/m2 cannot be placed.
@@ -281,9 +281,6 @@ of the people; experiments: 1.9 /(m s) (Seyfried et al. 2009). *Not through*: ru
 {door}
 
 ## Corners, few people, long jams
-
-Routes of trials lead everybody through the same point of a corner, so people queue there, and one person may stand
-before it until the end.
 
 {sentences}
 """
