@@ -25,8 +25,10 @@ from crowdbot.evaluation import proportion_interval
 from crowdbot.gym import CrowdVectorEnv
 
 OUTCOMES = ("success", "collision", "timeout")
-FIRST_CASE = 2**31
-"""Smallest seed of the cases of the test; the seeds that a training draws are below it."""
+FIRST_CASE = 2**31 + 1000
+"""Smallest seed of the cases of the test. The seeds that a training draws are below 2**31; the settings of PPO were
+chosen by the first 200 cases from there, which the test leaves out.
+"""
 
 
 class CrowdVecEnv(VecEnv):

@@ -272,14 +272,14 @@ def _navigation() -> None:
     print("\n## Robots in `crossing-flows`\n")
     trial = cb.load_trial("crossing-flows")
     print(
-        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. People walk by {type(trial.crowd).__name__}. `visible`: whether"
+        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. The crowd model is `{type(trial.crowd).__name__}`. `visible`: whether"
         " they react to the robot.\n\n`crowdbot run crossing-flows --seed N --set robot/visible=false`"
     )
     rows = []
     for visible in (True, False):
-        for navigator in (navigation.Straight(), navigation.ORCANavigator()):
+        for name, navigator in (("straight", navigation.Straight()), ("orca", navigation.ORCANavigator())):
             robot = dataclasses.replace(trial.robots[0], navigator=navigator, visible=visible)
-            rows.append([type(navigator).__name__.lower(), str(visible).lower(), *_rates(trial, robot)])
+            rows.append([name, str(visible).lower(), *_rates(trial, robot)])
     head = ["success", "collision", "timeout", "median least clearance [m]", "median time to goal [s]"]
     _table(["navigator", "visible", *head], rows)
 

@@ -31,9 +31,12 @@ RANGES: dict[str, tuple[float, float]] = {
     "headway_anticipation": (0.3, 1.2),
     "headway_width": (0.4, 0.8),
     "headway_taper": (0.4, 1.0),
-    "headway_oncoming": (0.4, 1.0),
+    "headway_oncoming": (0.2, 1.0),
+    "headway_sidestep": (0.1, 0.8),
+    "headway_step_back": (0.0, 0.4),
     "strength": (3.0, 12.0),
     "range": (0.02, 0.12),
+    "oncoming": (0.0, 1.0),
     "wall_strength": (0.5, 6.0),
     "wall_range": (0.01, 0.08),
 }
