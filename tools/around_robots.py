@@ -229,7 +229,9 @@ def measure_clearances(
     real = [float(person_numbers(one.agents.position, one.agents.active)[:, 0].min()) for _, one in recordings]
     rows = []
     for name, model in models.items():
-        least = [float(np.median([run[:, 0].min() for run in simulated(trial, model, range(SEEDS))])) for trial in trials]
+        least = [
+            float(np.median([run[:, 0].min() for run in simulated(trial, model, range(SEEDS))])) for trial in trials
+        ]
         rows.append(ClearanceRow.of(name, least, model, name in FITTED))
     return ClearanceTable(len(real), SEEDS, ClearanceRow.of("recorded people", real), tuple(rows))
 

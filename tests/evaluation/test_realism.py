@@ -168,7 +168,9 @@ def test_people_who_differ_from_their_crowd_are_named(people: str, crowd: str, w
 
 def test_people_of_a_recording_do_not_evade_unless_they_react(tmp_path: Path) -> None:
     (tmp_path / "walk.txt").write_text("".join(f"{10 * k} 1 {0.5 * k} 2\n" for k in range(8)), encoding="utf-8")
-    text = '<trial name="hall" duration="2"><crowd type="people"/><recorded data="walk.txt" fps="25" mode="{}"/>{}</trial>'
+    text = (
+        '<trial name="hall" duration="2"><crowd type="people"/><recorded data="walk.txt" fps="25" mode="{}"/>{}</trial>'
+    )
     found = {
         mode: trial_realism(parse_trial(text.format(mode, ROBOT), folder=tmp_path)) for mode in ("scripted", "reactive")
     }

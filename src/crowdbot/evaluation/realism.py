@@ -31,6 +31,7 @@ __all__ = [
     "trial_realism",
 ]
 
+Group = Agent | Spawner | SourceSpec | RecordedPeople
 FILE = "around-robots.json"
 NOTICES = {
     "likelier": "contacts with {} are likelier than with real people",
@@ -172,7 +173,8 @@ def trial_realism(trial: Trial) -> tuple[CrowdRealism, ...]:
     >>> [(one.crowd, one.contacts) for one in trial_realism(load_trial("frontal"))]
     [('people', 'likelier')]
     """
-    groups = [one for one in (*trial.agents, *trial.spawners, *trial.sources, *trial.recorded) if _has_people(one)]
+    every: tuple[Group, ...] = (*trial.agents, *trial.spawners, *trial.sources, *trial.recorded)
+    groups = [one for one in every if _has_people(one)]
     if not trial.robots or not (groups or trial.avatars):
         return ()
     robot = trial.robots[0]
@@ -201,9 +203,6 @@ def realism_notice(realism: Sequence[CrowdRealism]) -> str:
     who = "these people" if len(kinds) == 1 else "some of these people"
     words = "; ".join(NOTICES[kind].format(who) for kind in kinds)
     return f"{words[0].upper()}{words[1:]}."
-
-
-Group = Agent | Spawner | SourceSpec | RecordedPeople
 
 
 def _has_people(group: Group) -> bool:
@@ -254,14 +253,14 @@ def _crowd_realism(name: str, model: CrowdModel, change: str) -> CrowdRealism:
         return CrowdRealism(
             title, "unknown", f"The crowd {title}{own} was not compared with recordings around a robot: {UNKNOWN}."
         )
-    values = ", ".join(_changes(inner))
+    values = f" with {', '.join(changes)}" if (changes := _changes(inner)) else ""
     gap = row.median - table.recorded.median
     contacts = "alike" if abs(gap) < 0.005 else "likelier" if gap < 0.0 else "rarer"
     parts = [
         f"Around a golf cart, recorded people keep a median least clearance of"
         f" {_metres(table.recorded.median)} (quartiles {_ends(table.recorded)}), the crowd"
-        f" {title}{f' with {values}' if values else ''} {_metres(row.median)} ({_ends(row)}); in its median run it touches the"
-        f" cart in {_of(row.touched, table.recordings)}, recorded people in {_of(table.recorded.touched)}.",
+        f" {title}{values} {_metres(row.median)} ({_ends(row)}); in its median run it touches the cart in"
+        f" {_of(row.touched, table.recordings)}, recorded people in {_of(table.recorded.touched)}.",
         BIAS[contacts],
         *(["Its parameters are fitted to these recordings, so this is no independent test."] if row.fitted else []),
     ]
@@ -287,7 +286,9 @@ def _people_of_their_own(trial: Trial, groups: Sequence[Group]) -> Iterator[Crow
         reaction.type for one in groups if not isinstance(one, RecordedPeople) for reaction in one.reactions
     )
     if kinds:
-        yield CrowdRealism("reactions", "unknown", f"Some people react to the robot ({', '.join(kinds)}). This {compared}")
+        yield CrowdRealism(
+            "reactions", "unknown", f"Some people react to the robot ({', '.join(kinds)}). This {compared}"
+        )
     modes = {one.mode for one in trial.recorded}
     if "scripted" in modes:
         yield CrowdRealism(

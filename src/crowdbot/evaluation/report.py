@@ -169,7 +169,7 @@ def _contacts(cells: Sequence[CellResult]) -> str:
 
 
 def _realism(cells: Sequence[CellResult]) -> str:
-    """Return how the people of each trial differ from recorded people around a robot; trials alike share a paragraph."""
+    """Return how the people of each trial differ from recorded people around a robot; equal trials share a list."""
     trials: dict[tuple[str, ...], dict[str, None]] = {}
     for cell in cells:
         if cell.realism:
@@ -181,7 +181,8 @@ def _realism(cells: Sequence[CellResult]) -> str:
         "<h2>How real are these people?</h2>"
         f"<p>Some crowds are compared with people in {table.recordings} recordings of a golf cart (CITR, Yang et al."
         f" 2019): the least clearance of each recording, and of the median of {table.seeds} simulated runs of it. The"
-        " cart has a radius of 0.9 m, and 8 people walk in the open; smaller robots and dense crowds are not compared.</p>"
+        " cart has a radius of 0.9 m, and 8 people walk in the open; smaller robots and dense crowds are not"
+        " compared.</p>"
     ]
     for sentences, names in trials.items():
         lines = "".join(f"<li>{html.escape(sentence)}</li>" for sentence in sentences)
