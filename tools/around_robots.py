@@ -1,5 +1,7 @@
 """Write ``docs/results/around-robots.md``: how people of each crowd model behave around robots, beside recordings.
 
+The table of least clearances is also written to the package: reports of ``crowdbot evaluate`` quote it.
+
 ``python tools/around_robots.py --data RECORDINGS --sets FILE --out docs/results/around-robots.md``
 
 ``--sets`` is a file of measured parameter sets, one JSON object a line; sets that are missing are measured, which takes
@@ -26,13 +28,16 @@ from scipy.stats import qmc
 
 import crowdbot.models
 from crowdbot.core import builtin_classes
-from crowdbot.evaluation import RobotRecording, load_robot_recording, recorded_trial
+from crowdbot.evaluation import ClearanceRow, ClearanceTable, RobotRecording, load_robot_recording, recorded_trial
 from crowdbot.models import CrowdModel, People
 from crowdbot.simulation import Episode, simulate_seeds
 from crowdbot.trials import Trial, load_trial
 
 Floats = NDArray[np.float64]
 
+CLEARANCES = Path(__file__).parents[1] / "src" / "crowdbot" / "assets" / "evaluation" / "around-robots.json"
+FITTED = ("people",)
+"""Compared crowds with parameters that are fitted to the recordings."""
 SEEDS = 20
 ASIDE = 0.1
 """Lateral distance to the straight way [m] from which on a person has begun to evade."""
@@ -217,24 +222,30 @@ def encounter_tables(models: Sequence[str], folder: Path) -> list[str]:
     return lines
 
 
-def reality_table(recordings: Sequence[Any], trials: Sequence[Trial], models: Mapping[str, CrowdModel]) -> list[str]:
-    """Return the table of least clearances in CITR: reality, and the median run of each recording by model."""
-    lines = [
-        "| crowd | median [m] | standard deviation [m] | quartiles [m] | touched, of 23 |",
-        "|---|---|---|---|---|",
-    ]
+def measure_clearances(
+    recordings: Sequence[Any], trials: Sequence[Trial], models: Mapping[str, CrowdModel]
+) -> ClearanceTable:
+    """Return the least clearances in CITR: of recorded people, and of the median run of each recording by model."""
     real = [float(person_numbers(one.agents.position, one.agents.active)[:, 0].min()) for _, one in recordings]
-    columns = {"recorded people": real}
+    rows = []
     for name, model in models.items():
-        columns[name] = [
+        least = [
             float(np.median([run[:, 0].min() for run in simulated(trial, model, range(SEEDS))])) for trial in trials
         ]
-    for name, least in columns.items():
-        first, last = np.quantile(least, [0.25, 0.75])
-        touched = sum(value <= 0.0 for value in least)
-        lines.append(
-            f"| {name} | {np.median(least):.2f} | {np.std(least, ddof=1):.2f} | {first:.2f} to {last:.2f} | {touched} |"
-        )
+        rows.append(ClearanceRow.of(name, least, model, name in FITTED))
+    return ClearanceTable(len(real), SEEDS, ClearanceRow.of("recorded people", real), tuple(rows))
+
+
+def clearance_lines(table: ClearanceTable) -> list[str]:
+    """Return the lines of the table of least clearances."""
+    lines = [
+        f"| crowd | median [m] | standard deviation [m] | quartiles [m] | touched, of {table.recordings} |",
+        "|---|---|---|---|---|",
+    ]
+    for row in (table.recorded, *table.crowds):
+        first, last = row.quartiles
+        numbers = f"{row.median:.2f} | {row.deviation:.2f} | {first:.2f} to {last:.2f} | {row.touched}"
+        lines.append(f"| {row.crowd} | {numbers} |")
     return lines
 
 
@@ -268,22 +279,28 @@ def held_back_table(rows: Sequence[Mapping[str, Any]], recordings: Sequence[Any]
     return lines
 
 
-def page(models: Sequence[str], data: Path, sets: Path, folder: Path) -> str:
-    """Return the page."""
+def compared_models() -> dict[str, CrowdModel]:
+    """Return the crowds that are compared with recorded people."""
+    shown = {name: builtin_model(name) for name in ("people", "orca", "social-force", "anticipation-velocity")}
+    return {**shown, "people, robot-gap=0": _people({"robot_gap": 0.0})}
+
+
+def page(models: Sequence[str], data: Path, sets: Path, folder: Path) -> tuple[str, ClearanceTable]:
+    """Return the page, and the least clearances on it."""
     warnings.simplefilter("ignore")
     recordings = load_recordings(data)
     trials = [recorded_trial(one, folder / str(k)) for k, (_, one) in enumerate(recordings)]
     rows = measure_sets(sets, recordings, trials)
-    shown = {name: builtin_model(name) for name in ("people", "orca", "social-force", "anticipation-velocity")}
-    shown["people, robot-gap=0"] = _people({"robot_gap": 0.0})
+    table = measure_clearances(recordings, trials, compared_models())
     own = People()
     values = ", ".join(f"{name.replace('_', '-')} {getattr(own, name):g}" for name in SETTINGS)
-    return TEXT.format(
+    text = TEXT.format(
         cart=CART, seeds=SEEDS, sets=len(rows), set_seeds=SET_SEEDS, values=values,
-        reality="\n".join(reality_table(recordings, trials, shown)),
+        reality="\n".join(clearance_lines(table)),
         held="\n".join(held_back_table(rows, recordings)),
         encounters="\n".join(encounter_tables(models, folder)),
     )  # fmt: skip
+    return text, table
 
 
 def builtin_model(name: str) -> CrowdModel:
@@ -315,7 +332,7 @@ The 23 recordings of [CITR](https://github.com/dongfang-steven-yang/vci-dataset-
 Vehicles Symposium), each simulated with {seeds} seeds as by
 [`crowdbot evaluate --real`](../how-to/against-reality.md). For each recording: the least clearance of the median run.
 Median, standard deviation and quartiles are over the 23 recordings; *touched* are recordings whose median run has a
-contact.
+contact. Reports of [`crowdbot evaluate`](../how-to/evaluate.md#verdict) quote this table.
 
 {reality}
 
@@ -381,8 +398,9 @@ def main() -> None:
             return
         if options.sets is None or options.out is None:
             parser.error("--data needs --sets and --out")
-        text = page(options.models, options.data, options.sets, folder)
+        text, table = page(options.models, options.data, options.sets, folder)
         options.out.write_text(text, encoding="utf-8")
+        table.save(CLEARANCES)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,15 @@ from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
 from .plan import EvaluationCell, EvaluationPlan, parse_seeds, passage_remark
+from .realism import (
+    ClearanceRow,
+    ClearanceTable,
+    CrowdRealism,
+    load_clearances,
+    model_digest,
+    realism_notice,
+    trial_realism,
+)
 from .reality import FEWEST_RUNS, RealPlacement, place_reality, reality_svg
 from .recorded_scans import (
     OGM_PERIOD,
@@ -77,6 +86,9 @@ __all__ = [
     "AnnotatedScan",
     "CameraCalibration",
     "CellResult",
+    "ClearanceRow",
+    "ClearanceTable",
+    "CrowdRealism",
     "DetectionScores",
     "Estimate",
     "EvaluationCell",
@@ -119,10 +131,12 @@ __all__ = [
     "find_ogm_split",
     "judge_cell",
     "junit_xml",
+    "load_clearances",
     "load_evaluation",
     "load_robot_recording",
     "log_readings",
     "metric_unit",
+    "model_digest",
     "own_method",
     "paired_comparison",
     "pareto_front",
@@ -146,6 +160,7 @@ __all__ = [
     "read_ogm",
     "read_readings",
     "read_true_paths",
+    "realism_notice",
     "reality_svg",
     "recorded_trial",
     "result_schema",
@@ -159,6 +174,7 @@ __all__ = [
     "sweep_trials",
     "track_people",
     "track_video",
+    "trial_realism",
     "with_safety",
     "worst_rows",
     "worst_runs",

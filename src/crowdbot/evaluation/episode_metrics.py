@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections import Counter
@@ -30,7 +31,6 @@ from crowdbot.trials import Trial
 from crowdbot.world import BODY_REGION_LIMITS
 
 from .own_metric import is_own_metric, load_metric, metric_name
-from .paired_run import empty_variant, ghost_variant, shifted_variant
 
 __all__ = [
     "PAIRED_FAMILIES",
@@ -45,6 +45,8 @@ __all__ = [
 Floats = NDArray[np.float64]
 PAIRED_FAMILIES = ("empty-scene", "crowd-disturbance")
 """Families of metrics that need further runs with the same seed."""
+SHIFT = 0.001
+"""Shift of the start of the robot [m] for the chaos floor."""
 TOUCH = re.compile(r"collision|^severity|^contact_")
 """Metrics of contacts, which a ghost does not have."""
 BODY_KINDS = {"wall": "wall", "prop": "object", "robot": "robot"}
@@ -143,9 +145,9 @@ def paired_variants(trial: Trial, families: Sequence[str]) -> dict[str, Trial]:
     """Return the trials of further runs that families of metrics need: ``empty``, ``ghost``, ``shifted``."""
     found = {}
     if "empty-scene" in families:
-        found["empty"] = empty_variant(trial)
+        found["empty"] = _empty_variant(trial)
     if "crowd-disturbance" in families:
-        found |= {"ghost": ghost_variant(trial), "shifted": shifted_variant(trial)}
+        found |= {"ghost": _ghost_variant(trial), "shifted": _shifted_variant(trial)}
     return found
 
 
@@ -203,3 +205,36 @@ def _touched(episode: Episode) -> dict[str, float]:
 def _agent_log(episode: Episode) -> AgentLog:
     radius = np.broadcast_to(episode.radius, episode.active.shape)
     return AgentLog(episode.times, episode.position, episode.velocity, episode.heading, radius, episode.active)
+
+
+def _empty_variant(trial: Trial) -> Trial:
+    """Return the trial without people.
+
+    >>> from crowdbot.trials import load_trial
+    >>> _empty_variant(load_trial("circle-crossing")).people
+    0
+    """
+    return dataclasses.replace(trial, agents=(), spawners=(), sources=(), recorded=(), avatars=())
+
+
+def _ghost_variant(trial: Trial) -> Trial:
+    """Return the trial with the first robot as a ghost: placed as before, but unseen and untouchable.
+
+    >>> from crowdbot.trials import load_trial
+    >>> _ghost_variant(load_trial("frontal")).robots[0].ghost
+    True
+    """
+    first, *rest = trial.robots
+    return dataclasses.replace(trial, robots=(dataclasses.replace(first, ghost=True), *rest))
+
+
+def _shifted_variant(trial: Trial) -> Trial:
+    """Return the trial with the first robot 1 mm to the left of its start.
+
+    >>> from crowdbot.trials import load_trial
+    >>> _shifted_variant(load_trial("frontal")).robots[0].y
+    0.001
+    """
+    first, *rest = trial.robots
+    x, y = first.x - SHIFT * math.sin(first.heading), first.y + SHIFT * math.cos(first.heading)
+    return dataclasses.replace(trial, robots=(dataclasses.replace(first, x=x, y=y), *rest))

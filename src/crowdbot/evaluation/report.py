@@ -16,6 +16,7 @@ from crowdbot.metrics import metric_table
 from .comparison import PairedComparison
 from .effect_plots import effects_svg
 from .pareto import pareto_svg
+from .realism import load_clearances, realism_notice
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
 from .statistic import Statistic, metric_unit
@@ -68,6 +69,7 @@ def write_report(
             " exact binomial (Clopper-Pearson) for rates, bootstrap for others."
         ),
         table=_results(result, statistics),
+        realism=_realism(result.cells),
         protocol=_protocol(result.cells),
         contacts=_contacts(result.cells),
         requirements=_requirements(result, requirements),
@@ -93,7 +95,8 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
     for cell in cells:
         verdict = judge_cell(cell, requirements)
         kind = "safe" if verdict.safe else "unsafe"
-        small = (*(f"Note: {remark}" for remark in cell.remarks), verdict.limit)
+        notes = (*cell.remarks, realism_notice(cell.realism))
+        small = (*(f"Note: {note}" for note in notes if note), verdict.limit)
         limit = "".join(f"<br><small>{html.escape(text)}</small>" for text in small)
         parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
     return "".join(parts)
@@ -163,6 +166,28 @@ def _contacts(cells: Sequence[CellResult]) -> str:
         " all regions below the height of the robot, at the closing speed of the discs.</p>"
     )
     return f"<h2>Contacts with persons</h2>{about}{table}" if table else ""
+
+
+def _realism(cells: Sequence[CellResult]) -> str:
+    """Return how the people of each trial differ from recorded people around a robot; equal trials share a list."""
+    trials: dict[tuple[str, ...], dict[str, None]] = {}
+    for cell in cells:
+        if cell.realism:
+            trials.setdefault(tuple(one.sentence for one in cell.realism), {})[cell.trial] = None
+    if not trials:
+        return ""
+    table = load_clearances()
+    parts = [
+        "<h2>How real are these people?</h2>"
+        f"<p>Some crowds are compared with people in {table.recordings} recordings of a golf cart (CITR, Yang et al."
+        f" 2019): the least clearance of each recording, and of the median of {table.seeds} simulated runs of it. The"
+        " cart has a radius of 0.9 m, and 8 people walk in the open; smaller robots and dense crowds are not"
+        " compared.</p>"
+    ]
+    for sentences, names in trials.items():
+        lines = "".join(f"<li>{html.escape(sentence)}</li>" for sentence in sentences)
+        parts.append(f"<p><b>{html.escape(', '.join(names))}</b></p><ul>{lines}</ul>")
+    return "".join(parts)
 
 
 def _protocol(cells: Sequence[CellResult]) -> str:

@@ -22,6 +22,7 @@ from crowdbot.metrics import correct_p_values
 from .comparison import PairedComparison, paired_comparison
 from .intervals import Estimate
 from .job import RunRow, row_of, row_values
+from .realism import CrowdRealism
 from .statistic import Statistic, parse_statistic
 
 __all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "result_schema"]
@@ -44,6 +45,7 @@ class CellResult:
         factors: levels of the factors of a sweep by name; empty without one.
         base: name of the trial without the levels.
         remarks: what a reader must know about this robot in this trial, in sentences.
+        realism: how the people of the trial differ from recorded people around a robot.
     """
 
     trial: str
@@ -55,6 +57,7 @@ class CellResult:
     factors: Mapping[str, str] = dataclasses.field(default_factory=dict)
     base: str = ""
     remarks: tuple[str, ...] = ()
+    realism: tuple[CrowdRealism, ...] = ()
 
     @property
     def valid(self) -> tuple[RunRow, ...]:
@@ -133,6 +136,7 @@ class EvaluationResult:
                 "protocol": dict(cell.protocol),
                 **({"factors": dict(cell.factors), "base": cell.base} if cell.factors else {}),
                 **({"remarks": list(cell.remarks)} if cell.remarks else {}),
+                **({"realism": [dataclasses.asdict(one) for one in cell.realism]} if cell.realism else {}),
                 "runs": [row_values(row) for row in cell.runs],
             }
             for cell in self.cells
@@ -197,9 +201,9 @@ def _cell(values: Mapping[str, Any]) -> CellResult:
     factors = {str(name): str(level) for name, level in dict(values.get("factors", {})).items()}
     runs = tuple(map(row_of, values["runs"]))
     remarks = tuple(map(str, values.get("remarks", ())))
-    return CellResult(
-        *names, dict(values["protocol"]), runs, factors, str(values.get("base", values["trial"])), remarks
-    )
+    realism = tuple(CrowdRealism(**row) for row in values.get("realism", ()))
+    base = str(values.get("base", values["trial"]))
+    return CellResult(*names, dict(values["protocol"]), runs, factors, base, remarks, realism)
 
 
 def _pairs(cells: Sequence[CellResult]) -> Iterable[tuple[CellResult, CellResult]]:

@@ -13,6 +13,7 @@ from crowdbot.trials import code_digest
 from .job import RunJob, RunRow, append_rows, read_rows, run_job
 from .own_metric import is_own_metric, metric_source
 from .plan import EvaluationPlan
+from .realism import trial_realism
 from .result import CellResult, EvaluationResult, provenance
 
 __all__ = ["evaluate"]
@@ -83,6 +84,7 @@ def evaluate(
             cell.factors,
             cell.base,
             cell.remarks,
+            trial_realism(cell.variant),
         )
         for k, cell in enumerate(plan.cells)
     )

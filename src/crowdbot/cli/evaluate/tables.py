@@ -29,7 +29,7 @@ MOST_ROWS = 20
 
 def print_answers(result: EvaluationResult, requirements: Sequence[Requirement]) -> None:
     """Print what the runs show: a sentence for each row, and what their number can show at most."""
-    from crowdbot.evaluation import judge_cell, person_contacts
+    from crowdbot.evaluation import judge_cell, person_contacts, realism_notice
 
     verdicts = [judge_cell(cell, requirements) for cell in result.cells]
     for cell, verdict in zip(result.cells, verdicts, strict=True):
@@ -42,6 +42,13 @@ def print_answers(result: EvaluationResult, requirements: Sequence[Requirement])
             )
     for where, remark in dict.fromkeys((_place(cell), remark) for cell in result.cells for remark in cell.remarks):
         print(textwrap.fill(f"Note on {where}: {remark}", WIDTH))
+    notices: dict[str, dict[str, None]] = {}
+    for cell in result.cells:
+        if cell.realism:
+            notices.setdefault(realism_notice(cell.realism), {})[cell.trial] = None
+    for notice, trials in notices.items():
+        where = f"{', '.join(trials)}: " if len(notices) > 1 else ""
+        print(textwrap.fill(f"{where}{notice}", WIDTH))
     for limit in dict.fromkeys(verdict.limit for verdict in verdicts):
         print(textwrap.fill(limit, WIDTH))
     print()
@@ -160,6 +167,7 @@ def result_values(
                 "verdict": _verdict_values(judge_cell(cell, requirements)),
                 "contacts": [one._asdict() for one in person_contacts(cell)],
                 "remarks": list(cell.remarks),
+                "realism": [dataclasses.asdict(one) for one in cell.realism],
                 "runs": len(cell.valid),
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
