@@ -272,8 +272,8 @@ def _navigation() -> None:
     print("\n## Robots in `crossing-flows`\n")
     trial = cb.load_trial("crossing-flows")
     print(
-        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. The crowd model is `{type(trial.crowd).__name__}`. `visible`: whether"
-        " they react to the robot.\n\n`crowdbot run crossing-flows --seed N --set robot/visible=false`"
+        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. The crowd model is `{type(trial.crowd).__name__}`. `visible`:"
+        " whether people react to the robot.\n\n`crowdbot run crossing-flows --seed N --set robot/visible=false`"
     )
     rows = []
     for visible in (True, False):
