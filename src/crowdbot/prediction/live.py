@@ -17,6 +17,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 
 from .predictor import Predictor
+from .tracker_frame import TrackerFrame
 from .tracker_history import TrackedRows, TrackerHistory
 
 __all__ = ["Live"]
@@ -92,7 +93,7 @@ class Live:
         self.predictor = predictor
         self.dt = dt
         self.observe = max(ROWS, math.ceil(predictor.history / dt - 1e-9) + 1) if observe is None else observe
-        self.walls = tuple(np.asarray(ring, dtype=float) for ring in walls)
+        self.walls = tuple(_checked_ring(ring) for ring in walls)
         self.coast = coast
         self.latency = math.nan
         """Duration of the last call of :meth:`predict` [s]; NaN before the first."""
@@ -125,8 +126,10 @@ class Live:
         """Add a row: identities ``[N]`` of any hashable type, and positions ``[N, 2]`` [m].
 
         Args:
-            ids: identities; integers of at least 0 are the ids of :meth:`past`, others are numbered.
-            position: positions [m].
+            ids: identities, each once; integers of at least 0 are the ids of :meth:`past`, others are numbered in the
+                order of arrival. Whole numbers of any type are integers; None, True, False and other floating-point
+                numbers are refused.
+            position: positions [m], finite.
             robots: identities of robots.
             time: time stamp [s], later than the one before; None: ``dt`` after it. The observed rows are interpolated
                 to steps of ``dt`` before the last time stamp.
@@ -136,11 +139,13 @@ class Live:
                 predictor keep apart by the sum of radii.
 
         Raises:
-            InputError: shapes do not match, a position is not finite, an identity is duplicate, the time stamp is not
-                later than the one before, a covariance is not positive semidefinite, or a radius is not above 0.
+            InputError: shapes do not match, a position is not finite, an identity is wrong or duplicate, the time stamp
+                is not a finite number or not later than the one before, a covariance is not symmetric and positive
+                semidefinite, or a radius is not above 0. The frame then has no effect.
         """
+        frame = TrackerFrame.of(ids, position, robots, time, covariances, radii)
         with self._reading:
-            self._history.add(ids, position, robots, time, covariances, radii)
+            self._history.add(frame)
 
     def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
         """Return the stored rows as one window of all predicted agents."""
@@ -211,3 +216,17 @@ class Live:
             "live", "live stream", self.walls, radius=None if rows.radius is None else rows.radius[None],
         )  # fmt: skip
         return (past.with_plans(known) if known else past), rows, count
+
+
+def _checked_ring(ring: ArrayLike) -> NDArray[np.float64]:
+    """Return a ring ``[N, 2]`` [m] of walls."""
+    try:
+        corners = np.array(ring, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"live: a ring of walls must be numbers [N, 2] [m], it is {ring!r}") from None
+    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+        raise InputError(
+            f"live: a ring of walls has shape {list(corners.shape)}, it must be finite corners [N, 2] [m]; pass a list"
+            " of rings, one for each obstacle"
+        )
+    return corners

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+
+from .tracker_frame import TrackerFrame
 
 __all__ = ["TrackedRows", "TrackerHistory"]
 
@@ -76,28 +78,17 @@ class TrackerHistory:
         self._next = FIRST_NUMBER
         self._radii: dict[int, float] = {}
 
-    def add(
-        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable], time: float | None,
-        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
-    ) -> None:  # fmt: skip
-        """Add a row, see :meth:`Live.update`."""
-        labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
-        place = np.asarray(position, dtype=float).reshape(-1, 2)
-        if len(labels) != len(place):
-            raise InputError(f"live: {len(labels)} identities and {len(place)} positions; the numbers must be equal")
-        if not np.all(np.isfinite(place)):
-            raise InputError(f"live: the position of {labels[int(np.argmin(np.isfinite(place).all(axis=1)))]} is not"
-                             " finite")  # fmt: skip
-        if len(set(labels)) != len(labels):
-            raise InputError(f"live: identities {labels} must be distinct")
-        spread, bodies = _checked_covariances(covariances, len(labels)), _checked_radii(radii, len(labels))
-        stamp = self._stamp(time)
-        who = np.array([self._number(label) for label in labels], dtype=np.int64)
-        self._radii |= {int(number): size for number, size in zip(who, bodies, strict=True) if not np.isnan(size)}
+    def add(self, frame: TrackerFrame) -> None:
+        """Add a frame."""
+        stamp = self._stamp(frame.time)
+        who = np.array([self._number(label) for label in frame.labels], dtype=np.int64)
+        known = ~np.isnan(frame.radius)
+        self._radii |= dict(zip(who[known].tolist(), frame.radius[known].tolist(), strict=True))
         order = np.argsort(who)
-        machines = frozenset(self._number(label) for label in robots)
-        self._rows.append(_Row(stamp, who[order], place[order], machines, None if spread is None else spread[order]))
-        self._stamped = self._stamped or time is not None
+        machines = frozenset(self._number(label) for label in frame.robots)
+        spread = None if frame.covariance is None else frame.covariance[order]
+        self._rows.append(_Row(stamp, who[order], frame.position[order], machines, spread))
+        self._stamped = self._stamped or frame.time is not None
         self.count += 1
         self._forget()
 
@@ -171,8 +162,6 @@ class TrackerHistory:
         return float(time)
 
     def _number(self, label: Hashable) -> int:
-        if isinstance(label, np.generic):
-            label = label.item()
         found = self._numbers.get(label)
         if found is None:
             plain = isinstance(label, int) and 0 <= label < FIRST_NUMBER
@@ -228,52 +217,6 @@ class TrackerHistory:
             found[-2] = found[-1] - self.dt * _velocity(seen, place)
             known[-2] = bool(exact[-1])
         return np.where(known[:, None], found, 0.0), known
-
-
-def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | None:
-    """Return covariances ``[N, 2, 2]`` [m^2], or None.
-
-    Raises:
-        InputError: the shape is wrong, or a matrix is not finite, symmetric and positive semidefinite.
-    """
-    if covariances is None:
-        return None
-    try:
-        spread = np.asarray(covariances, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("live: covariances must be numbers [N, 2, 2]") from None
-    if count == 0 and spread.size == 0:
-        return np.zeros((0, 2, 2))
-    if spread.shape != (count, 2, 2):
-        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2]")
-    size = np.abs(spread).max(axis=(1, 2))
-    wrong = ~np.isfinite(size) | (np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size)
-    smallest = np.linalg.eigvalsh(np.where(wrong[:, None, None], 0.0, spread))[:, 0]
-    wrong |= smallest < -1e-6 * np.where(np.isfinite(size), size, 0.0)
-    if wrong.any():
-        bad = spread[int(np.argmax(wrong))].tolist()
-        raise InputError(f"live: covariance {bad} is not finite, symmetric and positive semidefinite")
-    return spread
-
-
-def _checked_radii(radii: ArrayLike | None, count: int) -> list[float]:
-    """Return radii ``[N]`` [m], NaN where unknown.
-
-    Raises:
-        InputError: the shape is wrong, or a radius is not above 0 and finite.
-    """
-    if radii is None:
-        return [np.nan] * count
-    try:
-        found = np.asarray(radii, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("live: radii must be numbers [N]") from None
-    if found.shape != (count,):
-        raise InputError(f"live: radii have shape {list(found.shape)}, they must be [{count}]")
-    bad = found[~np.isnan(found) & ~((found > 0.0) & (found < np.inf))]
-    if len(bad):
-        raise InputError(f"live: radius {bad[0]} m must be above 0 and finite, or NaN if it is unknown")
-    return [float(radius) for radius in found]
 
 
 def _velocity(seen: Floats, place: Floats) -> Floats:
