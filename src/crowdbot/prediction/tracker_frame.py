@@ -130,7 +130,7 @@ def _checked_positions(position: ArrayLike, labels: list[Hashable]) -> Floats:
     return place
 
 
-def _checked_stamp(time: float | None) -> float | None:
+def _checked_stamp(time: object) -> float | None:
     if time is None:
         return None
     if not isinstance(time, Real):
