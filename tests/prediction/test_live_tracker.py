@@ -212,6 +212,18 @@ def test_units_that_are_not_metres_are_reported_once(scale: float, words: str, p
         assert np.abs(live.predict(12).position[0, 0] - here).max() < 1e-9  # instead of hundreds of metres
 
 
+def test_units_are_judged_in_frames_of_several_cameras() -> None:
+    live = Live(ConstantVelocity(), dt=0.4)
+
+    def feed() -> None:
+        for row in range(60):
+            now, camera = 0.085 * row, row % 2  # the first frame after 0.4 s is of the other camera
+            live.update([camera], [[130.0 * now, 10.0 * camera]], time=now)
+
+    (sentence,) = sentences(feed)
+    assert "in centimetres" in sentence
+
+
 @pytest.mark.parametrize("speed", [0.0, 1.3, 5.0])
 @pytest.mark.parametrize("rate", [2.5, 10.0, 200.0])
 def test_people_who_stand_walk_and_run_are_plausible(speed: float, rate: float) -> None:
@@ -272,6 +284,7 @@ def test_pauses_are_plausible() -> None:
     for row in range(40):
         now += 0.1 if row % 4 else 60.0
         live.update([row // 4], [[1.2 * now, 0.0]], time=now)
+    assert live.drop_count == 0
 
 
 # Jumps
