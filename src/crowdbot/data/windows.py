@@ -72,7 +72,10 @@ class Windows:
         >>> past.with_plans({7: [[0.0, 0.4], [0.0, 0.8]]}).plan[0, :, 0].tolist()
         [[0.0, 0.4], [0.0, 0.8]]
         """
-        rows = {who: np.asarray(plan, dtype=float) for who, plan in plans.items()}
+        try:
+            rows = {who: np.asarray(plan, dtype=float) for who, plan in plans.items()}
+        except (TypeError, ValueError):
+            raise InputError("the plan of a robot must be numbers [S, 2] [m], all rows of two") from None
         for who, plan in rows.items():
             if plan.ndim != 2 or plan.shape[1] != 2 or len(plan) == 0 or not np.all(np.isfinite(plan)):
                 raise InputError(

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
     from .stored_forecasts import forecasts_of
+    from .tracker_plausibility import TrackerWarning
     from .training import (
         BEST,
         LAST,
@@ -81,6 +82,7 @@ __getattr__, __dir__ = lazy_exports(
             "torch_threads",
             "train",
         ],
+        "tracker_plausibility": ["TrackerWarning"],
         "social_ways.training": ["SocialWaysTraining"],
     },
 )
@@ -111,6 +113,7 @@ __all__ = [
     "Simulated",
     "SocialWays",
     "SocialWaysConfig",
+    "TrackerWarning",
     "Trainable",
     "TrainingResult",
     "TrainingSchedule",

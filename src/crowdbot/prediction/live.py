@@ -6,6 +6,7 @@ import dataclasses
 import math
 import threading
 import time as clock
+import warnings
 from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
@@ -17,7 +18,9 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 
 from .predictor import Predictor
+from .tracker_frame import TrackerFrame
 from .tracker_history import TrackedRows, TrackerHistory
+from .tracker_plausibility import TrackerPlausibility, TrackerWarning
 
 __all__ = ["Live"]
 
@@ -48,10 +51,18 @@ class Live:
         deadline: time for a prediction [s]; None: no limit. A calibrated crowd evaluates as many candidates as fit, by
             the speed of earlier frames (20 in the first one); :attr:`left_out` tells what did not fit.
             Forecasts then depend on the speed of the computer.
+        allowed_lateness: how much older than the newest a frame with a time stamp may be [s]. Up to it, frames may come
+            in any order; older ones are dropped and counted in :attr:`drop_count`.
+        max_speed: largest plausible speed of people and robots [m/s]. Whoever is faster between two frames, over more
+            than 0.5 m, is a new track from there on; infinity: tracks are never cut, and speeds are not judged.
 
     Raises:
-        InputError: ``dt`` or ``deadline`` is not above 0, ``observe`` is below 1, ``coast`` is negative, or the
-            predictor requires the future.
+        InputError: ``dt``, ``deadline`` or ``max_speed`` is not above 0, ``observe`` is below 1, ``coast`` or
+            ``allowed_lateness`` is negative, a ring of walls is not ``[N, 2]``, or the predictor requires the future.
+
+    Warns:
+        TrackerWarning: people are so fast that positions are probably not in metres, time stamps are probably not in
+            seconds, a track jumps, or a frame is too late; each kind once for a stream. Data are never rescaled.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> live = Live(ConstantVelocity(), dt=0.4)
@@ -71,7 +82,8 @@ class Live:
 
     def __init__(
         self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
-        seed: int = 0, coast: float = 1.0, deadline: float | None = None,
+        seed: int = 0, coast: float = 1.0, deadline: float | None = None, allowed_lateness: float = 0.2,
+        max_speed: float = 12.0,
     ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
@@ -81,6 +93,10 @@ class Live:
             raise InputError(f"live: coast = {coast} s must be finite and at least 0")
         if deadline is not None and not deadline > 0.0:
             raise InputError(f"live: deadline = {deadline} s must be above 0")
+        if not 0.0 <= allowed_lateness < np.inf:
+            raise InputError(f"live: allowed_lateness = {allowed_lateness} s must be finite and at least 0")
+        if not max_speed > 0.0:
+            raise InputError(f"live: max_speed = {max_speed} m/s must be above 0; infinity for no limit")
         if not isinstance(predictor, Predictor):
             raise InputError(f"live: {predictor!r} is not a predictor; pass an instance, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
@@ -92,7 +108,7 @@ class Live:
         self.predictor = predictor
         self.dt = dt
         self.observe = max(ROWS, math.ceil(predictor.history / dt - 1e-9) + 1) if observe is None else observe
-        self.walls = tuple(np.asarray(ring, dtype=float) for ring in walls)
+        self.walls = tuple(_checked_ring(ring) for ring in walls)
         self.coast = coast
         self.latency = math.nan
         """Duration of the last call of :meth:`predict` [s]; NaN before the first."""
@@ -103,9 +119,15 @@ class Live:
         """What did not fit into the deadline of the last prediction, in a sentence; empty if everything did."""
         self._rate = math.nan  # evaluations per second
         self._seed = seed
-        self._history = TrackerHistory(dt, self.observe, coast)
+        self._plausibility = TrackerPlausibility(max_speed)
+        self._history = TrackerHistory(dt, self.observe, coast, allowed_lateness, self._plausibility)
         self._memory: Any = None
         self._reading, self._predicting = threading.RLock(), threading.Lock()
+
+    @property
+    def drop_count(self) -> int:
+        """Number of frames that were dropped because they came later than ``allowed_lateness``."""
+        return self._history.drop_count
 
     @property
     def ids(self) -> NDArray[Any]:
@@ -125,26 +147,43 @@ class Live:
         """Add a row: identities ``[N]`` of any hashable type, and positions ``[N, 2]`` [m].
 
         Args:
-            ids: identities; integers of at least 0 are the ids of :meth:`past`, others are numbered.
-            position: positions [m].
+            ids: identities, each once; integers of at least 0 are the ids of :meth:`past`, others are numbered in the
+                order of arrival. Whole numbers of any type are integers; None, True, False and other floating-point
+                numbers are refused.
+            position: positions [m], finite.
             robots: identities of robots.
-            time: time stamp [s], later than the one before; None: ``dt`` after it. The observed rows are interpolated
-                to steps of ``dt`` before the last time stamp.
+            time: time stamp [s]; None: ``dt`` after the newest one. The observed rows are interpolated to steps of
+                ``dt`` before the newest time stamp. A frame that is older than the newest by at most
+                ``allowed_lateness`` is put at its time, as if it had come in order; an older one is dropped. Frames
+                with equal stamps, as of several cameras, are one frame of all their people; who is in both is where the
+                one that came last says.
             covariances: ``[N, 2, 2]`` [m^2] of the positions. The last one of a person is added to the covariances of
                 the forecast, if the predictor has them; predictors do not read it.
             radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of a learned
                 predictor keep apart by the sum of radii.
 
         Raises:
-            InputError: shapes do not match, a position is not finite, an identity is duplicate, the time stamp is not
-                later than the one before, a covariance is not positive semidefinite, or a radius is not above 0.
+            InputError: shapes do not match, a position is not finite, an identity is wrong or duplicate, the time stamp
+                is not a finite number, a covariance is not symmetric and positive semidefinite, or a radius is not
+                above 0. The frame then has no effect.
+
+        >>> from crowdbot.prediction import ConstantVelocity
+        >>> live = Live(ConstantVelocity(), dt=0.1)
+        >>> for stamp in (0.0, 0.1, 0.3, 0.2):  # the last two came in the wrong order
+        ...     live.update([7], [[stamp, 0.0]], time=stamp)
+        >>> live.past().position[0, :, 0, 0].round(2).tolist()
+        [0.0, 0.1, 0.2, 0.3]
         """
+        frame = TrackerFrame.of(ids, position, robots, time, covariances, radii)
         with self._reading:
-            self._history.add(ids, position, robots, time, covariances, radii)
+            self._history.add(frame)
+        self._warn()
 
     def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
         """Return the stored rows as one window of all predicted agents."""
-        return self._past(plans)[0]
+        past, _, _ = self._past(plans)
+        self._warn()
+        return past
 
     def predict(self, steps: int, samples: int = 1, plans: Mapping[Any, ArrayLike] | None = None) -> Forecast:
         """Return the forecast of all agents of :attr:`ids`, with the existence probability of each.
@@ -167,11 +206,19 @@ class Live:
                 self._memory = memory
             self.latency = clock.perf_counter() - begin
             self._remark(memory)
+        self._warn()
         covariance = forecast.covariance
         if covariance is not None:
             moving = np.any(covariance, axis=(3, 4))[..., None, None]  # robots with a plan are where the plan says
             covariance = np.where(moving, covariance + rows.covariance[None, None], 0.0)
         return dataclasses.replace(forecast, existence=rows.existence[None], covariance=covariance)
+
+    def _warn(self) -> None:
+        """Warn the caller of a public method of what is new."""
+        with self._reading:
+            reports = self._plausibility.take_reports()
+        for sentence in reports:
+            warnings.warn(sentence, TrackerWarning, stacklevel=3)
 
     def _predictor_in_time(self) -> Predictor:
         """Return the predictor, with a budget of evaluations that fits into the deadline."""
@@ -211,3 +258,17 @@ class Live:
             "live", "live stream", self.walls, radius=None if rows.radius is None else rows.radius[None],
         )  # fmt: skip
         return (past.with_plans(known) if known else past), rows, count
+
+
+def _checked_ring(ring: ArrayLike) -> NDArray[np.float64]:
+    """Return a ring ``[N, 2]`` [m] of walls."""
+    try:
+        corners = np.array(ring, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"live: a ring of walls must be numbers [N, 2] [m], it is {ring!r}") from None
+    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+        raise InputError(
+            f"live: a ring of walls has shape {list(corners.shape)}, it must be finite corners [N, 2] [m]; pass a list"
+            " of rings, one for each obstacle"
+        )
+    return corners

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+
+from .tracker_frame import TrackerFrame
+from .tracker_plausibility import TrackerPlausibility
 
 __all__ = ["TrackedRows", "TrackerHistory"]
 
@@ -25,6 +28,8 @@ VELOCITY_TIME = 0.8
 """The velocity of a hidden person is the mean of this time before the last observation [s]."""
 MAX_ROWS = 2000
 """Largest number of stored rows, whatever the rate of the tracker."""
+SHORTEST_JUMP = 0.5
+"""Shorter steps are no jumps, at any speed [m]: of frames some ms apart, noise alone looks fast."""
 
 
 class _Row(NamedTuple):
@@ -58,48 +63,72 @@ class TrackedRows(NamedTuple):
 
 
 class TrackerHistory:
-    """The last rows of a tracker.
+    """The last rows of a tracker, in the order of their time stamps.
+
+    Rows are kept as they came; jumps and interpolation are computed when they are read. So the order of arrival does
+    not matter.
 
     Args:
         dt: time step of :meth:`rows`, and between rows without a time stamp [s].
         observe: largest number T of rows.
         coast: how long hidden agents are kept [s].
+        allowed_lateness: how much older than the newest a frame may be [s].
+        plausibility: judges the stream; tracks are cut at steps that are faster than its ``max_speed``.
     """
 
-    def __init__(self, dt: float, observe: int, coast: float) -> None:
-        self.dt, self.observe, self.coast = dt, observe, coast
+    def __init__(
+        self, dt: float, observe: int, coast: float, allowed_lateness: float, plausibility: TrackerPlausibility
+    ) -> None:
+        self.dt, self.observe, self.coast, self.allowed_lateness = dt, observe, coast, allowed_lateness
+        self.plausibility = plausibility
         self.count = 0
+        self.drop_count = 0
         self._stamped = False
-        self._rows: deque[_Row] = deque(maxlen=MAX_ROWS)
+        self._rows: deque[_Row] = deque()
         self._labels: dict[int, Hashable] = {}
         self._numbers: dict[Hashable, int] = {}
         self._next = FIRST_NUMBER
-        self._radii: dict[int, float] = {}
+        self._radii: dict[int, tuple[float, float]] = {}  # time [s] and radius [m]
 
-    def add(
-        self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable], time: float | None,
-        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
-    ) -> None:  # fmt: skip
-        """Add a row, see :meth:`Live.update`."""
-        labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
-        place = np.asarray(position, dtype=float).reshape(-1, 2)
-        if len(labels) != len(place):
-            raise InputError(f"live: {len(labels)} identities and {len(place)} positions; the numbers must be equal")
-        if not np.all(np.isfinite(place)):
-            raise InputError(f"live: the position of {labels[int(np.argmin(np.isfinite(place).all(axis=1)))]} is not"
-                             " finite")  # fmt: skip
-        if len(set(labels)) != len(labels):
-            raise InputError(f"live: identities {labels} must be distinct")
-        spread, bodies = _checked_covariances(covariances, len(labels)), _checked_radii(radii, len(labels))
-        stamp = self._stamp(time)
-        who = np.array([self._number(label) for label in labels], dtype=np.int64)
-        self._radii |= {int(number): size for number, size in zip(who, bodies, strict=True) if not np.isnan(size)}
+    def add(self, frame: TrackerFrame) -> None:
+        """Put a frame at its time; one with the stamp of a stored frame is merged with it, one too old is dropped."""
+        newest = self._rows[-1].time if self._rows else -np.inf
+        stamp = self._stamp(frame.time)
+        if stamp < newest - self.allowed_lateness - 1e-9:
+            self.drop_count += 1
+            self.plausibility.report_late(stamp, newest, self.allowed_lateness)
+            return
+        who = np.array([self._number(label) for label in frame.labels], dtype=np.int64)
         order = np.argsort(who)
-        machines = frozenset(self._number(label) for label in robots)
-        self._rows.append(_Row(stamp, who[order], place[order], machines, None if spread is None else spread[order]))
-        self._stamped = self._stamped or time is not None
-        self.count += 1
+        machines = frozenset(self._number(label) for label in frame.robots)
+        spread = None if frame.covariance is None else frame.covariance[order]
+        row = _Row(stamp, who[order], frame.position[order], machines, spread)
+        known = ~np.isnan(frame.radius)
+        for number, size in zip(who[known].tolist(), frame.radius[known].tolist(), strict=True):
+            if stamp >= self._radii.get(number, (-np.inf, 0.0))[0]:
+                self._radii[number] = (stamp, size)
+        if stamp > newest:
+            self._judge(row, stamp - newest, frame.time is not None)
+        self._stamped = self._stamped or frame.time is not None
+        self._insert(row)
         self._forget()
+
+    def _insert(self, row: _Row) -> None:
+        at = len(self._rows)
+        while at and self._rows[at - 1].time > row.time:
+            at -= 1
+        if at and self._rows[at - 1].time == row.time:
+            self._rows[at - 1] = _merged(self._rows[at - 1], row)
+        else:
+            self._rows.insert(at, row)
+            self.count += 1
+
+    def _judge(self, row: _Row, step: float, stamped: bool) -> None:
+        """Judge a row that is newer than all others."""
+        if stamped and self._rows:
+            self.plausibility.judge_step(step)
+        people = ~np.isin(row.who, list(row.robots)) if row.robots else slice(None)
+        self.plausibility.judge_speeds(row.time, row.who[people], row.place[people])
 
     def numbers(self) -> Integers:
         """Return the numbers ``[A]`` of the agents in the last row and of the hidden ones, sorted."""
@@ -159,20 +188,15 @@ class TrackerHistory:
 
     def _last_radii(self, id: Integers) -> Floats | None:
         """Return radii ``[A]`` [m], or None if none is known."""
-        found = np.array([self._radii.get(int(number), np.nan) for number in id])
+        found = np.array([self._radii.get(int(number), (0.0, np.nan))[1] for number in id])
         return None if np.isnan(found).all() else found
 
     def _stamp(self, time: float | None) -> float:
-        last = self._rows[-1].time if self._rows else None
-        if time is None:
-            return 0.0 if last is None else last + self.dt
-        if not np.isfinite(time) or (last is not None and time <= last):
-            raise InputError(f"live: time stamp {time} s must be finite and later than the one before, {last} s")
-        return float(time)
+        if time is not None:
+            return time
+        return self._rows[-1].time + self.dt if self._rows else 0.0
 
     def _number(self, label: Hashable) -> int:
-        if isinstance(label, np.generic):
-            label = label.item()
         found = self._numbers.get(label)
         if found is None:
             plain = isinstance(label, int) and 0 <= label < FIRST_NUMBER
@@ -185,6 +209,8 @@ class TrackerHistory:
         """Drop rows and identities that can no longer count."""
         kept = max((self.observe - 1) * self.dt, self.coast + VELOCITY_TIME)
         while len(self._rows) > 2 and self._rows[1].time <= self._rows[-1].time - kept - 1e-9:
+            self._rows.popleft()
+        if len(self._rows) > MAX_ROWS:
             self._rows.popleft()
         if self.count % self.observe == 0:
             alive = {int(n) for row in self._rows for n in (*row.who, *row.robots)}
@@ -203,15 +229,34 @@ class TrackerHistory:
         return now - self.dt * np.arange(count - 1, -1, -1.0)
 
     def _tracks(self, id: Integers) -> dict[int, tuple[Floats, Floats]]:
-        """Return times ``[N]`` and positions ``[N, 2]`` of agents by number."""
+        """Return times ``[N]`` and positions ``[N, 2]`` of agents by number, since their last jump."""
         if not len(id):
             return {}
         who = np.concatenate([row.who for row in self._rows])
         order = np.argsort(who, kind="stable")
         time = np.repeat([row.time for row in self._rows], [len(row.who) for row in self._rows])[order]
         place = np.concatenate([row.place for row in self._rows])[order]
-        first, last = (np.searchsorted(who[order], id, side=side) for side in ("left", "right"))
+        who = who[order]
+        first, last = (np.searchsorted(who, id, side=side) for side in ("left", "right"))
+        if np.isfinite(self.plausibility.max_speed):
+            self._cut_at_jumps(id, first, last, who, time, place)
         return {int(n): (time[a:b], place[a:b]) for n, a, b in zip(id, first, last, strict=True)}
+
+    def _cut_at_jumps(
+        self, id: Integers, first: Integers, last: Integers, who: Integers, time: Floats, place: Floats
+    ) -> None:
+        """Let the tracks ``first[A]`` to ``last[A]``, in observations sorted by person, begin after their last jump."""
+        gap, length = np.diff(time), np.hypot(*np.diff(place, axis=0).T)
+        fast = length > np.maximum(SHORTEST_JUMP, self.plausibility.max_speed * gap)
+        jumps = np.flatnonzero(fast & (who[1:] == who[:-1])) + 1
+        for number in np.intersect1d(who[jumps], id):
+            slot = int(np.searchsorted(id, number))
+            own = jumps[(first[slot] < jumps) & (jumps < last[slot])]
+            # who jumps in most frames is rather a person in wrong units
+            if 2 * len(own) < last[slot] - first[slot]:
+                step = own[-1] - 1
+                self.plausibility.report_jump(self._labels[int(number)], float(length[step]), float(gap[step]))
+            first[slot] = own[-1]
 
     def _at(self, times: Floats, seen: Floats, place: Floats) -> tuple[Floats, Bools]:
         """Return positions ``[T, 2]`` at times ``[T]``, and whether they are known."""
@@ -230,50 +275,15 @@ class TrackerHistory:
         return np.where(known[:, None], found, 0.0), known
 
 
-def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | None:
-    """Return covariances ``[N, 2, 2]`` [m^2], or None.
-
-    Raises:
-        InputError: the shape is wrong, or a matrix is not finite, symmetric and positive semidefinite.
-    """
-    if covariances is None:
-        return None
-    try:
-        spread = np.asarray(covariances, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("live: covariances must be numbers [N, 2, 2]") from None
-    if count == 0 and spread.size == 0:
-        return np.zeros((0, 2, 2))
-    if spread.shape != (count, 2, 2):
-        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2]")
-    size = np.abs(spread).max(axis=(1, 2))
-    wrong = ~np.isfinite(size) | (np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size)
-    smallest = np.linalg.eigvalsh(np.where(wrong[:, None, None], 0.0, spread))[:, 0]
-    wrong |= smallest < -1e-6 * np.where(np.isfinite(size), size, 0.0)
-    if wrong.any():
-        bad = spread[int(np.argmax(wrong))].tolist()
-        raise InputError(f"live: covariance {bad} is not finite, symmetric and positive semidefinite")
-    return spread
-
-
-def _checked_radii(radii: ArrayLike | None, count: int) -> list[float]:
-    """Return radii ``[N]`` [m], NaN where unknown.
-
-    Raises:
-        InputError: the shape is wrong, or a radius is not above 0 and finite.
-    """
-    if radii is None:
-        return [np.nan] * count
-    try:
-        found = np.asarray(radii, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("live: radii must be numbers [N]") from None
-    if found.shape != (count,):
-        raise InputError(f"live: radii have shape {list(found.shape)}, they must be [{count}]")
-    bad = found[~np.isnan(found) & ~((found > 0.0) & (found < np.inf))]
-    if len(bad):
-        raise InputError(f"live: radius {bad[0]} m must be above 0 and finite, or NaN if it is unknown")
-    return [float(radius) for radius in found]
+def _merged(row: _Row, other: _Row) -> _Row:
+    """Return a row of all people of two rows of the same time; those of both are as in the second one."""
+    who = np.concatenate([other.who, row.who])
+    number, at = np.unique(who, return_index=True)  # the first occurrence
+    spread = None
+    if row.covariance is not None or other.covariance is not None:
+        both = [np.zeros((len(one.who), 2, 2)) if one.covariance is None else one.covariance for one in (other, row)]
+        spread = np.concatenate(both)[at]
+    return _Row(row.time, number, np.concatenate([other.place, row.place])[at], row.robots | other.robots, spread)
 
 
 def _velocity(seen: Floats, place: Floats) -> Floats:

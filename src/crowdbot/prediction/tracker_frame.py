@@ -1,0 +1,189 @@
+"""TrackerFrame: one frame of a tracker, checked before it changes anything."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
+from numbers import Real
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError
+
+__all__ = ["TrackerFrame"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrackerFrame:
+    """What a tracker says about N people at one time.
+
+    Fields:
+        labels: N different identities.
+        position: ``[N, 2]`` [m].
+        robots: identities of robots.
+        time: time stamp [s], or None.
+        covariance: ``[N, 2, 2]`` [m^2] of the positions, or None.
+        radius: ``[N]`` [m], NaN where unknown.
+    """
+
+    labels: list[Hashable]
+    position: Floats
+    robots: list[Hashable]
+    time: float | None
+    covariance: Floats | None
+    radius: Floats
+
+    @classmethod
+    def of(
+        cls, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None,
+        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
+    ) -> Self:  # fmt: skip
+        """Return a frame of checked values, see :meth:`Live.update`.
+
+        Raises:
+            InputError: a value has a wrong type or shape or is impossible; the sentence names it.
+
+        >>> frame = TrackerFrame.of([7.0, "a"], [[0.0, 1.0], [2.0, 3.0]])
+        >>> frame.labels, frame.position.shape, frame.time
+        ([7, 'a'], (2, 2), None)
+        """
+        labels = _checked_labels(ids, "ids")
+        place = _checked_positions(position, labels)
+        repeated = [label for label, count in Counter(labels).items() if count > 1]
+        if repeated:
+            raise InputError(
+                f"live: identity {repeated[0]!r} occurs {labels.count(repeated[0])} times in a frame of"
+                f" {len(labels)}; identities must be distinct, send each person once"
+            )
+        return cls(
+            labels, place, _checked_labels(robots, "robots"), _checked_stamp(time),
+            _checked_covariances(covariances, len(labels)), _checked_radii(radii, len(labels)),
+        )  # fmt: skip
+
+
+def _checked_labels(ids: Iterable[Hashable], name: str) -> list[Hashable]:
+    """Return identities; numbers of NumPy and of tensors become those of Python, and 7.0 becomes 7."""
+    if isinstance(ids, str | bytes) or not isinstance(ids, Iterable):
+        raise InputError(
+            f"live: {name} = {ids!r} must be a list of identities, one for each"
+            f" {'position' if name == 'ids' else 'robot'}; for one alone write [{ids!r}]"
+        )
+    ndim = getattr(ids, "ndim", 1)
+    if ndim != 1:
+        raise InputError(f"live: {name} have shape {list(ids.shape)}, they must be [N]; flatten them")  # type: ignore[attr-defined]
+    labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
+    return labels if all(type(label) is int for label in labels) else [_checked_label(one, name) for one in labels]
+
+
+def _checked_label(label: Hashable, name: str) -> Hashable:
+    if getattr(label, "shape", None) == () and hasattr(label, "item"):
+        label = label.item()  # two tensors of the same number have different hashes
+    if isinstance(label, float) and label.is_integer():
+        return int(label)
+    if label is None or isinstance(label, bool | float):
+        raise InputError(
+            f"live: {label!r} in {name} is no identity; an identity is a whole number, a text or any other hashable"
+            " value that stays the same while a person is tracked; leave people without one out of the frame"
+        )
+    try:
+        hash(label)
+    except TypeError:
+        raise InputError(
+            f"live: {label!r} in {name} is no identity: a {type(label).__name__} is not hashable; use a whole number,"
+            " a text or a tuple"
+        ) from None
+    return label
+
+
+def _checked_positions(position: ArrayLike, labels: list[Hashable]) -> Floats:
+    count = len(labels)
+    try:
+        place = np.array(position, dtype=float)  # a copy: trackers write into the same buffer again
+    except (TypeError, ValueError):
+        raise InputError(
+            f"live: position must be numbers [N, 2], x and y [m] of each of {count} identities; it is not, or its"
+            " rows differ in length"
+        ) from None
+    if count == 0 and place.size == 0:
+        return np.zeros((0, 2))
+    if place.ndim != 2 or place.shape[1] != 2:
+        extra = place.ndim == 2 and place.shape[1] > 2
+        remedy = "pass position[:, :2] without height and others" if extra else "pass one row for each identity"
+        raise InputError(
+            f"live: position has shape {list(place.shape)}, it must be [{count}, 2], x and y [m]; {remedy}"
+        )
+    if len(place) != count:
+        raise InputError(f"live: {count} identities and {len(place)} positions; the numbers must be equal")
+    finite = np.isfinite(place)
+    if not finite.all():
+        bad = int(np.argmin(finite.all(axis=1)))
+        raise InputError(
+            f"live: the position of {labels[bad]!r} is not finite: {place[bad].tolist()}; leave people without a"
+            " position out of the frame"
+        )
+    return place
+
+
+def _checked_stamp(time: object) -> float | None:
+    if time is None:
+        return None
+    if not isinstance(time, Real):
+        raise InputError(
+            f"live: time = {time!r} must be a number of seconds; of a ROS stamp it is stamp.sec + 1e-9 *"
+            " stamp.nanosec, of a datetime its timestamp()"
+        )
+    if not math.isfinite(time):
+        raise InputError(f"live: time stamp {time} s must be finite; leave it out (None) if the tracker has no clock")
+    return float(time)
+
+
+def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | None:
+    """Return covariances ``[N, 2, 2]`` [m^2], or None.
+
+    Raises:
+        InputError: the shape is wrong, or a matrix is not finite, symmetric and positive semidefinite.
+    """
+    if covariances is None:
+        return None
+    try:
+        spread = np.array(covariances, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("live: covariances must be numbers [N, 2, 2]") from None
+    if count == 0 and spread.size == 0:
+        return np.zeros((0, 2, 2))
+    if spread.shape != (count, 2, 2):
+        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2]")
+    size = np.abs(spread).max(axis=(1, 2))
+    wrong = ~np.isfinite(size) | (np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size)
+    smallest = np.linalg.eigvalsh(np.where(wrong[:, None, None], 0.0, spread))[:, 0]
+    wrong |= smallest < -1e-6 * np.where(np.isfinite(size), size, 0.0)
+    if wrong.any():
+        bad = spread[int(np.argmax(wrong))].tolist()
+        raise InputError(f"live: covariance {bad} is not finite, symmetric and positive semidefinite")
+    return spread
+
+
+def _checked_radii(radii: ArrayLike | None, count: int) -> Floats:
+    """Return radii ``[N]`` [m], NaN where unknown.
+
+    Raises:
+        InputError: the shape is wrong, or a radius is not above 0 and finite.
+    """
+    if radii is None:
+        return np.full(count, np.nan)
+    try:
+        found = np.array(radii, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("live: radii must be numbers [N]") from None
+    if found.shape != (count,):
+        raise InputError(f"live: radii have shape {list(found.shape)}, they must be [{count}]")
+    bad = found[~np.isnan(found) & ~((found > 0.0) & (found < np.inf))]
+    if len(bad):
+        raise InputError(f"live: radius {bad[0]} m must be above 0 and finite, or NaN if it is unknown")
+    return found
