@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
@@ -80,10 +81,19 @@ def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
         ('map="bad.txt"', "bad.txt is not a ROS map: it does not say image and resolution and origin"),
         ('map="noimage.yaml"', "there is no file 'gone.pgm'"),
         ('map="outside.yaml"', "lies outside"),
-        ('map="notpgm.yaml"', "bad.bin is not a PGM image"),
-        ('map="short.yaml"', "short.pgm is cut off: 3 bytes for 50 x 50 cells"),
-        ('map="huge.yaml"', "huge.pgm has 99999 x 99999 cells"),
-        ('map="nan.yaml"', "not finite, too large, or not above 0"),
+        ('map="notpgm.yaml"', "bad.bin is not an image that can be read: a map is a PGM, PNG, BMP or JPEG image"),
+        ('map="short.yaml"', "short.pgm is cut off or damaged"),
+        ('map="large.yaml"', "large.pgm has 5000 x 5000 cells; at most 16000000 are read"),
+        ('map="huge.yaml"', "huge.pgm has too many cells; at most 16000000 are read"),
+        ('map="nan.yaml"', "nan.yaml: resolution has nan, which is not finite"),
+        ('map="word.yaml"', "word.yaml: resolution has 'fine', which is not a number"),
+        ('map="zero.yaml"', "zero.yaml: resolution = 0 m must be above 0"),
+        ('map="pair.yaml"', "pair.yaml: origin = [1, 2] must be a list of three numbers"),
+        ('map="percent.yaml"', "percent.yaml: occupied_thresh = 65 must be from 0 to 1; 65 % is 0.65"),
+        ('map="swapped.yaml"', "swapped.yaml: free_thresh = 0.8 must not be above occupied_thresh = 0.65"),
+        ('map="mode.yaml"', "mode.yaml: mode = 'rwa' is unknown, did you mean 'raw'?; use trinary, scale, raw"),
+        ('map="negate.yaml"', "negate.yaml: negate = 2 must be 0 or 1"),
+        ('map="yaml.yaml"', "yaml.yaml:1: "),
     ],
 )
 def test_wrong_grounds_are_told(tmp_path: Path, stage: str, sentence: str) -> None:
@@ -99,7 +109,17 @@ def test_wrong_grounds_are_told(tmp_path: Path, stage: str, sentence: str) -> No
         "short.pgm": b"P5 50 50 255\nabc",
         "huge.yaml": YAML.replace("map.pgm", "huge.pgm"),
         "huge.pgm": b"P5 99999 99999 255\nabc",
-        "nan.yaml": YAML.replace("resolution: 0.1", "resolution: nan"),
+        "large.yaml": YAML.replace("map.pgm", "large.pgm"),
+        "large.pgm": b"P5 5000 5000 255\nabc",
+        "nan.yaml": YAML.replace("resolution: 0.1", "resolution: .nan"),
+        "word.yaml": YAML.replace("resolution: 0.1", "resolution: fine"),
+        "zero.yaml": YAML.replace("resolution: 0.1", "resolution: 0"),
+        "pair.yaml": YAML.replace("[-1.0, -0.5, 0.0]", "[1, 2]"),
+        "percent.yaml": YAML.replace("occupied_thresh: 0.65", "occupied_thresh: 65"),
+        "swapped.yaml": YAML.replace("free_thresh: 0.196", "free_thresh: 0.8"),
+        "mode.yaml": YAML + "mode: rwa\n",
+        "negate.yaml": YAML.replace("negate: 0", "negate: 2"),
+        "yaml.yaml": "image: [map.pgm",
     }.items():
         written(tmp_path, data, name)
     with pytest.raises(TrialError) as found:
@@ -121,6 +141,82 @@ def test_a_map_of_ros_is_a_stage(tmp_path: Path, kind: bytes) -> None:
     loose = Stage(map="map.yaml", folder=tmp_path, unknown="free")
     assert loose.clearance([(-0.95, 1.0)])[0] == pytest.approx(0.05)
     assert stage.clearance([(-0.95, 1.0)])[0] == 0.0
+
+
+def written_map(folder: Path, cells: np.ndarray, more: str = "", image: str = "map.png", kind: str = "L") -> Stage:
+    """Write a map of pixels ``[H, W]`` or ``[H, W, C]`` and return its stage."""
+    Image.fromarray(cells.astype(np.uint8), kind).save(folder / image)
+    written(folder, YAML.replace("map.pgm", image) + more, "map.yaml")
+    return Stage(map="map.yaml", folder=folder)
+
+
+GREY = np.array([[{"#": 0, ".": 254, "?": 205}[mark] for mark in row] for row in ROOM])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        YAML,
+        "\ufeff" + YAML,
+        YAML.replace("\n", "\r\n"),
+        YAML.replace("[-1.0, -0.5, 0.0]", "\n- -1.0\n- -0.5\n- 0.0"),
+        YAML.replace("[-1.0, -0.5, 0.0]", "[-1.0,\n  -0.5,\n  0.0]"),
+        YAML.replace("[-1.0, -0.5, 0.0]", "[-1, -5e-1, 0]  # of the lower left corner"),
+        YAML.replace("image: map.pgm", "image: 'map.pgm'").replace("negate: 0", "negate: false"),
+        "---\n# a map\n" + YAML + "mode: trinary\n",
+        json.dumps({"image": "map.pgm", "resolution": 0.1, "origin": [-1.0, -0.5, 0.0], "negate": 0}),
+        "resolution: &size 0.1\nimage: map.pgm\norigin: {0: -1.0}\n".replace("{0: -1.0}", "[-1.0, -0.5, 0.0]"),
+    ],
+)
+def test_a_map_is_any_form_of_yaml(tmp_path: Path, text: str) -> None:
+    written(tmp_path, pgm(ROOM), "map.pgm")
+    written(tmp_path, YAML, "plain.yaml")
+    written(tmp_path, text.encode(), "map.yaml")
+    plain, same = (Stage(map=name, folder=tmp_path).rings for name in ("plain.yaml", "map.yaml"))
+    assert len(plain) == len(same) == 2
+    for ring, other in zip(plain, same, strict=True):
+        np.testing.assert_array_equal(ring, other)
+
+
+@pytest.mark.parametrize(
+    ("image", "kind", "cells"),
+    [
+        ("map.png", "L", GREY),
+        ("map.bmp", "L", GREY),
+        ("map.png", "RGB", np.repeat(GREY[..., None], 3, axis=2)),
+        ("map.png", "RGBA", np.concatenate([np.repeat(GREY[..., None], 3, axis=2), np.full((*GREY.shape, 1), 255)], 2)),
+        ("map.pgm", "L", GREY),
+    ],
+)
+def test_a_map_is_an_image_of_any_kind(tmp_path: Path, image: str, kind: str, cells: np.ndarray) -> None:
+    written_map(tmp_path, cells, image=image, kind=kind)
+    written(tmp_path, pgm(ROOM), "plain.pgm")
+    written(tmp_path, YAML.replace("map.pgm", "plain.pgm"), "plain.yaml")
+    # an opaque grey of unknown cells is free in an image with opacity, as in nav2_map_server
+    same, plain = (Stage(map=name, unknown="free", folder=tmp_path).rings for name in ("map.yaml", "plain.yaml"))
+    for ring, other in zip(same, plain, strict=True):
+        np.testing.assert_array_equal(ring, other)
+
+
+def test_a_raw_map_holds_percent(tmp_path: Path) -> None:
+    cells = np.zeros((20, 40))
+    cells[8:12, 10:14], cells[8:12, 20:24], cells[8:12, 30:34] = 100, 30, 255  # a wall, cheap floor, unknown
+    stage = written_map(tmp_path, cells, "mode: raw\n")
+    assert [(round(float(ring[:, 0].min()), 3), round(float(ring[:, 0].max()), 3)) for ring in stage.rings] == [
+        (0.0, 0.4),
+        (2.0, 2.4),
+    ]
+    assert len(Stage(map="map.yaml", folder=tmp_path, unknown="free").rings) == 1
+
+
+def test_a_map_in_the_mode_scale_is_unknown_only_where_it_is_transparent(tmp_path: Path) -> None:
+    cells = np.full((20, 40, 2), 255)
+    cells[8:12, 10:14, 0] = 0  # a wall
+    cells[8:12, 20:24, 0] = 150  # between free and occupied: no wall
+    cells[8:12, 30:34, 1] = 0  # transparent
+    assert len(written_map(tmp_path, cells, "mode: scale\n", kind="LA").rings) == 2
+    assert len(Stage(map="map.yaml", folder=tmp_path, unknown="free").rings) == 1
+    assert len(written_map(tmp_path, cells[..., 0], "mode: trinary\n").rings) == 2  # 150 is unknown
 
 
 def test_people_walk_on_a_map(tmp_path: Path) -> None:

@@ -127,7 +127,7 @@ def test_a_tricycle_controller_gives_speeds_of_its_wheel(tmp_path):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("a: &x 1\n", "c.yaml"),
+        ("a: !include x\n", "c.yaml"),
         ("{", "c.yaml"),
         ("a:\n\t- b", "c.yaml"),
         ("x" * 400_000, "has more than 300000 bytes"),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from base_texts import BASES, PAIR, base_file, wheels
+from base_texts import BASES, FOUR, PAIR, base_file, wheels
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist
@@ -109,6 +109,38 @@ def test_wheels_that_roll_along_y_are_noted(tmp_path):
     file.write_text(base_file("differential").replace(wheels(*PAIR), across))
     made = import_robot(file, "r", kind="differential")
     assert any("the wheels roll along y, but the front of a robot is along x" in remark for remark in made.remarks)
+
+
+@pytest.mark.parametrize("name", ["caster", "wheel_module", "swivel"])
+def test_castors_that_must_drive_are_driven_and_steered(tmp_path, name):
+    modules = "".join(
+        f"<link name='{place}_{name}'/><joint name='{place}_{name}_joint' type='continuous'><parent link='base_link'/>"
+        f"<child link='{place}_{name}'/><origin xyz='{x} {y} 0.1'/><axis xyz='0 0 1'/></joint>"
+        f"<xacro:wheel name='{place}' x='0' y='0' parent='{place}_{name}'/>"
+        for place, x, y, _ in FOUR
+    )
+    file = tmp_path / "maker.xacro"
+    file.write_text(base_file("differential").replace(BASES["differential"], modules))
+    assert import_robot(file, "r").kind == "omnidirectional"
+
+
+@pytest.mark.parametrize("kind", ["differential", "omnidirectional"])
+@pytest.mark.parametrize("joints", ["x y theta", "theta", "world_joint x y z theta"])
+def test_joints_that_move_the_whole_robot_are_no_legs(tmp_path, kind, joints):
+    parent, text = "world", "<link name='world'/>"
+    for k, name in enumerate(names := joints.split()):
+        child = "base_link" if k == len(names) - 1 else f"virtual_{name}"
+        text += "" if child == "base_link" else f"<link name='{child}'/>"
+        axis = {"x": "1 0 0", "y": "0 1 0"}.get(name, "0 0 1")
+        type_ = {"theta": "continuous", "world_joint": "fixed"}.get(name, "prismatic")
+        text += (
+            f"<joint name='{name}' type='{type_}'><parent link='{parent}'/><child link='{child}'/><axis xyz='{axis}'/>"
+            "<limit lower='-9' upper='9' effort='100' velocity='1'/></joint>"
+        )
+        parent = child
+    file = tmp_path / "maker.xacro"
+    file.write_text(base_file(kind).replace("</robot>", f"{text}</robot>"))
+    assert import_robot(file, "r").kind == kind
 
 
 def test_a_receiver_in_all_directions_is_no_omnidirectional_base(tmp_path):

@@ -4,7 +4,7 @@ import pytest
 from real_robots import XACRO
 from xacro_texts import ERRORS, EXPANSIONS, HEAD
 
-from crowdbot.core import InputError, RobotError, parse_xml, parse_yaml
+from crowdbot.core import RobotError, parse_xml
 from crowdbot.world import read_urdf
 from crowdbot.world.urdf import parse_robot_file
 from crowdbot.world.urdf.folders import Folders
@@ -166,39 +166,6 @@ def test_yaml_is_loaded(tmp_path):
     )
     row = expand(text, tmp_path).root.children[0].attributes
     assert row == {"b": "-0.2", "c": "3.0", "d": "1.5707963267948966", "e": "0.001"}
-
-
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("- 1\n- [2, 3]\n-\n  - x\n", [1, [2, 3], ["x"]]),
-        ("a: 'x: y'\nb: \"# no\"\n", {"a": "x: y", "b": "# no"}),
-        ("k:\n- 1\n- 2\nz: 3\n", {"k": [1, 2], "z": 3}),
-        ("3", 3),
-        ("{}", {}),
-        ("", None),
-    ],
-)
-def test_forms_of_yaml(text, value):
-    assert parse_yaml(text, "m.yaml") == value
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("a: &x 1\nb: *x", "w.yaml:1: 'a: &x 1' uses an anchor"),
-        ("a: !!python/object:os.system x", "uses the tag '!!python/object:os.s'"),
-        ("a: [1, 2", "has no closing ']'"),
-        ("a:\n\t- 1", "a tab cannot indent YAML"),
-        ("a: 1\n   b: 2", "is indented differently"),
-        ("a: 'x", "has a quote that is not closed"),
-        ("a: " + "[" * 50, "is nested more than 20 levels deep"),
-    ],
-)
-def test_other_yaml_is_refused(text, sentence):
-    with pytest.raises(InputError) as caught:
-        parse_yaml(text, "w.yaml")
-    assert sentence in str(caught.value)
 
 
 FOREIGN = {

@@ -1,13 +1,12 @@
-"""A small part of YAML: mappings, sequences and scalars, as in parameter files of robots and simulators.
-
-Anchors, aliases, merge keys, tags other than ``!degrees`` and ``!radians``, and several documents are refused.
-"""
+"""YAML files of robots, maps and simulators, read by PyYAML as plain data of limited size."""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Any, NamedTuple
+from typing import Any
+
+import yaml
 
 from crowdbot.core.errors import InputError
 
@@ -15,221 +14,125 @@ __all__ = ["parse_yaml"]
 
 MOST_LINES = 20_000
 MOST_DEPTH = 20
-KEY = re.compile(
-    r"""(?P<key>"[^"]*"|'[^']*'|[^\s\[\]{},&*!|>%@`"'#-][^:#]*?|-[^\s:#][^:#]*?)\s*:(?:\s+(?P<rest>.*))?$"""
-)
-NUMBER = re.compile(r"[+-]?(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?", re.ASCII)
-WORDS = {"true": True, "false": False, "yes": True, "no": False, "on": True, "off": False, "null": None, "~": None}
+MOST_NODES = 200_000
+"""Largest number of values after all aliases are replaced by what they stand for."""
+TAG = "tag:yaml.org,2002:"
+SCALARS = {
+    "bool": (re.compile(r"true|false|yes|no|on|off", re.IGNORECASE), "tTfFyYnNoO"),
+    "int": (re.compile(r"[-+]?[0-9][0-9_]{0,99}", re.ASCII), "-+0123456789"),
+    "float": (
+        re.compile(
+            r"[-+]?(?:[0-9][0-9_]*\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,4})?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
+        ),
+        "-+.0123456789",
+    ),
+    "null": (re.compile(r"~|null|Null|NULL|"), ["~", "n", "N", ""]),
+    "merge": (re.compile(r"<<"), "<"),
+}
+"""Plain words that are not texts, and the letters that they begin with.
 
-
-class _Line(NamedTuple):
-    number: int
-    indent: int
-    text: str
+Unlike YAML 1.1, 1e5 is a number, 010 is ten, and 12:30 and dates are texts: so parameter files mean them.
+"""
 
 
 def parse_yaml(text: str, place: str) -> Any:
     """Return the content of a YAML text: dictionaries, lists, strings, numbers, booleans and None.
 
+    Anchors, aliases and merge keys are followed; tags other than ``!degrees`` and ``!radians`` are refused.
+
     Args:
-        text: the text.
+        text: the text, one document.
         place: file name for messages.
 
     Raises:
-        InputError: the text is not in the supported part of YAML.
+        InputError: the text is not YAML, has a tag that is not supported, or is too long or nested too deeply.
 
     >>> parse_yaml("wheel: {radius: 0.1, turns: [1, 2]}  # m\\nangle: !degrees 180", "w.yaml")
     {'wheel': {'radius': 0.1, 'turns': [1, 2]}, 'angle': 3.141592653589793}
     """
-    rows = _lines(text, place)
-    if not rows:
-        return None
-    reader = _Reader(rows, place)
-    found = reader.block(rows[0].indent, 0)
-    if reader.place < len(rows):
-        reader.refuse("is indented differently from the lines above")
-    return found
-
-
-def _lines(text: str, place: str) -> list[_Line]:
-    lines = text.splitlines()
-    if len(lines) > MOST_LINES:
+    if text.count("\n") >= MOST_LINES:
         raise InputError(f"{place} has more than {MOST_LINES} lines, the maximum of a YAML file")
-    found: list[_Line] = []
-    for number, line in enumerate(lines, 1):
-        plain = _without_comment(line).rstrip()
-        if not plain.strip() or (plain.startswith(("---", "%YAML")) and not found):
-            continue
-        indent = len(plain) - len(plain.lstrip(" "))
-        if "\t" in plain[: indent + 1]:
-            raise InputError(f"{place}:{number}: a tab cannot indent YAML")
-        found.append(_Line(number, indent, plain.strip()))
-    return found
-
-
-def _without_comment(line: str) -> str:
-    quote = ""
-    for k, letter in enumerate(line):
-        if quote:
-            quote = "" if letter == quote else quote
-        elif letter in "'\"":
-            quote = letter
-        elif letter == "#" and (k == 0 or line[k - 1] in " \t"):
-            return line[:k]
-    return line
-
-
-class _Reader:
-    def __init__(self, rows: list[_Line], place: str) -> None:
-        self.rows, self.file, self.place = rows, place, 0
-
-    def refuse(self, what: str) -> None:
-        line = self.rows[min(self.place, len(self.rows) - 1)]
-        raise InputError(f"{self.file}:{line.number}: {line.text[:60]!r} {what}")
-
-    def block(self, indent: int, depth: int) -> Any:
-        """Return the value of the lines at an indentation."""
-        if depth > MOST_DEPTH:
-            self.refuse(f"is nested more than {MOST_DEPTH} levels deep")
-        line = self.rows[self.place]
-        if line.text == "-" or line.text.startswith("- "):
-            return self.sequence(indent, depth)
-        if KEY.match(line.text):
-            return self.mapping(indent, depth)
-        self.place += 1
-        return self.scalar(line.text)
-
-    def sequence(self, indent: int, depth: int) -> list[Any]:
-        found = []
-        while self.place < len(self.rows):
-            line = self.rows[self.place]
-            if line.indent != indent or not (line.text == "-" or line.text.startswith("- ")):
-                break
-            rest = line.text[1:].lstrip()
-            if not rest:
-                self.place += 1
-                found.append(self.inner(indent, depth))
-                continue
-            deeper = line.indent + len(line.text) - len(rest)
-            self.rows[self.place] = _Line(line.number, deeper, rest)
-            found.append(self.block(deeper, depth + 1))
-        return found
-
-    def mapping(self, indent: int, depth: int) -> dict[Any, Any]:
-        found: dict[Any, Any] = {}
-        while self.place < len(self.rows):
-            line = self.rows[self.place]
-            match = KEY.match(line.text)
-            if line.indent != indent or line.text.startswith("- "):
-                break
-            if match is None:
-                self.refuse("is not 'key: value'")
-                break
-            key, rest = self.scalar(match.group("key")), match.group("rest") or ""
-            if isinstance(key, str) and key == "<<":
-                self.refuse("is a merge key, which is not supported")
-            self.place += 1
-            found[key] = self.flow(rest) if rest else self.inner(indent, depth, sequence=True)
-        return found
-
-    def inner(self, indent: int, depth: int, sequence: bool = False) -> Any:
-        """Return the block below a line, or None if nothing is indented deeper."""
-        if self.place >= len(self.rows):
+    try:
+        loader = _LOADER(text)
+        node = loader.get_single_node()
+        if node is None:
             return None
-        line = self.rows[self.place]
-        is_sequence = line.text == "-" or line.text.startswith("- ")
-        if line.indent > indent or (sequence and is_sequence and line.indent == indent):
-            return self.block(line.indent, depth + 1)
-        return None
+        if _nodes(node, {}, 0) > MOST_NODES:
+            raise InputError(f"{place} has more than {MOST_NODES} values with its aliases, the maximum of a YAML file")
+        return loader.construct_document(node)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise InputError(f"{place}:{mark.line + 1 if mark else 1}: {error.problem or error.context}") from None
+    except yaml.YAMLError as error:
+        raise InputError(f"{place} is not YAML: {str(error).splitlines()[0][:200]}") from None
+    except (RecursionError, _TooDeepError):
+        raise InputError(f"{place} is nested more than {MOST_DEPTH} levels deep, or an alias contains itself") from None
 
-    def flow(self, text: str) -> Any:
-        """Return a value on one line, or a flow collection that goes on over several lines."""
-        while text[:1] in ("[", "{") and _open_brackets(text) > 0 and self.place < len(self.rows):
-            text += " " + self.rows[self.place].text
-            self.place += 1
-            if len(text) > 20_000:
-                self.refuse("continues a collection that is too long")
-        return self.scalar(text)
 
-    def scalar(self, text: str) -> Any:
-        value, rest = self.value(text.strip(), 0)
-        if rest.strip():
-            self.refuse(f"has an unexpected {rest.strip()[:20]!r}")
+class _TooDeepError(Exception):
+    """A node is nested too deeply."""
+
+
+def _nodes(node: Any, known: dict[int, int], depth: int) -> int:
+    """Return the number of values of a node, those of its aliases each time that they stand there."""
+    if depth > MOST_DEPTH:
+        raise _TooDeepError
+    if id(node) not in known:
+        inner = node.value if isinstance(node, yaml.CollectionNode) else []
+        rows = [part for row in inner for part in (row if isinstance(row, tuple) else (row,))]
+        known[id(node)] = 1 + sum(_nodes(row, known, depth + 1) for row in rows)
+    return known[id(node)]
+
+
+def _refuse(node: Any, problem: str) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
+
+
+def _bool(loader: Any, node: Any) -> bool:
+    text = str(loader.construct_scalar(node)).lower()
+    if text not in ("true", "yes", "on", "false", "no", "off"):
+        raise _refuse(node, f"{text[:40]!r} is not a truth value")
+    return text in ("true", "yes", "on")
+
+
+def _int(loader: Any, node: Any) -> int:
+    value = _number(loader, node)
+    if isinstance(value, int):
         return value
-
-    def value(self, text: str, depth: int) -> tuple[Any, str]:
-        """Return the value at the beginning of a text, and the rest of the text."""
-        if depth > MOST_DEPTH:
-            self.refuse(f"is nested more than {MOST_DEPTH} levels deep")
-        if text[:1] in ("&", "*", "|", ">", "@", "`"):
-            self.place = max(0, self.place - 1)
-            self.refuse("uses an anchor, alias or block text, which is not supported; write the value itself")
-        if text[:1] == "!":
-            return self.angle(text, depth)
-        if text[:1] in ("'", '"'):
-            end = text.find(text[0], 1)
-            if end < 0:
-                self.refuse("has a quote that is not closed")
-            return text[1:end], text[end + 1 :]
-        if text[:1] == "[":
-            return self.items(text[1:], depth)
-        if text[:1] == "{":
-            return self.entries(text[1:], depth)
-        stop = re.search(r"[,\]}]", text) if depth else None
-        plain, rest = (text, "") if stop is None else (text[: stop.start()], text[stop.start() :])
-        return _plain(plain.strip()), rest
-
-    def angle(self, text: str, depth: int) -> tuple[Any, str]:
-        tag, _, rest = text.partition(" ")
-        if tag not in ("!degrees", "!radians"):
-            self.place = max(0, self.place - 1)
-            self.refuse(f"uses the tag {tag[:20]!r}; only !degrees and !radians are supported")
-        value, rest = self.value(rest.strip(), depth)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            self.refuse(f"needs a number after {tag}")
-        return math.radians(value) if tag == "!degrees" else float(value), rest
-
-    def items(self, text: str, depth: int) -> tuple[list[Any], str]:
-        found = []
-        text = text.strip()
-        while not text.startswith("]"):
-            value, text = self.value(text, depth + 1)
-            found.append(value)
-            text = self.next(text, "]")
-        return found, text[1:]
-
-    def entries(self, text: str, depth: int) -> tuple[dict[Any, Any], str]:
-        found = {}
-        text = text.strip()
-        while not text.startswith("}"):
-            match = re.match(r"\s*(\"[^\"]*\"|'[^']*'|[^:,\[\]{}]+?)\s*:\s*", text)
-            if match is None:
-                self.refuse("has an entry that is not 'key: value'")
-                break
-            found[self.scalar(match.group(1))], text = self.value(text[match.end() :], depth + 1)
-            text = self.next(text, "}")
-        return found, text[1:]
-
-    def next(self, text: str, last: str) -> str:
-        text = text.strip()
-        if text.startswith(","):
-            return text[1:].strip()
-        if not text.startswith(last):
-            self.refuse(f"has no closing {last!r}")
-        return text
+    raise _refuse(node, f"{value} is not a whole number")
 
 
-def _open_brackets(text: str) -> int:
-    plain = re.sub(r"'[^']*'|\"[^\"]*\"", "", text)
-    return sum(plain.count(sign) for sign in "[{") - sum(plain.count(sign) for sign in "]}")
+def _number(loader: Any, node: Any) -> float | int:
+    text = str(loader.construct_scalar(node)).replace("_", "").lower()
+    try:
+        return int(text) if text.lstrip("+-").isdigit() else float(text.replace(".inf", "inf").replace(".nan", "nan"))
+    except ValueError:
+        raise _refuse(node, f"{text[:40]!r} is not a number") from None
 
 
-def _plain(text: str) -> Any:
-    if text.lower() in WORDS:
-        return WORDS[text.lower()]
-    if not text:
-        return None
-    if NUMBER.fullmatch(text) and len(text) < 100:
-        digits = text.replace("_", "")
-        return int(digits) if digits.lstrip("+-").isdigit() else float(digits)
-    return text
+def _angle(loader: Any, node: Any) -> float:
+    value = _number(loader, node)
+    return math.radians(value) if node.tag == "!degrees" else float(value)
+
+
+def _unknown(_loader: Any, node: Any) -> None:
+    tag = node.tag.replace(TAG, "!!")
+    raise _refuse(node, f"the tag {tag[:40]!r} is not supported; only !degrees and !radians are")
+
+
+def _loader_class() -> Any:
+    """Return PyYAML's safe loader with the scalars above, and without its other types."""
+    safe = yaml.SafeLoader.yaml_constructors
+    known = {TAG + name: safe[TAG + name] for name in ("map", "seq", "str", "null")}
+    loader: Any = type("Loader", (yaml.SafeLoader,), {"yaml_implicit_resolvers": {}, "yaml_constructors": known})
+    for name, (pattern, first) in SCALARS.items():
+        loader.add_implicit_resolver(TAG + name, re.compile(rf"(?:{pattern.pattern})\Z", pattern.flags), list(first))
+    for tag, construct in (("bool", _bool), ("int", _int), ("float", _number)):
+        loader.add_constructor(TAG + tag, construct)
+    for tag in ("!degrees", "!radians"):
+        loader.add_constructor(tag, _angle)
+    loader.add_constructor(None, _unknown)
+    return loader
+
+
+_LOADER = _loader_class()

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import functools
+import io
 import math
 import re
+import warnings
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, did_you_mean, parse_yaml
 from crowdbot.trials.fields import LARGEST
 
 from .trial_files import read_beside, resolve_file
@@ -26,6 +28,11 @@ MOST_DETAIL = 120_000
 MOST_TEXT = 4_000_000
 MOST_CELLS = 16_000_000
 MOST_IMAGE = 64_000_000
+MODES = ("trinary", "scale", "raw")
+IMAGES = ("PPM", "PNG", "BMP", "JPEG")
+"""Formats of map images; PPM includes PGM and PBM."""
+RAW_OCCUPIED = 100
+"""Largest value of a cell with a known occupancy [%] in the mode raw."""
 WKT = re.compile(r"\s*(MULTI)?(POLYGON|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 
 
@@ -123,12 +130,14 @@ class _Map(NamedTuple):
     negate: bool
     occupied: float
     free: float
+    mode: str
 
 
 def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[shapely.Polygon, ...]:
-    """Return the occupied cells of a ROS map (map_server, ``.yaml`` with ``.pgm``) as polygons.
+    """Return the occupied cells of a ROS map (map_server, a ``.yaml`` file with an image) as polygons.
 
-    Borders are simplified by at most one cell.
+    Cells are read as by nav2_map_server in the modes ``trinary``, ``scale`` and ``raw``. Borders are simplified by at
+    most one cell.
 
     Args:
         name: name of the ``.yaml`` file in the folder.
@@ -160,38 +169,50 @@ def _map_of(name: str, folder: Path | None, trust: bool) -> tuple[Path, _Map, Pa
 
 
 def _yaml(data: bytes, name: str) -> _Map:
-    """Read the flat keys and values of a map file."""
-    rows = {}
-    for line in data.decode("utf-8", "replace").splitlines():
-        key, colon, value = line.partition(":")
-        if colon and not line.startswith((" ", "#", "-")):
-            rows[key.strip()] = value.split(" #")[0].strip().strip("\"'")
-    missing = [key for key in ("image", "resolution", "origin") if not rows.get(key)]
+    """Read a map file."""
+    rows = parse_yaml(data.decode("utf-8", "replace"), name)
+    rows = rows if isinstance(rows, dict) else {}
+    missing = [key for key in ("image", "resolution", "origin") if rows.get(key) is None]
     if missing:
         raise InputError(f"{name} is not a ROS map: it does not say {' and '.join(missing)}")
-    try:
-        resolution = float(rows["resolution"])
-        origin = [float(part) for part in rows["origin"].strip("[]").split(",")]
-        negate = rows.get("negate", "0") in ("1", "true", "True")
-        occupied, free = float(rows.get("occupied_thresh", "0.65")), float(rows.get("free_thresh", "0.196"))
-    except ValueError as error:
-        raise InputError(f"{name} is not a ROS map: {error}") from None
-    numbers = (resolution, *origin, occupied, free)
-    if not all(math.isfinite(one) and abs(one) <= LARGEST for one in numbers) or resolution <= 0.0:
-        raise InputError(f"{name} has a resolution or an origin that is not finite, too large, or not above 0")
-    if len(origin) != 3:
-        raise InputError(f"{name} has an origin of {len(origin)} numbers, it must have x, y and yaw")
-    return _Map(rows["image"], resolution, (origin[0], origin[1], origin[2]), negate, occupied, free)
+    origin = rows["origin"]
+    if not isinstance(origin, list) or len(origin) != 3:
+        raise InputError(f"{name}: origin = {str(origin)[:40]} must be a list of three numbers: x, y [m], yaw [rad]")
+    x, y, yaw = (_number(value, "origin", name) for value in origin)
+    resolution = _number(rows["resolution"], "resolution", name)
+    if resolution <= 0.0:
+        raise InputError(f"{name}: resolution = {resolution:g} m must be above 0")
+    occupied, free = (
+        _number(rows.get(key, normal), key, name) for key, normal in (("occupied_thresh", 0.65), ("free_thresh", 0.196))
+    )
+    for key, value in (("occupied_thresh", occupied), ("free_thresh", free)):
+        if not 0.0 <= value <= 1.0:
+            hint = f"; {value:g} % is {value / 100.0:g}" if 1.0 < value <= 100.0 else ""
+            raise InputError(f"{name}: {key} = {value:g} must be from 0 to 1{hint}")
+    if free > occupied:
+        raise InputError(f"{name}: free_thresh = {free:g} must not be above occupied_thresh = {occupied:g}")
+    mode = str(rows.get("mode", "trinary"))
+    if mode not in MODES:
+        raise InputError(f"{name}: mode = {mode[:40]!r} is unknown{did_you_mean(mode, MODES)}; use {', '.join(MODES)}")
+    negate = rows.get("negate", 0)
+    if negate not in (0, 1):
+        raise InputError(f"{name}: negate = {str(negate)[:40]} must be 0 or 1")
+    return _Map(str(rows["image"]), resolution, (x, y, yaw), bool(negate), occupied, free, mode)
+
+
+def _number(value: Any, key: str, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{name}: {key} has {str(value)[:40]!r}, which is not a number")
+    if not math.isfinite(value) or abs(value) > LARGEST:
+        raise InputError(f"{name}: {key} has {value:g}, which is not finite, or larger than {LARGEST:g}")
+    return float(value)
 
 
 @functools.lru_cache(maxsize=4)
 def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tuple[shapely.Polygon, ...]:
     import shapely
 
-    grey = _pgm(read_beside(image, MOST_IMAGE), image.name)
-    dark = grey if row.negate else 1.0 - grey
-    solid = dark > row.occupied if unknown == "free" else dark >= row.free
-    solid = solid[::-1]  # the first row of an image is its top
+    solid = _solid_cells(read_beside(image, MOST_IMAGE), image.name, row, unknown)[::-1]  # an image begins at its top
     edge = np.zeros((solid.shape[0], 1), dtype=np.int8)
     change = np.diff(np.concatenate([edge, solid.astype(np.int8), edge], axis=1), axis=1)
     line, begin = np.nonzero(change == 1)
@@ -218,25 +239,45 @@ def _check_detail(image: Path, count: int, what: str) -> None:
         raise InputError(f"{image.name} has {count} {what}, more than {MOST_DETAIL}; clean or shrink the map")
 
 
-def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
-    """Return the grey values ``[H, W]`` from 0 to 1 of a PGM image, binary (P5) or text (P2)."""
-    head = re.match(rb"(P[25])(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})"
-                    rb"(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,5})\s", data)  # fmt: skip
-    if head is None:
-        raise InputError(f"{name} is not a PGM image (P5 or P2); save the map as .pgm")
-    width, height, top = (int(head[k]) for k in (2, 3, 4))
-    if not (0 < width * height <= MOST_CELLS and 0 < top < 65_536):
-        raise InputError(f"{name} has {width} x {height} cells of up to {top}; at most {MOST_CELLS} cells are read")
-    body = data[head.end() :]
-    if head[1] == b"P5":
-        kind = np.dtype(np.uint8 if top < 256 else ">u2")
-        if len(body) < width * height * kind.itemsize:
-            raise InputError(f"{name} is cut off: {len(body)} bytes for {width} x {height} cells")
-        cells: NDArray[Any] = np.frombuffer(body, kind, width * height)
+def _solid_cells(data: bytes, name: str, row: _Map, unknown: str) -> NDArray[np.bool_]:
+    """Return ``[H, W]`` whether each pixel is solid, by the rules of nav2_map_server (``map_io.cpp``)."""
+    colour, opacity = _pixels(data, name)
+    if row.mode == "raw":  # the value of a pixel is the occupancy in percent, whatever `negate` says
+        value = np.round(colour.mean(axis=2) * 255.0)
+        solid, known = value >= 100.0 * row.occupied, value <= RAW_OCCUPIED
     else:
-        words = body.split()
-        if len(words) < width * height or not all(word.isdigit() and len(word) < 6 for word in words):
-            raise InputError(f"{name} is cut off, or holds something that is not a number")
-        cells = np.array(words[: width * height], dtype=np.int64)
-    grey: NDArray[np.float64] = cells.reshape(height, width).astype(np.float64) / top
-    return np.minimum(grey, 1.0)
+        opaque = np.ones(colour.shape[:2]) if opacity is None else opacity
+        if row.mode == "trinary" and opacity is not None:  # the opacity counts as a fourth colour
+            colour = np.concatenate([colour, opacity[..., None]], axis=2)
+        dark = colour.mean(axis=2) if row.negate else 1.0 - colour.mean(axis=2)
+        solid, known = dark > row.occupied, opaque == 1.0
+        if row.mode == "trinary":
+            known = solid | (dark < row.free)
+    return np.asarray(solid & known if unknown == "free" else solid | ~known)
+
+
+def _pixels(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """Return colours ``[H, W, C]`` and the opacity ``[H, W]`` of an image, if it has one, from 0 to 1."""
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the number of cells is limited below
+            image = Image.open(io.BytesIO(data), formats=IMAGES)
+        with image:
+            if image.width * image.height > MOST_CELLS:
+                raise InputError(f"{name} has {image.width} x {image.height} cells; at most {MOST_CELLS} are read")
+            deep = image.mode.startswith("I")
+            kind = "I" if deep else {"1": "L", "L": "L", "LA": "LA", "RGB": "RGB"}.get(image.mode, "RGBA")
+            if "transparency" in image.info:
+                deep, kind = False, "RGBA"
+            cells = np.atleast_3d(np.asarray(image.convert(kind), dtype=np.float64)) / (65_535.0 if deep else 255.0)
+    except Image.DecompressionBombError:
+        raise InputError(f"{name} has too many cells; at most {MOST_CELLS} are read") from None
+    except UnidentifiedImageError:
+        raise InputError(f"{name} is not an image that can be read: a map is a PGM, PNG, BMP or JPEG image") from None
+    except (OSError, ValueError, SyntaxError, EOFError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{name} is cut off or damaged: {_first(error)}") from None
+    return (cells[..., :-1], cells[..., -1]) if kind in ("LA", "RGBA") else (cells, None)

@@ -108,8 +108,9 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
     """Return wheels and kind of base of a robot.
 
     A wheel is a rotating joint with a horizontal axle whose round child stands on the ground. Wheels below a vertical
-    joint without limits, or with "cast" in their name, are castors. The kind follows from plugins, otherwise from the
-    number, places and steering joints of the wheels.
+    joint without limits, or with "cast" in their name, are castors; if there are no others, those below a vertical
+    joint are driven and steered. The kind follows from plugins, otherwise from the number, places and steering joints
+    of the wheels.
 
     Args:
         model: the robot.
@@ -127,14 +128,15 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
     points = {name: _points(model, name, poses) for name in model.links}
     solid = [rows for rows in points.values() if len(rows)]
     ground = float(min(rows[:, 2].min() for rows in solid)) if solid else 0.0
-    found, castors = [], []
+    found, loose = [], []
     for joint in model.movable:
         wheel = _wheel(model, joint, poses, points[joint.child], ground)
-        if wheel is not None and _is_castor(model, joint):
-            castors.append(joint.child)
-        elif wheel is not None:
-            found.append(wheel)
-    legs = () if found else _legs(model, points, ground)
+        if wheel is not None:
+            (loose if _is_castor(model, joint) else found).append(wheel)
+    if not found:  # castors alone cannot drive a robot: they have motors
+        found, loose = [wheel for wheel in loose if wheel.steering], [wheel for wheel in loose if not wheel.steering]
+    castors = [wheel.link for wheel in loose]
+    legs = () if found or castors else _legs(model, points, ground)
     moving = {name for wheel in found for name in _below(model, wheel.link)}
     for name, rows in points.items():
         below = len(rows) > 0 and rows[:, 2].min() < ground + TOUCHES
@@ -203,13 +205,27 @@ def wheel_springs(model: RobotModel, base: BaseKind) -> tuple[str, ...]:
 
 
 def _above(model: RobotModel, joint: Joint) -> list[Joint]:
-    """Return the joints between a joint and the root, the nearest first."""
+    """Return the joints between a joint and the body of the robot, the nearest first.
+
+    Joints above the body, as x, y and theta of a simulated base, move the whole robot.
+    """
     parents = {one.child: one for one in model.joints.values()}
-    found, name = [], joint.parent
-    while name in parents:
+    found, name, body = [], joint.parent, _body(model)
+    while name in parents and name != body:
         found.append(parents[name])
         name = parents[name].parent
     return found
+
+
+def _body(model: RobotModel) -> str:
+    """Return the first link with a shape, from the root outwards as long as there is only one way."""
+    name = model.root
+    while not (model.links[name].collisions or model.links[name].visuals):
+        below = [joint.child for joint in model.joints.values() if joint.parent == name]
+        if len(below) != 1:
+            break
+        (name,) = below
+    return name
 
 
 def _below(model: RobotModel, link: str) -> set[str]:

@@ -85,6 +85,13 @@ class UrdfReader:
             self.say(found[1], f"occurs more than once in <{element.tag}>; at most one is allowed")
         return found[0] if found else None
 
+    def first(self, element: Element, tag: str) -> Element | None:
+        """Return the first child with this tag, or None; remark on others."""
+        found = element.each(tag)
+        if len(found) > 1:
+            self.remark("ignored", found[1], f"occurs more than once in <{element.tag}>; the first one is used")
+        return found[0] if found else None
+
     def value(self, element: Element, key: str, default: float | None = None, least: float = -np.inf) -> float | None:
         """Return a finite number from an attribute, or the default; record an error if it is invalid."""
         text = element.attributes.get(key)
@@ -99,6 +106,19 @@ class UrdfReader:
             self.say(element, f'{key}="{text[:40]}" must be at least {least:g}')
             return default
         return found
+
+    def optional_value(self, element: Element, key: str, least: float = -np.inf) -> float:
+        """Return the number of an attribute that few robots have; 0 without one, or with a remark if it is invalid."""
+        text = element.attributes.get(key, "0")
+        try:
+            found = parse_number(text)
+            if found >= least:
+                return found
+            problem = f"must be at least {least:g}"
+        except InputError as error:
+            problem = str(error)
+        self.remark("ignored", element, f'{key}="{text[:40]}" {problem}; it is ignored')
+        return 0.0
 
     def required_value(self, element: Element, key: str, least: float = -np.inf) -> float | None:
         """Return a required number; record an error and return None if it is invalid or missing."""
@@ -153,9 +173,8 @@ class UrdfReader:
             return None
         try:
             path = self.folders.find(source)
-        except InputError as error:
-            self.say(element, str(error))
-            return None
+        except InputError as error:  # a path of another computer, for example
+            return f"the mesh file {error}"
         factors = (float(scale[0]), float(scale[1]), float(scale[2]))
         return self._load_trimesh(element, source, path, factors, collision)
 

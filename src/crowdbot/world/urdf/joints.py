@@ -30,11 +30,12 @@ def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
     lower, upper, motor = _limits(reader, element, name, kind)
     spring = reader.springs.get(name, {})
     dynamics = reader.one(element, "dynamics") or Element("dynamics")
-    values = {
-        key: reader.value(dynamics, key, 0.0, least) or 0.0
-        for key, least in (("damping", 0.0), ("friction", 0.0), ("spring_stiffness", 0.0), ("spring_reference", -1e6))
+    values = {key: reader.value(dynamics, key, 0.0, 0.0) or 0.0 for key in ("damping", "friction")}
+    values |= {
+        key: reader.optional_value(dynamics, key, least)
+        for key, least in (("spring_stiffness", 0.0), ("spring_reference", -1e6))
     }
-    mimic = _mimic(reader, element)
+    mimic = _mimic(reader, element, kind)
     if len(reader.found) > before:
         return None
     return Joint(
@@ -90,9 +91,12 @@ def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple
     return lower, upper, motor
 
 
-def _mimic(reader: UrdfReader, element: Element) -> Mimic | None:
+def _mimic(reader: UrdfReader, element: Element, kind: str) -> Mimic | None:
     inner = reader.one(element, "mimic")
     if inner is None:
+        return None
+    if kind == "fixed":
+        reader.remark("ignored", inner, "is ignored: a fixed joint does not move")
         return None
     joint = inner.attributes.get("joint", "")
     if not joint:

@@ -25,7 +25,7 @@ def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
 
 def read_color(reader: UrdfReader, visual: Element) -> Color | None:
     """Return the colour of a visual, or the mean colour of its texture; None without both."""
-    material = reader.one(visual, "material")
+    material = reader.first(visual, "material")
     if material is None:
         return None
     color = _color(reader, material)
