@@ -6,12 +6,14 @@ import dataclasses
 import importlib
 import json
 import math
+import shutil
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
 
+import crowdbot
 from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.evaluation import (
     CellResult,
@@ -32,7 +34,7 @@ from crowdbot.evaluation import (
 from crowdbot.evaluation.job import RunJob
 from crowdbot.evaluation.pareto import pareto_svg
 from crowdbot.simulation import simulate
-from crowdbot.trials import Trial, load_trial
+from crowdbot.trials import Trial, load_trial, trial_xml
 
 SHY = """
 from dataclasses import dataclass
@@ -340,3 +342,20 @@ def test_values_of_rows_are_json(result: EvaluationResult, tmp_path: Path) -> No
     content = json.loads((tmp_path / "r.json").read_text())
     assert content["schema"] == "crowdbot-evaluation/1"
     assert content["cells"][0]["runs"][0]["metrics"]["time_to_goal"] == "nan"
+
+
+def test_robots_and_code_of_a_folder_stand_in_for_those_of_the_working_folder(tmp_path: Path) -> None:
+    place = tmp_path / "files"
+    shutil.copytree(Path(crowdbot.__file__).parent / "assets/robots/differential", place / "mybot")
+    (place / "shy.py").write_text(SHY)
+    (place / "halls").mkdir()
+    (place / "halls/hall.xml").write_text(trial_xml(load_trial("frontal", duration=1.0)))
+    hall = load_trial(place / "halls/hall.xml")
+    plan = EvaluationPlan([hall], parse_methods("shy.py:Shy"), ["mybot"], [0], trust=False, folder=place)
+    (cell,) = plan.cells
+    assert (cell.robot, cell.variant.robots[0].type) == ("mybot", "../mybot")
+    assert [row.outcome for row in evaluate(plan).cells[0].runs] == ["timeout"]
+    shutil.copytree(place / "mybot", tmp_path / "other")
+    for folder in (None, place):
+        with pytest.raises(TrialError, match="other"):
+            EvaluationPlan([hall], robots=["../other"], seeds=[0], trust=False, folder=folder)

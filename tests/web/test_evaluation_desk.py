@@ -1,10 +1,13 @@
 """The evaluation tab without a browser: the numbers of the command line, cancelling, watching a run, reports."""
 
 import asyncio
+import shutil
 import time
+from pathlib import Path
 
 import pytest
 
+import crowdbot
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.evaluation import EvaluationPlan, evaluate, load_evaluation, parse_methods
@@ -12,7 +15,10 @@ from crowdbot.recording import read_episode
 from crowdbot.simulation import simulate
 from crowdbot.trials import load_trial, trial_xml
 from crowdbot.web import AppSession, Workspace
-from crowdbot.web.evaluation import EvaluationDesk
+from crowdbot.web.evaluation import EvaluationDesk, EvaluationRequest
+from crowdbot.world import builtin_robots
+
+ROBOTS = Path(crowdbot.__file__).parent / "assets" / "robots"
 
 
 @pytest.fixture
@@ -132,6 +138,8 @@ def test_a_cancelled_evaluation_continues(desk):
         (("a", ["../x.xml"], "orca", "0:2"), "neither a built-in trial nor a trial file in the folder"),
         (("a", ["frontal"], "orka", "0:2"), "orka"),
         (("a", ["frontal"], "orca", "two"), "two"),
+        (("a", ["frontal"], "orca", "0:2", None, False, "peper"), "'peper'.* not a robot, did you mean 'pepper'"),
+        (("a", ["frontal"], "orca", "0:2", None, False, "qolo, ../bot"), "robots: file '../bot' is outside the folder"),
         (("a", ["frontal"], "orca", "0:200000"), "at most 100000"),
         (("../a", ["frontal"], "orca", "0:2"), "name of an evaluation = '../a'"),
         (("a", ["frontal"], "orca", "0:2", ["/x/mine.py:Near"]), "metrics: file '/x/mine.py' is outside the folder"),
@@ -153,3 +161,88 @@ def test_a_run_of_a_changed_trial_is_not_watched(desk):
     path.write_text(trial_xml(load_trial("frontal", duration=3.0)))
     with pytest.raises(InputError, match="has changed since own was run"):
         desk.watch("own", 0, 0)
+
+
+@pytest.fixture
+def mybot(desk, monkeypatch):
+    """A robot folder in the folder of the session, which is the working folder."""
+    folder = desk.session.workspace.folder
+    shutil.copytree(ROBOTS / "differential", folder / "mybot")
+    monkeypatch.chdir(folder)
+    return folder / "mybot"
+
+
+def printed(words, capsys):
+    """Return what ``crowdbot evaluate`` prints on stderr and stdout, without line breaks."""
+    main(["evaluate", *words, "--seeds", "0:1", "--set", "duration=0.2", "--worst", "0"])
+    out, err = capsys.readouterr()
+    return err.splitlines(), " ".join(out.split())
+
+
+def test_robots_are_described_in_the_words_of_the_command_line(desk, mybot, capsys):
+    assert desk.sources()["robots"] == ["mybot", *builtin_robots()]
+    found = desk.robots(["doorway"], "wheelchair, mybot")
+    lines, text = printed(["doorway", "--robots", "wheelchair, mybot"], capsys)
+    assert found["problem"] == ""
+    assert [f"crowdbot: {one}" for one in found["lines"]] == [one for one in lines if one.startswith("crowdbot: ")]
+    assert [line.split(":")[0] for line in found["lines"][2:]] == [
+        "robot 'robot' is wheelchair",
+        "robot 'robot' is mybot",
+    ]
+    assert "instead of <drive" in found["lines"][1]
+    (remark,) = found["remarks"]
+    assert remark.startswith("Note on doorway on wheelchair: the narrowest passage")
+    assert remark in text
+
+
+@pytest.mark.parametrize("robots", ["peper", "qolo, qolo", "mybot/robot.xml", "own", "a" * 300])
+def test_wrong_robots_have_the_message_of_the_command_line(desk, mybot, capsys, robots):
+    lines, _ = printed(["frontal", "--robots", robots], capsys)
+    found = desk.robots(["frontal"], robots)
+    assert found["lines"] == []
+    assert f"crowdbot: {found['problem']}" in lines
+
+
+@pytest.mark.parametrize("robots", ["../other", "/tmp", "link", "qolo, sub/../../other", "~/other"])
+def test_robots_outside_the_folder_are_refused(desk, mybot, robots):
+    shutil.copytree(mybot, mybot.parents[1] / "other")
+    (mybot.parent / "link").symlink_to(mybot.parents[1] / "other")
+    assert "is outside the folder of the app" in desk.robots(["frontal"], robots)["problem"]
+    with pytest.raises(InputError, match="is outside the folder of the app"):
+        desk.run("a", ["frontal"], "orca", "0:1", robots=robots)
+
+
+def test_a_robot_that_loads_code_from_elsewhere_is_refused(desk, mybot):
+    text = (mybot / "robot.xml").read_text()
+    (mybot / "robot.xml").write_text(text.replace('"wheel-odometry"', '"../other.py:Other"'))
+    (mybot.parent / "other.py").write_text("raise AssertionError")
+    assert "../other.py" in desk.robots(["frontal"], "mybot")["problem"]
+
+
+def test_a_wrong_trial_is_not_a_problem_of_the_robots(desk):
+    with pytest.raises(InputError, match="frontl"):
+        desk.robots(["frontl"], "pepper")
+
+
+def test_two_robots_are_two_rows_and_the_run_of_each_is_watched(desk, mybot, monkeypatch):
+    space = desk.session.workspace
+    space.writable("halls/hall.xml").write_text(trial_xml(load_trial("frontal", duration=2.0)))
+    request = EvaluationRequest(("halls/hall.xml",), "straight", "0:2", ("min-clearance",), robots="./mybot, ,qolo")
+    request.plan(space.folder)
+    request.save(space.folder / "evaluations/two")
+    words = [*request.words, "--out", "evaluations/two"]
+    assert "--robots=mybot,,qolo" in words
+    monkeypatch.setattr("sys.argv", ["crowdbot", *words])
+    assert main(words) == 0
+    monkeypatch.chdir(mybot.parents[1])
+    table, result = desk.table("two"), load_evaluation(space.folder / "evaluations/two/result.json")
+    assert [one["robot"] for one in table["cells"]] == ["mybot", "disc of 0.3 m", "qolo"]
+    assert [one["named"] for one in table["cells"]] == ["mybot", "", "qolo"]
+    assert len({one["estimates"][0] for one in table["cells"]}) == 3
+    assert "--robots files/mybot,,qolo" in table["command"]
+    assert "['files/mybot', '', 'qolo']" in table["python"]
+    for row in (0, 2):
+        found = desk.watch("two", row, 1)
+        episode = read_episode(space.folder / found["episode"])
+        assert episode.digest == result.cells[row].runs[1].digest
+        assert simulate(load_trial(str(space.folder / found["file"])), 1).digest == episode.digest

@@ -38,6 +38,45 @@ def test_navigators_are_compared_and_a_run_is_chosen(results, app):
     assert (app.folder / "evaluations/first/report.html").is_file()
 
 
+def test_robots_are_named_checked_and_compared(page):
+    page.get_by_role("tab", name="Evaluation").click()
+    page.get_by_label("Trials").select_option("doorway")
+    page.get_by_label("Navigators").fill("straight")
+    page.get_by_label("Seeds").fill("0:2")
+    robots = page.get_by_role("combobox", name="Robots")
+    robots.fill("wheelchair, ")
+    offered = page.locator("#known-robots option").evaluate_all("all => all.map((one) => one.value)")
+    assert "wheelchair, pepper" in offered
+    assert "wheelchair, wheelchair" not in offered
+    robots.fill("wheelchair, peper")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("did you mean 'pepper'").wait_for()
+    assert robots.get_attribute("aria-invalid") == "true"
+    assert robots.evaluate("one => one === document.activeElement")
+    assert page.get_by_role("button", name="first").count() == 0  # nothing has been run
+    robots.fill("wheelchair, pepper")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("heading", name="first").wait_for(timeout=300_000)
+    rows = page.get_by_role("region", name="Table").get_by_role("row").all_inner_texts()
+    assert [row.split()[:3] for row in rows[1:]] == [
+        ["doorway", "straight", "wheelchair"],
+        ["doorway", "straight", "pepper"],
+    ]
+    results = page.locator(".results")
+    results.get_by_text("robot 'robot' becomes pepper, with its own drive").wait_for()
+    results.get_by_text("Note on doorway on wheelchair: the narrowest passage").wait_for()
+    assert "--robots wheelchair,pepper" in results.inner_text()
+    page.get_by_role("button", name="2 runs").last.click()
+    page.get_by_role("heading", name="doorway, straight, pepper").wait_for()
+    for width in (1280, 800):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.get_by_role("button", name="Watch seed 1").click()
+    page.wait_for_function("() => crowdbot.keys.active === 'simulator'")
+    page.wait_for_function(f"() => {STATUS}.name === 'evaluations/first/row-2-seed-1.mcap'")
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_axe_finds_nothing(results, axe, theme):
     results.evaluate("theme => document.documentElement.dataset.theme = theme", theme)

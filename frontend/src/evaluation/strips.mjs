@@ -23,9 +23,10 @@ export function makeStrips(cells, index, title, watch) {
   const x = (value) => LEFT + ((WIDTH - LEFT - 20) * (value - low)) / (high - low);
   const height = cells.length * HEIGHT + 30;
   const picture = s("svg", { viewBox: `0 0 ${WIDTH} ${height}`, class: "strips", role: "group", "aria-label": `Runs by ${title}` });
+  const name = namesOf(cells);
   cells.forEach((cell, row) => {
     const y = row * HEIGHT + HEIGHT / 2;
-    picture.append(s("text", { x: LEFT - 10, y: y + 4, "text-anchor": "end" }, `${cell.trial} ${cell.navigator}`.slice(0, 30)));
+    picture.append(s("text", { x: LEFT - 10, y: y + 4, "text-anchor": "end" }, name(cell).slice(0, 30)));
     picture.append(s("line", { x1: LEFT, x2: WIDTH - 20, y1: y, y2: y, class: "axis" }));
     for (const run of cell.runs) if (run.values[index] !== null) picture.append(mark(cell, run, x(run.values[index]), y, watch));
   });
@@ -34,6 +35,13 @@ export function makeStrips(cells, index, title, watch) {
     picture.append(s("text", { x: x(value), y: height - 8, "text-anchor": "middle" }, String(value)));
   }
   return picture;
+}
+
+/** The name of a row: with chosen robots what differs between the rows, otherwise trial and navigator. */
+function namesOf(cells) {
+  const differs = (key) => new Set(cells.map((cell) => cell[key])).size > 1;
+  const keys = differs("named") ? ["trial", "navigator", "named"].filter(differs) : ["trial", "navigator"];
+  return (cell) => keys.map((key) => cell[key] || "own").join(" ");
 }
 
 /** Round numbers between two bounds, about five. */

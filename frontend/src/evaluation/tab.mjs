@@ -3,6 +3,7 @@ import { copyText } from "../ui/copy.mjs";
 import { attempt } from "../ui/dialog.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
 import { upload } from "../ui/upload.mjs";
+import { RobotField, robotFacts } from "./robot_field.mjs";
 import { makeStrips } from "./strips.mjs";
 
 const GOOD = new Set(["success"]);
@@ -15,7 +16,7 @@ class EvaluationTab {
       "div",
       { class: "first-steps" },
       h("h2", {}, "How well does a navigator do among people?"),
-      h("p", {}, "Each navigator drives the robot of the chosen trials, with every seed. The table compares success, time, clearance and comfort, with intervals; a click on a run opens it in the simulator, at the failure."),
+      h("p", {}, "Each navigator drives the robot of the chosen trials, with every seed; robots that you name take its place. The table compares success, time, clearance and comfort, with intervals; a click on a run opens it in the simulator, at the failure."),
       h("p", {}, "Choose trials and navigators on the left and press Run."),
     ));
     root.classList.add("evaluation");
@@ -30,7 +31,8 @@ class EvaluationTab {
   }
 
   form() {
-    this.trials = h("select", { multiple: true, size: 8 });
+    this.trials = h("select", { multiple: true, size: 8, onchange: () => this.robots.check() });
+    this.robots = new RobotField((robots) => this.app.connection.call("evaluation.robots", { trials: this.chosenTrials(), robots }));
     this.navigators = h("input", { type: "text", value: "straight, orca" });
     this.known = h("small", {});
     this.seeds = h("input", { type: "text", value: "0:20" });
@@ -55,6 +57,7 @@ class EvaluationTab {
         field("Trials (several with Ctrl or Shift)", this.trials),
         field("Navigators", this.navigators),
         this.known,
+        this.robots.element,
         field("Seeds", this.seeds),
         h("p", { class: "note" }, "0:20 are the 20 seeds from 0 to 19."),
         h("label", { class: "option" }, this.safety, "Each also with a safety layer"),
@@ -93,12 +96,24 @@ class EvaluationTab {
     else if (!this.table && !shown && state.first) await this.openFirst(state.first);
     fill(this.trials, names.map((one) => h("option", { selected: chosen.size ? chosen.has(one) : one === "frontal" }, one)));
     this.trials.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+    this.robots.offer(sources.robots);
     this.known.textContent = `With parameters, such as "orca safety=0.2". Built-in: ${sources.navigators.join(", ")}`;
   }
 
+  chosenTrials() {
+    return [...this.trials.selectedOptions].map((one) => one.value);
+  }
+
   async start() {
-    const trials = [...this.trials.selectedOptions].map((one) => one.value);
-    const args = { name: this.label.value, trials, navigators: this.navigators.value, seeds: this.seeds.value, safety: this.safety.checked };
+    if (!(await this.robots.check())) return this.robots.input.focus();
+    const args = {
+      name: this.label.value,
+      trials: this.chosenTrials(),
+      navigators: this.navigators.value,
+      robots: this.robots.value,
+      seeds: this.seeds.value,
+      safety: this.safety.checked,
+    };
     const state = await this.call("run", args);
     if (state) this.update(state);
   }
@@ -160,6 +175,7 @@ class EvaluationTab {
         h("button", { type: "button", onclick: () => copyText(table.command, "Copy as command line") }, "Copy as command line"),
         table.python ? h("button", { type: "button", onclick: () => copyText(table.python, "Copy as Python") }, "Copy as Python") : null,
       ),
+      robotFacts(table.robots, table.remarks, true),
       this.rows(),
       h("ul", { class: "comparisons" }, table.comparisons.map((one) => h("li", {}, one))),
       h("div", { class: "row" }, field("Picture of each run by", choice), table.report ? h("a", { href: report, target: "_blank", rel: "noopener" }, "Report") : null),
@@ -210,7 +226,7 @@ class EvaluationTab {
     return h(
       "div",
       {},
-      h("h3", {}, `${cell.trial}, ${cell.navigator}`),
+      h("h3", {}, [cell.trial, cell.navigator, cell.named].filter(Boolean).join(", ")),
       h("label", { class: "option" }, toggle, `Only the ${failures.length} failures`),
       h("table", {}, h("thead", {}, h("tr", {}, head.map((one) => h("th", { scope: "col" }, one || "Watch")))), h("tbody", {}, shown.slice(0, 500).map(row))),
     );

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .output import add_json, print_json, robot_lines
+from .output import add_json, print_json
 from .settings import add_settings, load_settings_trial, settings
 
 MOST_LINES = 20
@@ -77,7 +77,7 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.experiments import is_experiment, load_experiment
-    from crowdbot.trials import builtin_trials, expand_sweeps, trial_remarks
+    from crowdbot.trials import builtin_trials, expand_sweeps, robot_lines, trial_remarks
 
     if Path(name).is_dir():
         return {"problems": [f"{name} is a folder without robot.xml; give a trial, an experiment, a URDF or a robot"]}
@@ -93,7 +93,12 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     except InputError as error:
         return {"problems": [str(error)]}
     variants = [one.name for one in expand_sweeps(trial)] if trial.sweeps else []
-    return {"problems": [], "robots": robot_lines([trial]), "remarks": trial_remarks(trial), "variants": variants}
+    return {
+        "problems": [],
+        "robots": robot_lines([(trial.name, trial.robots)]),
+        "remarks": trial_remarks(trial),
+        "variants": variants,
+    }
 
 
 def _missing(name: str) -> str:

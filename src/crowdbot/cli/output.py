@@ -28,11 +28,7 @@ __all__ = [
     "print_table",
     "print_warnings",
     "progress",
-    "robot_lines",
 ]
-
-MOST_ROBOTS = 20
-"""Largest number of robots that are described."""
 
 Progress = Callable[[str, float], None]
 """Progress callback: called with the name of the current task and the completed fraction, 0 to 1."""
@@ -125,21 +121,10 @@ def note(sentence: str) -> None:
 
 def print_robots(trials: Iterable[Trial], quiet: bool = False) -> None:
     """Print on stderr the robots of trials, once each: type, drive, speed, sensors, and what the trial overrides."""
-    for line in () if quiet else robot_lines(trials):
+    from crowdbot.trials import robot_lines
+
+    for line in () if quiet else robot_lines((trial.name, trial.robots) for trial in trials):
         note(f"crowdbot: {line}")
-
-
-def robot_lines(trials: Iterable[Trial]) -> list[str]:
-    """Return a line for each robot that differs, with the name of its trial if the trials have different robots."""
-    from crowdbot.trials import describe_robot
-
-    rows = {trial.name: tuple(map(describe_robot, trial.robots)) for trial in trials}
-    if len(set(rows.values())) <= 1:
-        lines = [line for row in list(rows.values())[:1] for line in row]
-    else:
-        lines = [f"{name}: {line}" for name, row in rows.items() for line in row]
-    more = len(lines) - MOST_ROBOTS
-    return [*lines[:MOST_ROBOTS], *([f"and {more} more robots"] if more > 0 else [])]
 
 
 @contextmanager

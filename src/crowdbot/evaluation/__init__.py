@@ -34,7 +34,7 @@ from .recorded_scans import (
 )
 from .report import write_report
 from .requirement import Requirement, RequirementVerdict, parse_requirement
-from .result import CellResult, EvaluationResult, load_evaluation, result_schema
+from .result import CellResult, EvaluationResult, load_evaluation, remark_lines, result_schema
 from .robot_recording import RobotRecording, load_robot_recording
 from .runner import evaluate
 from .scan_prediction import SCAN_SCORES, SOGMP, ScanProtocol, ScanScores, TruePeople, plot_scan_scores, score_scans
@@ -163,6 +163,7 @@ __all__ = [
     "realism_notice",
     "reality_svg",
     "recorded_trial",
+    "remark_lines",
     "result_schema",
     "row_of",
     "row_values",

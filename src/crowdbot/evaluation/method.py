@@ -43,7 +43,7 @@ class Method:
     safety: bool | None = None
 
     @remarks_at_end()
-    def put_into(self, trial: Trial, robot_type: str = "", trust: bool = True) -> Trial:
+    def put_into(self, trial: Trial, robot_type: str = "", trust: bool = True, folder: Path | None = None) -> Trial:
         """Return the trial with this navigator for its first robot.
 
         Args:
@@ -52,6 +52,8 @@ class Method:
                 Its body, drive and sensors replace those of the trial, see
                 :func:`crowdbot.trials.replace_robot`.
             trust: whether code from outside the folder of the trial may be loaded.
+            folder: folder that names of robot folders and of code start from (default: the working folder). What lies
+                in a folder that is given may be loaded, also if it is outside the folder of the trial.
 
         Raises:
             InputError: the trial has no robot.
@@ -65,13 +67,14 @@ class Method:
         robot = next(child for child in root.children if child.tag == "robot")
         if self.type:
             robot.children = [child for child in robot.children if child.tag != "navigator"]
-            robot.children.append(self._element(trial.folder))
+            robot.children.append(self._element(trial.folder, folder))
         if self.safety is not None:
             had = [child for child in robot.children if child.tag == "safety"]
             robot.children = [child for child in robot.children if child.tag != "safety"]
             robot.children += (had or [Element("safety")]) if self.safety else []
         if robot_type:
-            replace_robot(robot, _relative(robot_type, trial.folder))
+            replace_robot(robot, _relative(robot_type, trial.folder, folder))
+        trust = trust or _all_inside((self.type, robot_type), trial.folder, folder)
         place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
         try:
             new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust, quiet=True)
@@ -79,9 +82,9 @@ class Method:
             raise TrialError(*(re.sub(r":\d+:", ":", str(line), count=1) for line in error.args)) from None
         return dataclasses.replace(new, name=trial.name)
 
-    def _element(self, folder: Path | None) -> Element:
+    def _element(self, folder: Path | None, base: Path | None) -> Element:
         element = Element("navigator")
-        element.attributes.update({"type": _relative(self.type, folder)} | dict(self.parameters))
+        element.attributes.update({"type": _relative(self.type, folder, base)} | dict(self.parameters))
         return element
 
 
@@ -140,9 +143,19 @@ def _parse_method(text: str) -> Method:
     return Method(" ".join([kind, *settings]), bare, tuple(parameters), safety)
 
 
-def _relative(name: str, folder: Path | None) -> str:
-    """Return the address of a file in the working directory as seen from the folder of the trial."""
+def _relative(name: str, folder: Path | None, base: Path | None) -> str:
+    """Return the address of a file in the base, by default the working folder, as seen from the folder of the trial."""
     file, colon, rest = name.partition(":")
-    if folder is None or not (Path(file).is_file() or (not colon and Path(file).is_dir())):
+    place = (base or Path()) / file
+    if folder is None or not (os.path.isfile(place) or (not colon and os.path.isdir(place))):
         return name
-    return f"{Path(os.path.relpath(Path(file).resolve(), folder.resolve())).as_posix()}{colon}{rest}"
+    return f"{Path(os.path.relpath(place.resolve(), folder.resolve())).as_posix()}{colon}{rest}"
+
+
+def _all_inside(names: Sequence[str], folder: Path | None, base: Path | None) -> bool:
+    """Return whether some names are outside the folder of the trial, and all of those inside the base."""
+    if folder is None or base is None:
+        return False
+    files = [_relative(name, folder, base).partition(":")[0] for name in names if name]
+    outside = [place for file in files if not (place := (folder / file).resolve()).is_relative_to(folder.resolve())]
+    return bool(outside) and all(place.is_relative_to(base.resolve()) for place in outside)

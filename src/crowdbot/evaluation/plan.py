@@ -9,6 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -104,6 +105,8 @@ class EvaluationPlan:
             all that need no paired run).
         factors: name of the trial without levels, and levels of factors, by name of a trial; trials with sweeps in
             their files have them without this.
+        folder: folder of the robot folders and the code that methods and robots name, see :meth:`Method.put_into`
+            (default: the working folder).
 
     Raises:
         InputError: a list is empty, a name or a seed is there twice, there are too many cells, or a family is unknown.
@@ -123,6 +126,7 @@ class EvaluationPlan:
     trust: bool = True
     families: tuple[str, ...] = tuple(LOG_FAMILIES)
     factors: Mapping[str, tuple[str, Mapping[str, str]]] = dataclasses.field(default_factory=dict)
+    folder: Path | None = None
     cells: tuple[EvaluationCell, ...] = dataclasses.field(init=False)
 
     @remarks_at_end()
@@ -158,7 +162,7 @@ class EvaluationPlan:
                 trial.name,
                 method.name,
                 robot,
-                method.put_into(trial, robot, self.trust),
+                method.put_into(trial, robot, self.trust, self.folder),
                 levels.get(trial.name, ("", {}))[1],
                 levels.get(trial.name, (trial.name, {}))[0],
             )

@@ -22,10 +22,11 @@ from crowdbot.metrics import correct_p_values
 from .comparison import PairedComparison, paired_comparison
 from .intervals import Estimate
 from .job import RunRow, row_of, row_values
+from .plan import EvaluationCell
 from .realism import CrowdRealism
 from .statistic import Statistic, parse_statistic
 
-__all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "result_schema"]
+__all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "remark_lines", "result_schema"]
 
 SCHEMA = "crowdbot-evaluation/1"
 COMPARED = ("success", "person_collision", "wall_collision", "time_to_goal")
@@ -77,6 +78,12 @@ class CellResult:
         """Return a statistic with its interval."""
         found = parse_statistic(statistic) if isinstance(statistic, str) else statistic
         return found.estimate(self.values(found.metric), confidence)
+
+
+def remark_lines(cells: Iterable[CellResult | EvaluationCell]) -> list[str]:
+    """Return the remarks on robots in their trials, once each, such as ``Note on doorway on wheelchair: ...``."""
+    found = ((cell.trial + (f" on {cell.robot}" if cell.robot else ""), one) for cell in cells for one in cell.remarks)
+    return [f"Note on {where}: {remark}" for where, remark in dict.fromkeys(found)]
 
 
 @dataclass(frozen=True)

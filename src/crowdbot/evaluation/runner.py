@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core import InputError, each
-from crowdbot.trials import code_digest
+from crowdbot.trials import code_digest, needs_trust
 
 from .job import RunJob, RunRow, append_rows, read_rows, run_job
 from .own_metric import is_own_metric, metric_source
-from .plan import EvaluationPlan
+from .plan import EvaluationCell, EvaluationPlan
 from .realism import trial_realism
 from .result import CellResult, EvaluationResult, provenance
 
@@ -58,7 +58,10 @@ def evaluate(
     if workers < 1:
         raise InputError(f"workers = {workers} must be at least 1")
     seeds = [int(seed) for seed in plan.seeds]
-    jobs = [RunJob(k, one.xml, one.variant.folder, (), plan.trust, plan.families) for k, one in enumerate(plan.cells)]
+    jobs = [
+        RunJob(k, one.xml, one.variant.folder, (), plan.trust or _is_allowed(plan, one), plan.families)
+        for k, one in enumerate(plan.cells)
+    ]
     files = [] if folder is None else [folder / f"{_key(job)}.jsonl" for job in jobs]
     rows: list[dict[int, RunRow]] = [{row.seed: row for row in read_rows(file)} for file in files] or [{} for _ in jobs]
     left = [replace(job, seeds=tuple(seed for seed in seeds if seed not in rows[job.cell])) for job in jobs]
@@ -89,6 +92,11 @@ def evaluate(
         for k, cell in enumerate(plan.cells)
     )
     return EvaluationResult(cells, provenance())
+
+
+def _is_allowed(plan: EvaluationPlan, cell: EvaluationCell) -> bool:
+    """Return whether a cell has code from the folder of the plan that is outside the folder of its trial."""
+    return plan.folder is not None and needs_trust(cell.variant)
 
 
 def _one_by_one(jobs: Sequence[RunJob]) -> Iterator[tuple[int, list[RunRow]]]:

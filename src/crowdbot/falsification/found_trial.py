@@ -18,7 +18,7 @@ from .cluster import FailureCluster
 from .sample import Sample
 from .search_space import SearchSpace
 
-__all__ = ["FoundTrial", "select_failures", "write_failures"]
+__all__ = ["FoundTrial", "select_failures", "write_failures", "write_trial_files"]
 
 
 class FoundTrial(NamedTuple):
@@ -67,12 +67,12 @@ def write_failures(
             sample, path = samples[k], folder / f"{number}.xml"
             variant = space.variant_of(sample.point)
             name = f"{variant.name[:60]}, failure {number}"
-            _write_trial(dataclasses.replace(variant, seed=sample.seed, name=name), path)
+            write_trial_files(dataclasses.replace(variant, seed=sample.seed, name=name), path)
             found.append(FoundTrial(path, k, _digest(path) == sample.digest))
     return found
 
 
-def _write_trial(trial: Trial, path: Path) -> None:
+def write_trial_files(trial: Trial, path: Path) -> None:
     """Write a trial with copies of its files beside it; the copies of files outside its folder have names inside."""
     base = (trial.folder or Path.cwd()).resolve()
     sources = [source.resolve() for _, source in named_files(trial).values()]

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from .robots.joint_target import JointTarget, joint_positions
     from .robots.predictor import RobotPredictor
     from .robots.reaction import ReactionSpec, robot_reactions
-    from .robots.robot_parts import describe_robot, override_remarks, remarks_at_end, replace_robot
+    from .robots.robot_parts import describe_robot, override_remarks, remarks_at_end, replace_robot, robot_lines
     from .robots.robot_pose import RobotPose
     from .scenarios import PRESETS
     from .scenarios.crowds import DENSITIES
@@ -128,7 +128,7 @@ __getattr__, __dir__ = lazy_exports(
         "robots.joint_target": ["JointTarget", "joint_positions"],
         "robots.predictor": ["RobotPredictor"],
         "robots.reaction": ["ReactionSpec", "robot_reactions"],
-        "robots.robot_parts": ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot"],
+        "robots.robot_parts": ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot", "robot_lines"],
         "robots.robot_pose": ["RobotPose"],
         "props": ["Cube", "Light", "Table", "Tree"],
         "randomized_model": ["RandomizedModel", "own"],
@@ -288,6 +288,7 @@ __all__ = [
     "replace_robot",
     "resolve_file",
     "restore_old_names",
+    "robot_lines",
     "robot_place_problem",
     "robot_reactions",
     "schema",

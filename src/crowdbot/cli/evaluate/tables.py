@@ -29,7 +29,7 @@ MOST_ROWS = 20
 
 def print_answers(result: EvaluationResult, requirements: Sequence[Requirement]) -> None:
     """Print what the runs show: a sentence for each row, and what their number can show at most."""
-    from crowdbot.evaluation import judge_cell, person_contacts, realism_notice
+    from crowdbot.evaluation import judge_cell, person_contacts, realism_notice, remark_lines
 
     verdicts = [judge_cell(cell, requirements) for cell in result.cells]
     for cell, verdict in zip(result.cells, verdicts, strict=True):
@@ -40,8 +40,8 @@ def print_answers(result: EvaluationResult, requirements: Sequence[Requirement])
                 f"  hardest contact: seed {contact.seed}, {where}, {contact.speed:.2f} m/s,"
                 f" severity {contact.severity} (force over the limit of ISO/TS 15066)"
             )
-    for where, remark in dict.fromkeys((_place(cell), remark) for cell in result.cells for remark in cell.remarks):
-        print(textwrap.fill(f"Note on {where}: {remark}", WIDTH))
+    for remark in remark_lines(result.cells):
+        print(textwrap.fill(remark, WIDTH))
     notices: dict[str, dict[str, None]] = {}
     for cell in result.cells:
         if cell.realism:
@@ -52,11 +52,6 @@ def print_answers(result: EvaluationResult, requirements: Sequence[Requirement])
     for limit in dict.fromkeys(verdict.limit for verdict in verdicts):
         print(textwrap.fill(limit, WIDTH))
     print()
-
-
-def _place(cell: CellResult) -> str:
-    """Return trial and robot of a row in words."""
-    return cell.trial + (f" on {cell.robot}" if cell.robot else "")
 
 
 def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +15,15 @@ from crowdbot.world import Drive
 if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
 
-__all__ = ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot"]
+__all__ = ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot", "robot_lines"]
 
 logger = logging.getLogger(__name__)
 
 ATTRIBUTES = ("radius", "height", "mass", "latency", "rider", "default-sensors")
 CHILDREN = ("drive", "sensor", "joint")
 """Attributes and elements of ``<robot>`` that belong to the body of its type."""
+MOST_ROBOTS = 20
+"""Largest number of robots of which each has a line."""
 _remarks: ContextVar[list[str] | None] = ContextVar("_remarks", default=None)
 """Lines of the log that wait for the end of :func:`remarks_at_end`; None outside of it."""
 
@@ -103,6 +105,23 @@ def describe_robot(robot: RobotSpec) -> str:
         )
     overrides = [*_overrides(robot)]
     return f"{line}; the trial overrides {', '.join(overrides)}" if overrides else line
+
+
+def robot_lines(trials: Iterable[tuple[str, Sequence[RobotSpec]]]) -> list[str]:
+    """Return a line for each robot that differs, with the name of its trial if the trials have different robots.
+
+    Args:
+        trials: name and robots of each trial; a name may be there several times, with a different robot each time.
+    """
+    rows: dict[str, dict[str, None]] = {}
+    for name, robots in trials:
+        rows.setdefault(name, {}).update(dict.fromkeys(map(describe_robot, robots)))
+    if len({tuple(row) for row in rows.values()}) <= 1:
+        lines = [line for row in list(rows.values())[:1] for line in row]
+    else:
+        lines = [f"{name}: {line}" for name, row in rows.items() for line in row]
+    more = len(lines) - MOST_ROBOTS
+    return [*lines[:MOST_ROBOTS], *([f"and {more} more robots"] if more > 0 else [])]
 
 
 def override_remarks(robots: Iterable[RobotSpec]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 import shlex
@@ -16,14 +17,17 @@ from crowdbot.evaluation import (
     PairedComparison,
     load_evaluation,
     parse_statistic,
+    remark_lines,
 )
+from crowdbot.falsification import write_trial_files
 from crowdbot.recording import record
-from crowdbot.trials import Trial, builtin_trials, trial_titles, trial_xml
+from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.jobs import Job, command_work
+from crowdbot.world import builtin_robots
 
-from .evaluation_request import FILE, EvaluationRequest
+from .evaluation_request import FILE, EvaluationRequest, describe_robots
 from .imported_result import RESULT, cell_of_result, import_result
 
 __all__ = ["EvaluationDesk"]
@@ -31,6 +35,8 @@ __all__ = ["EvaluationDesk"]
 METRICS = (
     "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
 )  # fmt: skip
+OWN = "own"
+"""The navigator of each trial."""
 FOLDER = "evaluations"
 BEFORE = 5.0
 """Time [s] before the end of a run from which it is watched."""
@@ -59,7 +65,7 @@ class EvaluationDesk(Desk):
 
     @command
     def sources(self) -> dict[str, Any]:
-        """Return the trials and navigators that can be compared."""
+        """Return the trials, navigators and robots that can be compared."""
         import crowdbot.navigation as room
 
         titles = trial_titles()
@@ -67,8 +73,24 @@ class EvaluationDesk(Desk):
             "trials": [{"name": name, "about": titles[name]} for name in builtin_trials()],
             "files": [one for one in self.session.workspace.trials() if not one.startswith(FOLDER)],
             "navigators": list(builtin_classes(room, room.Navigator)),
+            "robots": self._known_robots(),
             "metrics": list(METRICS),
         }
+
+    @command
+    def robots(self, trials: list, robots: str) -> dict[str, Any]:  # type: ignore[type-arg]
+        """Return what the trials are with some robots, in the lines of the command line, or why they cannot be.
+
+        Raises:
+            InputError: a trial is wrong, whatever its robot.
+        """
+        request, folder = EvaluationRequest(tuple(map(str, trials)), OWN, "0", (), robots=robots), self._root
+        request.load_trials(folder)
+        try:
+            plan, lines = describe_robots(request, folder)
+        except InputError as error:
+            return {"problem": str(error), "lines": [], "remarks": []}
+        return {"problem": "", "lines": list(lines), "remarks": remark_lines(plan.cells)}
 
     @command
     def run(
@@ -79,11 +101,12 @@ class EvaluationDesk(Desk):
         seeds: str,
         metrics: list | None = None,  # type: ignore[type-arg]
         safety: bool = False,
+        robots: str = "",
     ) -> dict[str, Any]:
         """Begin an evaluation, or continue the one with this name."""
         chosen = tuple(map(str, metrics or METRICS))
-        request = EvaluationRequest(tuple(map(str, trials)), navigators, seeds, chosen, safety)
-        request.plan(self.session.workspace.folder)
+        request = EvaluationRequest(tuple(map(str, trials)), navigators, seeds, chosen, safety, robots)
+        request = dataclasses.replace(request, lines=describe_robots(request, self._root)[1])
         with self._lock:
             if self._job is not None:
                 raise InputError(f"the evaluation {self._job.record.title} is running; wait for its end or cancel it")
@@ -127,6 +150,8 @@ class EvaluationDesk(Desk):
             "statistics": list(names),
             "titles": [parse_statistic(one, result.metrics).title for one in names],
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
+            "robots": list(request.lines) if request else [],
+            "remarks": remark_lines(result.cells),
             "comparisons": [_sentence(one) for one in result.compare() if not math.isnan(one.p_value)],
             "report": (self._folder(name) / "report.html").is_file(),
         }
@@ -135,14 +160,15 @@ class EvaluationDesk(Desk):
     def watch(self, name: str, cell: int, seed: int) -> dict[str, Any]:
         """Record a run as an episode of the session, to be opened in the simulator shortly before its end.
 
-        The trial is written beside it, to be run with the seed.
+        The trial is written beside it with copies of its files, to be run with the seed.
         """
         trial, space = self._variant(name, cell), self.session.workspace
         file = f"{FOLDER}/{name}/row-{cell + 1}.xml"
-        space.writable(file).write_text(trial_xml(trial), encoding="utf-8")
+        path = space.writable(file)
+        write_trial_files(trial, path)
         episode = f"{FOLDER}/{name}/row-{cell + 1}-seed-{seed}.mcap"
         space.check_space()
-        end = record(trial, seed, space.writable(episode), force=True).end
+        end = record(load_trial(path), seed, space.writable(episode), force=True).end
         return {"file": file, "seed": seed, "episode": episode, "at": max(0.0, end - BEFORE)}
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
@@ -157,6 +183,16 @@ class EvaluationDesk(Desk):
         """Stop an evaluation that runs."""
         if self._job is not None:
             self._job.cancel()
+
+    @property
+    def _root(self) -> Path:
+        return self.session.workspace.folder
+
+    def _known_robots(self) -> list[str]:
+        """Return the robot folders of the session by their names from its folder, and the built-in robots."""
+        files = (Path(one).parent.as_posix() for one in self.session.workspace.files("robot.xml"))
+        folders = (one for one in files if one != "." and not one.startswith(f"{FOLDER}/"))
+        return [*dict.fromkeys([*folders, *builtin_robots()])]
 
     def _folder(self, name: str) -> Path:
         if not re.fullmatch(r"[\w-][\w. -]{0,60}", name):
@@ -209,7 +245,8 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
         "number": number,
         "trial": cell.trial,
         "navigator": cell.method,
-        "robot": cell.protocol.get("robot", ""),
+        "robot": cell.robot or cell.protocol.get("robot", ""),
+        "named": cell.robot,
         "visible": cell.protocol.get("visible", True),
         "senses": cell.protocol.get("senses", []),
         "estimates": [str(cell.estimate(one)) for one in statistics],
@@ -230,5 +267,6 @@ def _plain(value: float | None) -> float | None:
 
 
 def _sentence(one: PairedComparison) -> str:
-    what = f"{one.trial}, {one.metric}: {one.second} minus {one.first} = {one.difference}"
+    where = ", ".join(filter(None, (one.trial, one.robot)))
+    what = f"{where}, {one.metric}: {one.second} minus {one.first} = {one.difference}"
     return f"{what}, p = {one.corrected:.3g} (corrected)"

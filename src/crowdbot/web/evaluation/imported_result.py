@@ -67,7 +67,7 @@ def cell_of_result(cell: CellResult, space: Workspace) -> EvaluationCell:
     """
     name = cell.base or cell.trial
     if name in builtin_trials():
-        trial = load_builtin_trial(name)
+        trial = load_builtin_trial(name, folder=space.folder)
     else:
         files = [one for one in space.trials() if Path(one).stem == name]
         if not files:
@@ -75,7 +75,7 @@ def cell_of_result(cell: CellResult, space: Workspace) -> EvaluationCell:
                 f"trial {name!r} of this result is not in the folder of the app; open its file there first"
             )
         trial = load_trial(space.folder / files[0])
-    plan = EvaluationPlan([trial], parse_methods(cell.method), robots=(cell.robot,), trust=False)
+    plan = EvaluationPlan([trial], parse_methods(cell.method), robots=(cell.robot,), trust=False, folder=space.folder)
     for found in plan.cells:
         if found.hash == cell.hash:
             return found
