@@ -142,6 +142,22 @@ def test_a_type_of_the_command_line_lies_in_the_working_folder(folder, capsys):
     assert main(["run", "halls/hall.xml", *values]) == 0
 
 
+@pytest.mark.parametrize("value", ["stage/map=../hall.yaml", "robot/navigator/type=../mine.py:Mine"])
+def test_a_type_of_the_working_folder_allows_no_other_value_outside_of_the_folder_of_the_trial(folder, capsys, value):
+    assert main(["new", "navigator", "mine.py"]) == 0
+    (folder / "halls").mkdir()
+    (folder / "halls" / "hall.xml").write_text(XML.format(parts="").replace('"mybot"', '"cuybot"'), encoding="utf-8")
+    (folder / "hall.yaml").write_text("image: hall.pgm\n", encoding="utf-8")
+    words = ["run", "halls/hall.xml", "--set", "robot/type=mybot", "--set", value]
+    capsys.readouterr()
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "lies outside" in line
+    assert "--trust" in line
+    if value.startswith("robot"):
+        assert main([*words, "--set", "duration=0.2", "--trust"]) == 0
+
+
 @pytest.mark.parametrize(("name", "hint"), [("mybto", ", did you mean 'mybot'?"), ("nothing-like-it", "")])
 def test_check_names_the_robot_that_was_meant(folder, capsys, name, hint):
     assert main(["check", name]) == 2

@@ -83,7 +83,7 @@ def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = Fa
     """Load the trial of a command with its values.
 
     A type names a robot folder or code in the working folder, as all other options do, or else in the folder of the
-    trial. Naming it allows it, also outside the folder of the trial.
+    trial. Naming it allows it, also outside the folder of the trial, and allows nothing else.
     """
     from crowdbot.trials import apply_values, load_trial
 
@@ -93,7 +93,7 @@ def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = Fa
     if not named or not path.is_file():
         return load_trial(source, values, trust=trust)
     trial = load_trial(source, trust=trust)
-    return apply_values(trial, {**values, **named}, place=trial.name, trust=True)
+    return apply_values(trial, {**values, **named}, place=trial.name, trust=trust or {*named.values()})
 
 
 def _seen_from(folder: Path, value: str) -> str:
