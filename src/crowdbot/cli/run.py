@@ -103,7 +103,7 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
     """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
-    from crowdbot.trials import trial_remarks
+    from crowdbot.trials import passage_remarks, trial_remarks
 
     summary = {
         "trial": done.trial.name,
@@ -122,12 +122,7 @@ def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int
         return _report_failure(done, options.debug)
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    remarks = trial_remarks(done.trial)
-    if done.trial.robots and done.trial.robots[0].type:  # the import takes a second
-        from crowdbot.evaluation import passage_remark
-
-        remarks += filter(None, [passage_remark(done.trial)])
-    for remark in remarks:
+    for remark in (*trial_remarks(done.trial), *passage_remarks(done.trial)):
         print(f"note: {remark}")
     return _report_failure(done, options.debug)
 
