@@ -74,6 +74,22 @@ def test_an_unknown_robot_is_an_error_without_remarks(folder, capsys, words):
     assert 'type="nosuch" is not a robot' in line
 
 
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["evaluate", "two-way", "--robots", "nosuch"], 'type="nosuch" is not a robot'),
+        (["evaluate", "two-way", "--navigators", "nosuch"], "unknown navigator 'nosuch'"),
+        (["falsify", "two-way", "--robots", "nosuch"], 'type="nosuch" is not a robot'),
+        (["run", "two-way", "--variant", "2"], "--variant 2: two-way has no variants"),
+        (["render", "two-way", "--variant", "2"], "--variant 2: two-way has no variants"),
+    ],
+)
+def test_an_error_after_a_robot_was_replaced_stands_alone(folder, capsys, words, error):
+    assert main([*words, "--set", "robot/type=pepper"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert error in line
+
+
 def test_a_trial_overrides_its_own_robot_and_says_what(folder):
     trial = parse_trial(XML.format(parts=OTHER), folder=folder)
     assert trial.robots[0].drive.max_speed == 0.7

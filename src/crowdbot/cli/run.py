@@ -22,7 +22,7 @@ from .output import (
     print_warnings,
     progress,
 )
-from .settings import add_settings, add_world, load_settings_trial, select_variant, settings
+from .settings import add_settings, add_world, load_variant
 
 if TYPE_CHECKING:
     from crowdbot.simulation import OrderSchedule, OrderSource, RunSummary
@@ -52,7 +52,7 @@ def main(options: argparse.Namespace) -> int:
 
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
-    trial = select_variant(load_settings_trial(options.trial, settings(options), options.trust), options.variant)
+    trial = load_variant(options)
     print_robots([trial], options.json)
     with contextlib.ExitStack() as stack:
         captures = open_captures(trial, options, stack)
