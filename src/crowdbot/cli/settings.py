@@ -117,7 +117,7 @@ def load_variant(options: argparse.Namespace) -> Trial:
 
     with remarks_at_end():
         trial = load_settings_trial(options.trial, settings(options), options.trust)
-        number = options.variant
+        number: int | None = options.variant
         if number is None and not trial.sweeps:
             return trial
         variants = expand_sweeps(trial)
