@@ -52,6 +52,25 @@ def test_nothing_is_said_without_such_a_passage(values, robot):
     assert remarks(load_trial("doorway", values), robot) == ()
 
 
+SECOND = (
+    """<robot name="second" type="wheelchair" x="-4" y="1"><goal x="3" y="0"/><navigator type="straight"/></robot>"""
+)
+
+
+def test_every_robot_of_a_trial_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = CORNER.replace('3 -5,3"/>', '3 -5,3"><wall points="0,-3 0,-0.45"/><wall points="0,0.45 0,3"/></stage>', 1)
+    text = text.replace('"qolo"', '"pepper"').replace("</trial>", SECOND + "</trial>")
+    (remark,) = remarks(parse_trial(text))
+    start = (
+        "the narrowest passage on the way of robot 'second' is 0.90 m wide: less than the diameter of its disc, 1.20 m"
+    )
+    assert remark.startswith(start)
+    (tmp_path / "two.xml").write_text(text, encoding="utf-8")
+    assert main(["run", "two.xml", "--set", "duration=0.2"]) == 0
+    assert " ".join(capsys.readouterr().out.split()).count("note: " + start) == 1
+
+
 def test_a_wall_beside_the_goal_is_no_passage():
     assert remarks(parse_trial(CORNER)) == ()
 

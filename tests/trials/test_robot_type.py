@@ -74,6 +74,22 @@ def test_an_unknown_robot_is_an_error_without_remarks(folder, capsys, words):
     assert 'type="nosuch" is not a robot' in line
 
 
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["evaluate", "two-way", "--robots", "nosuch"], 'type="nosuch" is not a robot'),
+        (["evaluate", "two-way", "--navigators", "nosuch"], "unknown navigator 'nosuch'"),
+        (["falsify", "two-way", "--robots", "nosuch"], 'type="nosuch" is not a robot'),
+        (["run", "two-way", "--variant", "2"], "--variant 2: two-way has no variants"),
+        (["render", "two-way", "--variant", "2"], "--variant 2: two-way has no variants"),
+    ],
+)
+def test_an_error_after_a_robot_was_replaced_stands_alone(folder, capsys, words, error):
+    assert main([*words, "--set", "robot/type=pepper"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert error in line
+
+
 def test_a_trial_overrides_its_own_robot_and_says_what(folder):
     trial = parse_trial(XML.format(parts=OTHER), folder=folder)
     assert trial.robots[0].drive.max_speed == 0.7
@@ -140,6 +156,22 @@ def test_a_type_of_the_command_line_lies_in_the_working_folder(folder, capsys):
     assert main(["run", "halls/hall.xml", "--set", "robot/type=yourbot"]) == 2
     (folder / "mybot").rename(folder / "halls" / "mybot")  # not in the working folder: beside the trial
     assert main(["run", "halls/hall.xml", *values]) == 0
+
+
+@pytest.mark.parametrize("value", ["stage/map=../hall.yaml", "robot/navigator/type=../mine.py:Mine"])
+def test_a_type_of_the_working_folder_allows_no_other_value_outside_of_the_folder_of_the_trial(folder, capsys, value):
+    assert main(["new", "navigator", "mine.py"]) == 0
+    (folder / "halls").mkdir()
+    (folder / "halls" / "hall.xml").write_text(XML.format(parts="").replace('"mybot"', '"cuybot"'), encoding="utf-8")
+    (folder / "hall.yaml").write_text("image: hall.pgm\n", encoding="utf-8")
+    words = ["run", "halls/hall.xml", "--set", "robot/type=mybot", "--set", value]
+    capsys.readouterr()
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "lies outside" in line
+    assert "--trust" in line
+    if value.startswith("robot"):
+        assert main([*words, "--set", "duration=0.2", "--trust"]) == 0
 
 
 @pytest.mark.parametrize(("name", "hint"), [("mybto", ", did you mean 'mybot'?"), ("nothing-like-it", "")])

@@ -3,6 +3,7 @@
 import argparse
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -301,7 +302,11 @@ def test_the_page_holds_table_words_and_plots(done):
     assert "* **orca**: people in single file walk at" in text
     assert "Runs (starts and densities) with a steady state" in text
     assert all(check.criterion in text for check in CHECKS)
-    assert "[People around robots](around-robots.md)" in text
+    links = re.findall(r"(?<!!)\[[^]]+\]\(([^)]+)\)", text)
+    assert [link.rpartition("/")[2] for link in links] == ["around-robots.md", "trial-crowds.md"]
+    for link in links:  # each leads somewhere from any folder, to a page that exists
+        assert link.startswith("https://github.com/crowdbot/crowdbot/blob/main/docs/")
+        assert (Path(__file__).parents[2] / link.partition("/blob/main/")[2]).is_file()
     assert "The verdicts mean little" in text
     assert "compares with published curves only" in text
     assert "| anticipation-velocity" not in text

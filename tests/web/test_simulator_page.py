@@ -58,6 +58,7 @@ def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
     state(page, "running")
     wait(page, f"{VIEW}.picture.scene.info().people > 20 && {VIEW}.picture.scene.info().robots === 1", 120)
     assert page.evaluate(f"{VIEW}.picture.scene.info().calls") > 0  # drawn in space
+    wait(page, "document.querySelectorAll('[aria-label=\"Choose a person or robot\"] option').length > 20", 60)
     show_from_above(page)
     at = status(page, "time")
     wait(page, f"{VIEW}.status.time > {at} + 0.5")

@@ -145,6 +145,8 @@ class SimulatorView {
     if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
     if (status.state === "preparing") this.picture.say(preparation(status));
     else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
+    // the recorded beginning has the same description as the run, so that nothing else asks for the people of the run
+    if (before.state === "preparing" && status.state !== "preparing") this.inspector.refresh();
     if (status.state === "failed") this.picture.preview(null);
     if (status.state === "ended" && before.state !== "ended" && this.drive.subject) this.drive.forget();
     if (this._readEpisode && status.kind === "episode" && !["preparing", "failed"].includes(status.state)) {

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import add_json, number, print_json, print_table, progress
-from .settings import add_settings, add_world, load_settings_trial, select_variant, settings
+from .settings import add_settings, add_world, load_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.rendering import RenderRequest
@@ -65,7 +65,7 @@ def main(options: argparse.Namespace) -> int:
         return _render_episode(options)
     if options.folder is not None:
         raise InputError("--folder is for an episode; the files of a trial are in its own folder")
-    trial = select_variant(load_settings_trial(options.trial, settings(options), options.trust), options.variant)
+    trial = load_variant(options)
     return _render(options, trial, trial.seed if options.seed is None else options.seed)
 
 

@@ -22,7 +22,7 @@ from .output import (
     print_warnings,
     progress,
 )
-from .settings import add_settings, add_world, load_settings_trial, select_variant, settings
+from .settings import add_settings, add_world, load_variant
 
 if TYPE_CHECKING:
     from crowdbot.simulation import OrderSchedule, OrderSource, RunSummary
@@ -52,7 +52,7 @@ def main(options: argparse.Namespace) -> int:
 
     if options.pace is not None and not options.pace > 0.0:
         raise InputError(f"--pace {options.pace:g} must be above 0; 1 is real time, 2 is twice as fast")
-    trial = select_variant(load_settings_trial(options.trial, settings(options), options.trust), options.variant)
+    trial = load_variant(options)
     print_robots([trial], options.json)
     with contextlib.ExitStack() as stack:
         captures = open_captures(trial, options, stack)
@@ -103,7 +103,7 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
     """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
-    from crowdbot.trials import trial_remarks
+    from crowdbot.trials import passage_remarks, trial_remarks
 
     summary = {
         "trial": done.trial.name,
@@ -122,12 +122,7 @@ def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int
         return _report_failure(done, options.debug)
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    remarks = trial_remarks(done.trial)
-    if done.trial.robots and done.trial.robots[0].type:  # the import takes a second
-        from crowdbot.evaluation import passage_remark
-
-        remarks += filter(None, [passage_remark(done.trial)])
-    for remark in remarks:
+    for remark in (*trial_remarks(done.trial), *passage_remarks(done.trial)):
         print(f"note: {remark}")
     return _report_failure(done, options.debug)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_robots", "add_settings", "add_world", "load_settings_trial", "robots", "select_variant", "settings"]
+__all__ = ["add_robots", "add_settings", "add_world", "load_settings_trial", "load_variant", "robots", "settings"]
 
 WORLDS = ("planar", "physics")
 
@@ -83,7 +83,7 @@ def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = Fa
     """Load the trial of a command with its values.
 
     A type names a robot folder or code in the working folder, as all other options do, or else in the folder of the
-    trial. Naming it allows it, also outside the folder of the trial.
+    trial. Naming it allows it, also outside the folder of the trial, and allows nothing else.
     """
     from crowdbot.trials import apply_values, load_trial
 
@@ -93,7 +93,7 @@ def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = Fa
     if not named or not path.is_file():
         return load_trial(source, values, trust=trust)
     trial = load_trial(source, trust=trust)
-    return apply_values(trial, {**values, **named}, place=trial.name, trust=True)
+    return apply_values(trial, {**values, **named}, place=trial.name, trust=trust or {*named.values()})
 
 
 def _seen_from(folder: Path, value: str) -> str:
@@ -106,23 +106,27 @@ def _seen_from(folder: Path, value: str) -> str:
     return f"{Path(os.path.relpath(path, folder.resolve())).as_posix()}{colon}{rest}"
 
 
-def select_variant(trial: Trial, variant: int | None) -> Trial:
-    """Return a trial, or the given variant (from 1) of a trial with sweeps.
+def load_variant(options: argparse.Namespace) -> Trial:
+    """Load the trial of a command, or the variant of ``--variant`` (from 1) of a trial with sweeps.
 
     Raises:
         InputError: the variant does not exist, or is required but not given.
     """
     from crowdbot.core import InputError
-    from crowdbot.trials import expand_sweeps
+    from crowdbot.trials import expand_sweeps, remarks_at_end
 
-    if variant is None and not trial.sweeps:
-        return trial
-    variants = expand_sweeps(trial)
-    if variant is None:
-        raise InputError(
-            f"{trial.name} has {len(variants)} variants in its sweeps; run one of them with --variant 1 to"
-            f" {len(variants)} (crowdbot check lists them)"
-        )
-    if not trial.sweeps or not 1 <= variant <= len(variants):
-        raise InputError(f"--variant {variant}: {trial.name} has {len(variants) if trial.sweeps else 'no'} variants")
-    return variants[variant - 1]
+    with remarks_at_end():
+        trial = load_settings_trial(options.trial, settings(options), options.trust)
+        number: int | None = options.variant
+        if number is None and not trial.sweeps:
+            return trial
+        variants = expand_sweeps(trial)
+        if number is None:
+            raise InputError(
+                f"{trial.name} has {len(variants)} variants in its sweeps; run one of them with --variant 1 to"
+                f" {len(variants)} (crowdbot check lists them)"
+            )
+        if not trial.sweeps or not 1 <= number <= len(variants):
+            count = len(variants) if trial.sweeps else "no"
+            raise InputError(f"--variant {number}: {trial.name} has {count} variants")
+        return variants[number - 1]

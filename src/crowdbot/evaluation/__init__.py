@@ -9,7 +9,7 @@ from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
 from .pareto import pareto_front
-from .plan import EvaluationCell, EvaluationPlan, parse_seeds, passage_remark
+from .plan import EvaluationCell, EvaluationPlan, parse_seeds
 from .realism import (
     ClearanceRow,
     ClearanceTable,
@@ -145,7 +145,6 @@ __all__ = [
     "parse_requirement",
     "parse_seeds",
     "parse_statistic",
-    "passage_remark",
     "person_contacts",
     "place_reality",
     "plot_scan_scores",

@@ -12,22 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from crowdbot.core import InputError, Walls
+from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.navigation import PathPlanner
-from crowdbot.trials import RobotSpec, Trial, expand_sweeps, remarks_at_end, trial_xml
+from crowdbot.trials import Trial, expand_sweeps, passage_remarks, remarks_at_end, trial_xml
 
 from .episode_metrics import check_families
 from .method import Method, own_method
 
-__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds", "passage_remark"]
+__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
 
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
-PASSAGE = 0.001
-"""Precision [m] of the width of a passage."""
 RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")
 
 
@@ -63,8 +58,8 @@ class EvaluationCell:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a reader must know about this robot in this trial, such as a passage too narrow for its disc."""
-        return tuple(filter(None, (passage_remark(self.variant),)))
+        """What a reader must know about the robots in this trial, such as a passage too narrow for a disc."""
+        return passage_remarks(self.variant)
 
     @property
     def protocol(self) -> dict[str, Any]:
@@ -171,43 +166,6 @@ class EvaluationPlan:
             for method in self.methods
         )
         object.__setattr__(self, "cells", cells)
-
-
-def passage_remark(trial: Trial) -> str:
-    """Return why the first robot of a trial cannot reach its goal although its outline fits, or an empty text.
-
-    The planar world treats a robot as a disc. If walls leave the disc no path from start to goal, but a disc as wide as
-    the outline of the robot has one, the narrowest passage on the way of the robot is the reason.
-    """
-    if not trial.robots:
-        return ""
-    robot = trial.robots[0]
-    if trial.world != "planar" or not robot.type or robot.ghost or robot.mirror is not None:
-        return ""
-    outline = float(np.ptp(robot.body.footprint[:, 1]))
-    fits, fails = 0.5 * outline, robot.radius
-    walls = trial.stage.as_walls()
-    if fits >= fails or _has_path(walls, robot, fails) or not _has_path(walls, robot, fits):
-        return ""
-    while fails - fits > 0.5 * PASSAGE:
-        middle = 0.5 * (fits + fails)
-        fits, fails = (middle, fails) if _has_path(walls, robot, middle) else (fits, middle)
-    if fits > float(trial.stage.clearance([robot.position, robot.goal.position]).min()) - PASSAGE:
-        return ""  # a wall beside start or goal, not a passage
-    return (
-        f"the narrowest passage on the way of the robot is {2.0 * fits:.2f} m wide: less than the diameter of its disc,"
-        f" {2.0 * robot.radius:.2f} m, and more than the width of its outline, {outline:.2f} m. In the planar world a"
-        " robot is a disc, so it cannot reach its goal, although its outline fits through."
-    )
-
-
-def _has_path(walls: Walls, robot: RobotSpec, radius: float) -> bool:
-    """Return whether a disc has a path from the start to the goal of the robot."""
-    try:
-        PathPlanner.of(walls, radius, margin=0.0).waypoints(robot.position, robot.goal.position)
-    except InputError:
-        return False
-    return True
 
 
 def _margin(navigator: object) -> float | None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.calibration import resolve_search
 from crowdbot.core import InputError, stream
-from crowdbot.evaluation import passage_remark
+from crowdbot.trials import passage_remarks
 
 from .cluster import find_clusters
 from .cross_entropy import CrossEntropy
@@ -99,7 +99,6 @@ def falsify(
             dataclasses.replace(one, file=f"found/{file.path.name}", same=file.same)
             for one, file in zip(kept, files, strict=True)
         ]
-    remark = passage_remark(space.trial)
     return FalsificationResult(
         space.trial.name,
         method,
@@ -114,7 +113,7 @@ def falsify(
         clusters,
         tuple(kept),
         Path(space.trial.robots[0].type).name if space.trial.robots else "",
-        (remark,) if remark else (),
+        passage_remarks(space.trial),
     )
 
 

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .robots.joint_target import JointTarget, joint_positions
+    from .robots.passage import passage_remarks
     from .robots.predictor import RobotPredictor
     from .robots.reaction import ReactionSpec, robot_reactions
     from .robots.robot_parts import describe_robot, override_remarks, remarks_at_end, replace_robot, robot_lines
@@ -126,6 +127,7 @@ __getattr__, __dir__ = lazy_exports(
         "faults.lost_commands": ["LostCommands"],
         "faults.slipping_wheel": ["SlippingWheel"],
         "robots.joint_target": ["JointTarget", "joint_positions"],
+        "robots.passage": ["passage_remarks"],
         "robots.predictor": ["RobotPredictor"],
         "robots.reaction": ["ReactionSpec", "robot_reactions"],
         "robots.robot_parts": ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot", "robot_lines"],
@@ -275,6 +277,7 @@ __all__ = [
     "own",
     "parse_trial",
     "parse_trial_xml",
+    "passage_remarks",
     "people_appearance",
     "place",
     "plain",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,7 @@ def parse_trial(
     *,
     place: str = "trial",
     folder: Path | None = None,
-    trust: bool = False,
+    trust: bool | Collection[str] = False,
     quiet: bool = False,
 ) -> Trial:
     """Read a trial from XML and check it.
@@ -39,7 +39,8 @@ def parse_trial(
         text: the XML.
         place: name of the file for messages.
         folder: folder of the trial and of the code that it names (default: the working folder).
-        trust: whether code from outside the folder may be loaded.
+        trust: whether code and files from outside the folder may be named, or the only values of ``type`` that may
+            name them.
         quiet: whether to omit warnings about names of earlier versions.
 
     Raises:

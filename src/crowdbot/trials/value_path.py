@@ -130,8 +130,8 @@ def _check_attribute(here: Element, kind: Any, last: str) -> None:
         return
     words = [part.word for part in outline(kind) if part.role == "attribute"]
     if last not in words:
-        near = did_you_mean(last, words)
-        raise InputError(f"names no attribute: <{here.tag}> has no {last!r}{near}; it takes {', '.join(words)}")
+        meant = did_you_mean(last, words) or f"; it takes {', '.join(words)}"
+        raise InputError(f"names no attribute: <{here.tag}> has no {last!r}{meant}")
 
 
 def _follow(root: Element, kind: Any, steps: Sequence[str]) -> tuple[Element, Any]:
@@ -145,8 +145,8 @@ def _inner(here: Element, kind: Any, step: str, create: bool = True) -> tuple[El
     match = STEP.fullmatch(step)
     parts = {word: part for part in (outline(kind) if kind else ()) for word in part.words}
     if match is None or match[1] not in parts:
-        near = did_you_mean(step, parts)
-        raise InputError(f"does not exist: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
+        meant = did_you_mean(step, parts) or f"; it has {', '.join(parts)}"
+        raise InputError(f"does not exist: <{here.tag}> has no element {step[:40]!r}{meant}")
     part: FieldSpec = parts[match[1]]
     inner = None if part.role == "plugged" else part.elements[match[1]]
     there = [child for child in here.children if child.tag == match[1]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from crowdbot.core import InputError, TrialError, format_xml
@@ -23,7 +23,7 @@ __all__ = ["apply_values", "expand_sweeps"]
 
 @remarks_at_end()
 def apply_values(
-    trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool | None = None
+    trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool | Collection[str] | None = None
 ) -> Trial:
     """Return a trial with other values at some paths, checked like a file.
 
@@ -31,8 +31,8 @@ def apply_values(
         trial: the original trial.
         values: texts, numbers or booleans by path, as in :class:`Sweep`.
         place: name for messages.
-        trust: whether code and files outside the folder of the trial may be named (default: if the trial does so
-            already).
+        trust: whether code and files outside the folder of the trial may be named, as in
+            :func:`crowdbot.trials.parse_trial` (default: if the trial does so already).
 
     Raises:
         TrialError: a path does not exist, or a value is not allowed.

@@ -57,11 +57,13 @@ DEFINITIONS = {
     f" {bottleneck.SECONDS:g} s. Specific flow: flow / width (in the table: mean over widths).",
 }
 
+RESULTS = "https://github.com/crowdbot/crowdbot/blob/main/docs/results"
+"""Address of the other pages of results, which are not beside a page that a user writes."""
 AROUND_A_ROBOT = (
-    "The experiments and tests of this page have no robot. [People around robots](around-robots.md) compares how people"
-    " of each model evade a robot, and how near they come to it, with recorded people around a golf cart. Of the models"
-    " here, the preset `people` alone keeps a gap to robots by default. [Crowds in trials](trial-crowds.md) measures"
-    " the preset in longer corridors and doors of trials, with the bodies of their people."
+    f"The experiments and tests of this page have no robot. [People around robots]({RESULTS}/around-robots.md) compares"
+    " how people of each model evade a robot, and how near they come to it, with recorded people around a golf cart. Of"
+    f" the models here, the preset `people` alone keeps a gap to robots by default. [Crowds in trials]({RESULTS}/"
+    "trial-crowds.md) measures the preset in longer corridors and doors of trials, with the bodies of their people."
 )
 
 

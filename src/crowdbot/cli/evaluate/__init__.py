@@ -75,6 +75,7 @@ def main(options: argparse.Namespace) -> int:
     """Run the evaluation; return 1 if a requirement does not hold."""
     from crowdbot.core import InputError
     from crowdbot.evaluation import evaluate, parse_requirement
+    from crowdbot.trials import remarks_at_end
 
     if options.worst < 0:
         raise InputError(f"--worst {options.worst} must be at least 0")
@@ -84,7 +85,8 @@ def main(options: argparse.Namespace) -> int:
     if not options.trials:
         raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)
-    plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
+    with remarks_at_end():
+        plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
     print_robots((cell.variant for cell in plan.cells), options.json)
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
     try:

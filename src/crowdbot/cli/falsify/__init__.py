@@ -66,8 +66,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Search for failures; the status is 0 whether or not there are any."""
     from crowdbot.falsification import falsify, parse_failure, parse_sampling, write_report
+    from crowdbot.trials import remarks_at_end
 
-    space = _space(options)
+    with remarks_at_end():
+        space = _space(options)
     print_robots([space.trial], options.json)
     begin = time.perf_counter()
     try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -45,10 +46,10 @@ class XmlReader:
     Args:
         place: name of the file for messages.
         folder: folder of the code and files that the tree names.
-        trust: whether they may lie outside the folder.
+        trust: whether they may lie outside the folder, or the only values of ``type`` that may name one that does.
     """
 
-    def __init__(self, place: str, folder: Path, trust: bool) -> None:
+    def __init__(self, place: str, folder: Path, trust: bool | Collection[str]) -> None:
         self.place, self.folder, self.trust = place, folder, trust
         self._result = ReaderResult(place, Element(ROOT))
 
@@ -78,7 +79,7 @@ class XmlReader:
             unreadable.add(part.name)
             if not _is_present(element, part):
                 self._report(element, f"needs {_describe(part)}")
-        values |= self._files(cls)
+        values |= self._files(cls, element)
         if hasattr(cls, "mistakes"):
             for names, sentence in cls.mistakes(values):
                 self._report(element, sentence)
@@ -87,10 +88,17 @@ class XmlReader:
         self._result.add_element(made, element)
         return made
 
-    def _files(self, cls: type) -> dict[str, Any]:
+    def _files(self, cls: type, element: Element) -> dict[str, Any]:
         """Return the fields of an element that say where its files are."""
-        named = any(field.name == "trust" for field in dataclasses.fields(cls))
-        return {"folder": self.folder, "trust": self.trust} if named else {}
+        if not any(field.name == "trust" for field in dataclasses.fields(cls)):
+            return {}
+        # with a plugin, ``type`` names the code of the plugin, and the files of the element are other attributes
+        own = any(part.role == "attribute" and part.word == "type" for part in outline(cls))
+        return {"folder": self.folder, "trust": self._trusts(element.attributes.get("type", "") if own else "")}
+
+    def _trusts(self, name: str) -> bool:
+        """Return whether a value of ``type`` may name code or a folder outside of the folder of the trial."""
+        return self.trust if isinstance(self.trust, bool) else name in self.trust
 
     def _build(self, cls: type, element: Element, values: dict[str, Any], unreadable: set[str], before: int) -> Any:
         """Return the object of an element; a partial one if there are more problems than ``before``, or one now."""
@@ -215,7 +223,7 @@ class XmlReader:
             self._report(element, f"needs the attribute 'type': {', '.join(known)} or an address")
             return None
         try:
-            return find_class(name, room, contract, folder=self.folder, trust=self.trust)
+            return find_class(name, room, contract, folder=self.folder, trust=self._trusts(name))
         except InputError as error:
             self._report(element, str(error))
             return known.get(nearest_name(name, known))
