@@ -18,7 +18,7 @@ from .rows import Runs, runs
 from .track_table import TrackTable
 from .windows import Windows
 
-__all__ = ["LATE", "PROTOCOLS", "cut_past", "cut_windows"]
+__all__ = ["LATE", "PROTOCOLS", "NoWindowError", "cut_past", "cut_windows"]
 
 PROTOCOLS = {
     "all": "all windows with a person who is present at all rows; frames without people are skipped",
@@ -41,6 +41,10 @@ MAX_BYTES = 4 * 1024**3
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+
+class NoWindowError(DataError):
+    """A recording has no window of the protocol, for example because its tracks are too short."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ def cut_windows(
     need = min(SHORTEST_FUTURE, predict) if protocol == "partial" else predict
     scored = (rows.runs.behind >= observe) & (rows.runs.ahead >= need) & ~rows.robot
     if not np.any(scored):
-        raise DataError(_why_none(tracks, rows, observe, need, protocol))
+        raise NoWindowError(_why_none(tracks, rows, observe, need, protocol))
     scored = _apply_protocol(tracks, rows, scored, protocol)
     if near is not None:
         scored = _near_robot(tracks, rows, scored, near)
@@ -129,7 +133,7 @@ def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: st
     else:
         return scored
     if not np.any(scored):
-        raise DataError(f"{tracks.name}: {why}")
+        raise NoWindowError(f"{tracks.name}: {why}")
     return scored
 
 
@@ -146,7 +150,7 @@ def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> 
     if not np.any(close):
         nearest = distance[scored].min()
         how = f"the nearest is {nearest:.2f} m away" if np.isfinite(nearest) else "no robot is present at these times"
-        raise DataError(f"{tracks.name}: no scored person comes within {near} m of a robot; {how}")
+        raise NoWindowError(f"{tracks.name}: no scored person comes within {near} m of a robot; {how}")
     return close
 
 

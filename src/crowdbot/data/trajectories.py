@@ -201,7 +201,7 @@ class Trajectories(TrackTable):
 
         Raises:
             InputError: an argument is not allowed.
-            DataError: there is no window; the message states the reason.
+            NoWindowError: there is no window; the message states the reason. It is a :class:`DataError`.
         """
         return cut_windows(self, observe, predict, protocol, near, late)
 
