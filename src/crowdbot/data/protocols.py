@@ -27,6 +27,7 @@ PROTOCOLS = {
     "timesplit": "windows with exact time steps from the last fifth of the recording (Social Ways, Amirian et al."
     " 2019)",
     "timesplit-train": "the training part of timesplit, the first four fifths of the recording",
+    "trajnet++": "the scenes of a TrajNet++ file; only their primary persons are scored (Kothari et al. 2021)",
 }
 LATE = {
     "skip": "people who appear during the observed part are excluded",
@@ -74,6 +75,8 @@ def cut_windows(
     scored = (rows.runs.behind >= observe) & (rows.runs.ahead >= need) & ~rows.robot
     if not np.any(scored):
         raise NoWindowError(_why_none(tracks, rows, observe, need, protocol))
+    if protocol == "trajnet++":
+        scored = _primary(tracks, rows, scored, observe, predict)
     scored = _apply_protocol(tracks, rows, scored, protocol)
     if near is not None:
         scored = _near_robot(tracks, rows, scored, near)
@@ -135,6 +138,26 @@ def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: st
     if not np.any(scored):
         raise NoWindowError(f"{tracks.name}: {why}")
     return scored
+
+
+def _primary(tracks: TrackTable, rows: _Rows, scored: Bools, observe: int, predict: int) -> Bools:
+    """Return who is scored and is the primary person of a scene with these rows."""
+    if not tracks.scenes:
+        raise DataError(f"{tracks.name} has no scenes with a primary person, as TrajNet++ files have")
+    known = {(scene.person, scene.first, scene.last) for scene in tracks.scenes}
+    frames = rows.runs.frames
+    primary = np.zeros_like(scored)
+    place = np.flatnonzero(scored)
+    at = rows.runs.instant[place]
+    first, last = frames[at - observe + 1], frames[at + predict]
+    whole = zip(rows.id[place].tolist(), first.tolist(), last.tolist(), strict=True)
+    primary[place] = [person in known for person in whole]
+    if not np.any(primary):
+        raise NoWindowError(
+            f"{tracks.name}: no scene has {observe} + {predict} rows of its primary person;"
+            " the scenes of TrajNet++ have 9 + 12"
+        )
+    return primary
 
 
 def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> Bools:

@@ -194,7 +194,8 @@ class Trajectories(TrackTable):
 
         Args:
             observe, predict: rows of the two parts.
-            protocol: ``all``, ``sgan``, ``partial``, ``timesplit`` or ``timesplit-train``: see ``PROTOCOLS``.
+            protocol: ``all``, ``sgan``, ``partial``, ``timesplit``, ``timesplit-train`` or ``trajnet++``: see
+                ``PROTOCOLS``.
             near: score only people within this distance of a robot at the last observed row [m].
             late: people who appear during the observed part are excluded (``skip``) or, with at least two rows,
                 extrapolated backwards with their first velocity (``extrapolate``); they are never scored.
