@@ -152,7 +152,7 @@ def scenes_file(file: Path) -> Path:
         for who in PEOPLE:
             x, y = place_of(who, row)
             lines.append({"track": {"f": 10 * row, "p": who, "x": x, "y": y}})
-    file.write_text("\n".join(map(json.dumps, lines)))
+    file.write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
     return file
 
 

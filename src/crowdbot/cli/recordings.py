@@ -61,6 +61,12 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         "--learn", type=float, default=0.0, metavar="SHARE",
         help="initial share of each recording for learning goals; only the rest is predicted (default: 0)",
     )  # fmt: skip
+    add(
+        "--agents",
+        default="pedestrians",
+        metavar="NAME",
+        help="who is read where the file has labels: pedestrians, or all with cyclists and cars (default: pedestrians)",
+    )
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
@@ -186,7 +192,7 @@ def recordings(options: argparse.Namespace, paths: Sequence[Path] | None = None)
             str(path), value_for(path, options.fps), options.format, value_for(path, options.units),
             options.time_base, options.step, options.observe,
             options.predict, options.protocol, options.near, options.late, options.learn, options.every,
-            named, transform(options, path), layout,
+            named, transform(options, path), layout, options.agents,
         )
         for path in (options.data if paths is None else paths)
     )  # fmt: skip

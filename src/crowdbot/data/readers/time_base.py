@@ -137,7 +137,8 @@ def _speeds(tracks: Trajectories) -> NDArray[np.float64]:
     """Return the speeds of people [m/s]; none if the units are pixels."""
     if tracks.units != "m":
         return np.empty(0)
-    people = ~np.isin(tracks.id, np.asarray(sorted(tracks.robots), dtype=np.int64))
+    others = sorted(tracks.robots | tracks.other_agents.keys())
+    people = ~np.isin(tracks.id, np.asarray(others, dtype=np.int64))
     with np.errstate(over="ignore", invalid="ignore"):
         velocity = tracks.velocities()[people]
         speed = np.hypot(velocity[:, 0], velocity[:, 1])
