@@ -47,6 +47,14 @@ def test_the_labels_decide_who_is_left(street: Path) -> None:
         Recording(str(street), agents="everyone")
 
 
+def test_boxes_of_whole_pixels_do_not_stand_still(tmp_path: Path) -> None:
+    rows = (f'0 {x - 5} 95 {x + 5} 105 {frame} 0 0 0 "Pedestrian"\n' for frame in range(300) for x in [10 + frame // 3])
+    (tmp_path / "annotations.txt").write_text("".join(rows))
+    assert (
+        "warning" not in load(tmp_path / "annotations.txt", transform=0.1).note
+    )  # 1 m/s, 2 of 3 frames without motion
+
+
 def test_speeds_of_pedestrians_are_still_checked(street: Path) -> None:
     assert "check fps and units" in load(street, transform=0.5).note
     assert "check fps" not in load(street, transform=0.05).note

@@ -111,7 +111,7 @@ def test_recordings_too_short_to_cut_are_used_whole(tmp_path: Path) -> None:
     assert [one.name for one in left] == ["a.txt"]
     split = split_in_time(kept, 0.25)
     assert split.whole_validation == ("e.txt", "i.txt")
-    assert split.whole == tuple(one.name for one in kept)
+    assert split.whole_training == tuple(f"{name}.txt" for name in "bcdfghj")
     assert (len(split.training), len(split.validation)) == (7 * 11, 2 * 11)
     assert split_in_time(kept[:2], 0.25).whole_validation == ("c.txt",)
     with pytest.raises(NoWindowError, match=r"a\.txt: no window of 8 observed and 12 predicted rows was found"):

@@ -199,11 +199,9 @@ def _remarks(options: argparse.Namespace, data: _TrainingData) -> list[str]:
         words = [one.path if names.count(one.name) > 1 else one.name for one in data.short]
         rows = f"{options.observe} + {options.predict} rows of {data.split.training.dt:.4g} s"
         lines.append(f"left out, without a window of {rows}: {', '.join(words)}")
-    if data.split.whole:
-        watched = list(data.split.whole_validation)
-        learned = [name for name in data.split.whole if name not in watched]
-        parts = [f"{', '.join(names)} for {use}" for names, use in ((learned, "training"), (watched, "validation"))
-                 if names]  # fmt: skip
+    uses = (data.split.whole_training, "training"), (data.split.whole_validation, "validation")
+    parts = [f"{', '.join(names)} for {use}" for names, use in uses if names]
+    if parts:
         lines.append(f"too short for --hold {options.hold:g}, used whole: {'; '.join(parts)}")
     return lines
 
@@ -262,7 +260,7 @@ def _print_result(
             {"checkpoint": str(file), "updates": done.updates, "stopped_early": done.stopped,
              "seconds": done.seconds, "start": before, "best": dict(best), "log": [dict(row) for row in done.rows],
              "left_out": data.test, "without_windows": [one.path for one in data.short],
-             "used_whole": {"training": [name for name in data.split.whole if name not in data.split.whole_validation],
+             "used_whole": {"training": list(data.split.whole_training),
                             "validation": list(data.split.whole_validation)}}
         )  # fmt: skip
         return

@@ -274,13 +274,13 @@ class TimeSplit(NamedTuple):
 
     Fields:
         training, validation: the samples.
-        whole: names of the recordings that are too short to be cut, and therefore in one of the two as a whole.
-        whole_validation: those of them that are in the validation.
+        whole_training, whole_validation: names of the recordings that are too short to be cut, and therefore in one of
+            the two as a whole.
     """
 
     training: Samples
     validation: Samples
-    whole: tuple[str, ...] = ()
+    whole_training: tuple[str, ...] = ()
     whole_validation: tuple[str, ...] = ()
 
 
@@ -321,7 +321,7 @@ def split_in_time(recordings: Sequence[Recording], share: float) -> TimeSplit:
     return TimeSplit(
         Samples.concatenate([early for early, _ in ordered if early is not None]),
         Samples.concatenate([part for _, part in ordered if part is not None]),
-        tuple(recordings[place].name for place, _ in whole),
+        tuple(recordings[place].name for place, _ in whole if place not in late),
         tuple(recordings[place].name for place, _ in whole if place in late),
     )
 
