@@ -6,7 +6,7 @@ import pytest
 from crowdbot.core import DataError, InputError
 from crowdbot.data import PROTOCOLS, Trajectories
 
-ORDINARY = [name for name in PROTOCOLS if not name.startswith("timesplit")]
+ORDINARY = [name for name in PROTOCOLS if not name.startswith(("timesplit", "trajnet"))]
 
 
 def tracks_of(*lengths, begins=None, **fields):

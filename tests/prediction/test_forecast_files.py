@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +65,8 @@ def test_fewer_samples_and_rows_are_the_first_ones(walkers: Path, tmp_path: Path
     [
         ("a.csv", "frame,id", "the suffix '.csv' is not one of forecasts"),
         ("a.ndjson", "{", "is not a file of forecasts, or is damaged"),
-        ("b.ndjson", '{"scene": {"id": 0}}\n', "has no predicted rows"),
+        ("b.ndjson", '{"scene": {"id": 0, "p": 1}}\n', "has no predicted rows"),
+        ("b.ndjson", '{"scene": {"id": 0}}\n', "line 1: a scene needs the whole numbers id and p"),
         ("c.ndjson", ROW % 80, "needs at least two rows"),
         ("d.ndjson", (ROW % 80).replace(', "scene_id": 0', ""), "line 1: a predicted row has no scene_id"),
         ("a.npz", "no zip", "is not a file of forecasts, or is damaged"),
@@ -107,6 +110,114 @@ def test_a_missing_file_and_two_recordings_are_refused(
     other.write_bytes(walkers.read_bytes())
     assert main(["predict", "--data", str(walkers), str(other), "--forecasts", "x.npz"]) != 0
     assert "--forecasts requires one recording" in capsys.readouterr().err
-    two = ["--predictor", "constant-velocity", "kalman", "--write-forecasts", str(tmp_path / "x.npz")]
-    assert main(["predict", "--data", str(walkers), *two]) != 0
-    assert "--write-forecasts requires one recording and one predictor, not 1 and 2" in capsys.readouterr().err
+    (tmp_path / "again").mkdir()
+    same = tmp_path / "again" / "walkers.txt"
+    same.write_bytes(walkers.read_bytes())
+    assert main(["predict", "--data", str(walkers), str(same), "--write-forecasts", str(tmp_path / "x.npz")]) != 0
+    assert "two recordings or predictors would write x.walkers.npz" in capsys.readouterr().err
+    assert main(["predict", "--data", str(walkers), "--forecasts", str(tmp_path / "none.npz")]) != 0
+    assert f"there is no file {tmp_path / 'none.npz'}" in capsys.readouterr().err
+
+
+def test_every_predictor_and_recording_has_its_file(
+    walkers: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "other.txt"
+    other.write_bytes(walkers.read_bytes())
+    asked = ["predict", "--data", str(walkers), str(other), "--predictor", "constant-velocity", "kalman", "--json"]
+    assert main([*asked, "--write-forecasts", str(tmp_path / "f.npz")]) == 0
+    results = {row["predictor"]: row["data"] for row in json.loads(capsys.readouterr().out)["results"]}
+    names = [f"f.{place}.{kind}.npz" for place in ("other", "walkers") for kind in ("constant-velocity", "kalman")]
+    assert sorted(path.name for path in tmp_path.glob("*.npz")) == names
+    file = tmp_path / "f.walkers.kalman.npz"
+    assert main(["predict", "--data", str(walkers), "--forecasts", str(file), "--json"]) == 0
+    scored = json.loads(capsys.readouterr().out)["results"][1]["total"]
+    np.testing.assert_allclose(scored["ade"], results["kalman"][str(walkers)]["ade"])
+
+
+PEOPLE, SCENES = (1, 2, 3), ((0, 1, 0), (1, 2, 0), (2, 1, 30))
+"""Ids, and scenes (id, primary person, first frame); two scenes begin at the same frame."""
+
+
+def place_of(person: int, row: float) -> tuple[float, float]:
+    return 0.4 * row, 2.0 * person + 0.02 * person * row**1.5
+
+
+def scenes_file(file: Path) -> Path:
+    """Write a TrajNet++ recording of three people over 24 rows."""
+    lines: list[object] = [
+        {"scene": {"id": id, "p": who, "s": s, "e": s + 200, "fps": 2.5, "tag": [2, []]}} for id, who, s in SCENES
+    ]
+    for row in range(24):
+        for who in PEOPLE:
+            x, y = place_of(who, row)
+            lines.append({"track": {"f": 10 * row, "p": who, "x": x, "y": y}})
+    file.write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
+    return file
+
+
+def foreign_lines() -> list[dict[str, dict[str, object]]]:
+    """Return forecasts as other methods write them: neighbors in each scene, in the first of two futures only.
+
+    The forecast of a person as a neighbor is far off; the one as the primary person is constant velocity. One neighbor
+    has no numbers.
+    """
+    lines: list[dict[str, dict[str, object]]] = []
+    for id, primary, begin in SCENES:
+        lines.append({"scene": {"id": id, "p": primary, "s": begin, "e": begin + 200, "fps": 2.5, "tag": 0}})
+        last = begin // 10 + 8
+        for sample in (0, 1):
+            for who in PEOPLE if sample == 0 else (primary,):
+                now, before = (np.array(place_of(who, last - back)) for back in (0, 1))
+                off = 0.0 if who == primary else np.nan if who == 3 else 50.0
+                for step in range(1, 13):
+                    x, y = now + step * (now - before) + off + sample
+                    track = {"f": 10 * (last + step), "p": who, "x": x, "y": y}
+                    lines.append({"track": track | {"prediction_number": sample, "scene_id": id}})
+    return lines
+
+
+def test_a_file_of_another_method_is_scored_by_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    data, file = scenes_file(tmp_path / "hall.ndjson"), tmp_path / "other.ndjson"
+    file.write_text("\n".join(map(json.dumps, foreign_lines())))
+    asked = ["predict", "--data", str(data), "--observe", "9", "--protocol", "trajnet++", "--json"]
+    assert main([*asked, "--forecasts", str(file)]) == 0
+    ours, theirs = (row["total"] for row in json.loads(capsys.readouterr().out)["results"])
+    assert ours["persons"] == theirs["persons"] == 3
+    np.testing.assert_allclose(theirs["ade"], ours["ade"])
+    assert main([*asked[:4], "8", *asked[5:]]) == 2
+    assert (
+        "no scene has 8 + 12 rows of its primary person; the scenes of TrajNet++ have 9 + 12" in capsys.readouterr().err
+    )
+    assert main([*asked[:3], "--protocol", "all", "--observe", "9", "--forecasts", str(file)]) == 2
+    assert "did not predict person 3" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda lines: lines[1:], "rows have scene_id 0, but there is no such scene"),
+        (lambda lines: [one for one in lines if one.get("track", {}).get("p") != 1], "has no predicted rows of its"),
+        (lambda lines: [lines[0], lines[1] | {"track": lines[1]["track"] | {"x": float("nan")}}, *lines[2:]],
+         "column x has a number that is not finite"),
+        (lambda lines: [*lines[:-1]], "person 1 has 23 rows after frame 110, not 2 samples of 12 rows"),
+        (lambda lines: [{"track": lines[1]["track"] | {"p": float("inf")}}], "prediction_number and f must be finite"),
+        (lambda lines: [*lines, {"track": 3}], "is not a file of forecasts, or is damaged"),
+    ],
+)  # fmt: skip
+def test_wrong_scenes_are_refused_in_a_sentence(
+    wrong: Callable[[list[dict[str, dict[str, object]]]], list[object]], words: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.ndjson").write_text("\n".join(map(json.dumps, wrong(foreign_lines()))))
+    with pytest.raises(DataError, match=words):
+        forecasts_of(tmp_path / "a.ndjson")
+
+
+def test_an_array_that_pretends_to_be_huge_is_refused(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
+        for name in ("frame", "id", "sample", "step", "x", "y"):
+            with archive.open(f"{name}.npy", "w") as stream:
+                header = {"descr": "<f8", "fortran_order": False, "shape": (10**12,)}
+                np.lib.format.write_array_header_1_0(stream, header)
+    with pytest.raises(DataError, match="more than 20000000 numbers"):
+        read_forecasts(tmp_path / "a.npz")

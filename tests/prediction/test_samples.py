@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 
 from crowdbot.core import DataError, InputError, stream
-from crowdbot.data import Recording
-from crowdbot.prediction.training.samples import Samples, leave_out, short_recordings, split_in_time
+from crowdbot.data import NoWindowError, Recording
+from crowdbot.prediction.training.samples import (
+    Samples,
+    leave_out,
+    recordings_with_windows,
+    short_recordings,
+    split_in_time,
+)
 
 
 @pytest.fixture(scope="module")
@@ -80,11 +86,11 @@ def test_folders_have_names_too_and_unknown_ones_are_said(recordings: Path, file
 
 def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Path) -> None:
     one = files["biwi_hotel_train"]
-    early, late = split_in_time([one], 0.25)
+    early, late, *_ = split_in_time([one], 0.25)
     assert 0.15 < len(late) / len(one.windows[0]) < 0.26
     file = tmp_path / "clock.txt"
     file.write_text("".join(f"{10 * t} {who} {t} {who}\n" for t in range(100) for who in (1, 2)))
-    early, late = split_in_time([Recording(str(file), fps=25)], 0.25)
+    early, late, *_ = split_in_time([Recording(str(file), fps=25)], 0.25)
     assert early.position[..., 0].max() < late.position[..., 0].min()
     assert (len(early), len(late)) == (41, 21)
     with pytest.raises(InputError, match=r"share 1.5 must be above 0 and below 1"):
@@ -93,6 +99,23 @@ def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Pa
     file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(30)))
     with pytest.raises(DataError, match="11 windows are too few for a validation share of 25%"):
         split_in_time([Recording(str(file), fps=25)], 0.25)
+
+
+def test_recordings_too_short_to_cut_are_used_whole(tmp_path: Path) -> None:
+    every = []
+    for name, rows in zip("abcdefghij", (12, *[30] * 9), strict=True):
+        file = tmp_path / f"{name}.txt"
+        file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(rows)))
+        every.append(Recording(str(file), fps=25))
+    kept, left = recordings_with_windows(every)
+    assert [one.name for one in left] == ["a.txt"]
+    split = split_in_time(kept, 0.25)
+    assert split.whole_validation == ("e.txt", "i.txt")
+    assert split.whole_training == tuple(f"{name}.txt" for name in "bcdfghj")
+    assert (len(split.training), len(split.validation)) == (7 * 11, 2 * 11)
+    assert split_in_time(kept[:2], 0.25).whole_validation == ("c.txt",)
+    with pytest.raises(NoWindowError, match=r"a\.txt: no window of 8 observed and 12 predicted rows was found"):
+        recordings_with_windows(every[:1])
 
 
 def test_what_does_not_fit_together_is_said(files: dict[str, Recording], recordings: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, number, print_json, print_table, progress
-from .recordings import add_file_options, columns, transform
+from .recordings import add_file_options, columns, transform, value_for
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
@@ -114,8 +114,10 @@ def _tracks(source: str, options: argparse.Namespace, report: Progress) -> list[
 
     path = Path(source)
     if path.suffix.lower() != ".xml" and path.is_file():
-        named, metres = dict(columns(options)), transform(options)
-        return [load(path, options.fps, options.format, options.units, columns=named, transform=metres)]
+        fps, units = value_for(path, options.fps), value_for(path, options.units)
+        return [
+            load(path, fps, options.format, units, columns=dict(columns(options)), transform=transform(options, path))
+        ]
     return _run(source, options, report)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -45,7 +46,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--write-forecasts",
         type=Path,
         metavar="FILE",
-        help="file for the forecasts of one predictor: .ndjson, .npz or .parquet",
+        help="file for the forecasts: .ndjson, .npz or .parquet; with several recordings or predictors one file each,"
+        " with their names before the suffix",
     )
     add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
     add(
@@ -95,8 +97,7 @@ def main(options: argparse.Namespace) -> int:
     )
     if options.animate is not None:
         evaluation.window_at(options.animate)  # fails before the evaluation starts
-    if options.write_forecasts is not None:
-        _check_writing(evaluation, options.write_forecasts)
+    written = {} if options.write_forecasts is None else _forecast_files(evaluation, options.write_forecasts)
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".* is used instead$")  # reported once as a note
@@ -108,7 +109,7 @@ def main(options: argparse.Namespace) -> int:
     results = evaluation.results(done)
     if options.write_forecasts is not None:
         with explain_write_errors(options.write_forecasts):
-            _write_forecasts(evaluation, options.write_forecasts)
+            _write_forecasts(evaluation, written)
     if options.out is not None:
         with explain_write_errors(options.out):
             _write_results(options, evaluation, results)
@@ -132,33 +133,46 @@ def _stored(options: argparse.Namespace, found: Sequence[Recording]) -> list[Pre
     return [PredictorSpec(forecasts_of(path)) for path in options.forecasts]
 
 
-def _check_writing(evaluation: Evaluation, file: Path) -> None:
-    """Raise :class:`InputError` unless there is one recording and one predictor, and the suffix is known."""
+def _forecast_files(evaluation: Evaluation, file: Path) -> dict[Path, tuple[Recording, PredictorSpec]]:
+    """Return the files of forecasts: FILE, or with several recordings or predictors one for each of them.
+
+    Raises:
+        InputError: the suffix is unknown, or two files have the same name.
+    """
     from crowdbot.core import InputError
     from crowdbot.data import check_forecast_suffix
 
     check_forecast_suffix(file)
-    if len(evaluation.recordings) != 1 or len(evaluation.specs) != 1:
-        raise InputError(
-            f"--write-forecasts requires one recording and one predictor, not {len(evaluation.recordings)} and"
-            f" {len(evaluation.specs)}"
-        )
+    several = len(evaluation.recordings) > 1, len(evaluation.specs) > 1
+    files: dict[Path, tuple[Recording, PredictorSpec]] = {}
+    for recording in evaluation.recordings:
+        for spec in evaluation.specs:
+            words = [
+                word for word, wanted in zip((Path(recording.name).stem, spec.name), several, strict=True) if wanted
+            ]
+            path = file.with_name(
+                ".".join([file.stem, *(re.sub(r"[^\w.+-]+", "-", word) for word in words)]) + file.suffix
+            )
+            if path in files:
+                raise InputError(f"--write-forecasts {file}: two recordings or predictors would write {path.name}")
+            files[path] = recording, spec
+    return files
 
 
-def _write_forecasts(evaluation: Evaluation, file: Path) -> None:
+def _write_forecasts(evaluation: Evaluation, files: dict[Path, tuple[Recording, PredictorSpec]]) -> None:
     """Predict the windows again and write the forecasts."""
     from crowdbot.benchmark import predict_windows
     from crowdbot.data import Forecast, write_forecasts
 
-    recording, how = evaluation.recordings[0], evaluation
-    past, future = recording.windows
-    size = 1 if how.live else len(past)
-    predictor = how.specs[0].build(recording)
-    parts = [one.forecast for one in predict_windows(
-        predictor, past, future, how.samples, how.best_of, how.seed, how.live, size
-    )]  # fmt: skip
-    write_forecasts(file, past, future, Forecast.concatenate(parts))
-    note(f"wrote the forecasts of {how.specs[0].name} to {file}")
+    how = evaluation
+    for file, (recording, spec) in files.items():
+        past, future = recording.windows
+        size = 1 if how.live else len(past)
+        parts = [one.forecast for one in predict_windows(
+            spec.build(recording), past, future, how.samples, how.best_of, how.seed, how.live, size
+        )]  # fmt: skip
+        write_forecasts(file, past, future, Forecast.concatenate(parts))
+        note(f"wrote the forecasts of {spec.name} to {file}")
 
 
 def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .output import note
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
-__all__ = ["add_file_options", "add_recordings", "columns", "horizon", "print_notes", "recordings", "transform"]
+__all__ = [
+    "add_file_options",
+    "add_recordings",
+    "columns",
+    "horizon",
+    "print_notes",
+    "recordings",
+    "transform",
+    "value_for",
+]
 
 
 def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
@@ -52,6 +61,12 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         "--learn", type=float, default=0.0, metavar="SHARE",
         help="initial share of each recording for learning goals; only the rest is predicted (default: 0)",
     )  # fmt: skip
+    add(
+        "--agents",
+        default="pedestrians",
+        metavar="NAME",
+        help="who is read where the file has labels: pedestrians, or all with cyclists and cars (default: pedestrians)",
+    )
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
@@ -65,16 +80,27 @@ def _add_stage(parser: argparse.ArgumentParser) -> None:
 
 
 def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
-    """Add the options for the content of a file: format, frame rate, units, columns, and the scale of pixels."""
+    """Add the options for the content of a file: format, frame rate, units, columns, and the scale of pixels.
+
+    Frame rate, units and scale may differ between the files of a command, see :func:`value_for`.
+    """
     add = parser.add_argument
     add(
         "--fps",
-        type=float,
+        type=_per_file(float),
+        action="append",
         metavar="FRAMES",
-        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s",
+        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s."
+        " PART=FRAMES is for files with PART in their path; repeatable, the last that fits counts",
     )
     add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
-    add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm, ft or px (default: from the file)")
+    add(
+        "--units",
+        type=_per_file(str),
+        action="append",
+        metavar="NAME",
+        help="units of the coordinates: m, cm, mm, ft or px (default: from the file); PART=NAME as for --fps",
+    )
     add(
         "--columns",
         nargs="+",
@@ -82,8 +108,47 @@ def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup) 
         metavar="NAME=COLUMN",
         help="columns of a CSV or Parquet file: id, frame, time, x, y, label (default: by their usual names)",
     )
-    add("--scale", type=float, metavar="METRES", help="metres per pixel of coordinates in pixels (default: none)")
+    add(
+        "--scale",
+        type=_per_file(float),
+        action="append",
+        metavar="METRES",
+        help="metres per pixel of coordinates in pixels (default: none); PART=METRES as for --fps",
+    )
     add("--homography", type=Path, metavar="FILE", help="text file with the 3 x 3 matrix from pixels to metres")
+
+
+def _per_file(kind: Callable[[str], Any]) -> Callable[[str], tuple[str, Any]]:
+    """Return a parser of ``VALUE`` or ``PART=VALUE`` to the part of a path and the value."""
+
+    def parse(text: str) -> tuple[str, Any]:
+        part, _, value = text.rpartition("=")
+        try:
+            return part, kind(value)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"invalid {kind.__name__} value: {value!r}") from None
+
+    return parse
+
+
+def value_for(path: Path | str, pairs: Sequence[tuple[str, Any]] | None) -> Any:
+    """Return the last value of an option whose part is in the path of a file, or None.
+
+    >>> [value_for(path, [("", 25.0), ("citr", 29.97)]) for path in ("zara01.txt", "citr/front_01.csv")]
+    [25.0, 29.97]
+    """
+    return next((value for part, value in reversed(pairs or ()) if part in str(path)), None)
+
+
+def _check_parts(options: argparse.Namespace) -> None:
+    """Raise :class:`InputError` for a part of ``--fps PART=FRAMES`` and the like that is in no path."""
+    from crowdbot.core import InputError
+
+    paths = [str(path) for path in (*options.data, *(getattr(options, "check", None) or ()))]
+    for name in ("fps", "units", "scale"):
+        for part, value in getattr(options, name) or ():
+            if not any(part in path for path in paths):
+                raise InputError(f"--{name} {part}={value}: no recording has {part!r} in its path")
 
 
 def columns(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
@@ -99,23 +164,24 @@ def columns(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
     return tuple(pairs)
 
 
-def transform(options: argparse.Namespace) -> float | tuple[tuple[float, ...], ...] | None:
-    """Return metres per pixel or a homography of the options, or None."""
+def transform(options: argparse.Namespace, path: Path) -> float | tuple[tuple[float, ...], ...] | None:
+    """Return metres per pixel or a homography of a file, or None."""
     from crowdbot.core import InputError
     from crowdbot.data import read_homography
 
     if options.scale is not None and options.homography is not None:
         raise InputError("--scale and --homography are given; coordinates have one scale")
     if options.homography is None:
-        return None if options.scale is None else float(options.scale)
+        return value_for(path, options.scale)  # type: ignore[no-any-return]
     return tuple(map(tuple, read_homography(options.homography).tolist()))
 
 
-def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
-    """Return the recordings of the options."""
+def recordings(options: argparse.Namespace, paths: Sequence[Path] | None = None) -> tuple[Recording, ...]:
+    """Return the recordings of ``--data``, or of other paths with the same options."""
     from crowdbot.data import Recording
 
-    named, metres = columns(options), transform(options)
+    _check_parts(options)
+    named = columns(options)
     layout = None
     if options.stage is not None:
         from crowdbot.trials import load_layout
@@ -123,11 +189,12 @@ def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
         layout = load_layout(options.stage)
     return tuple(
         Recording(
-            str(path), options.fps, options.format, options.units, options.time_base, options.step, options.observe,
+            str(path), value_for(path, options.fps), options.format, value_for(path, options.units),
+            options.time_base, options.step, options.observe,
             options.predict, options.protocol, options.near, options.late, options.learn, options.every,
-            named, metres, layout,
+            named, transform(options, path), layout, options.agents,
         )
-        for path in options.data
+        for path in (options.data if paths is None else paths)
     )  # fmt: skip
 
 

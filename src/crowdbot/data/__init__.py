@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
     from .place_layout import PlaceLayout
-    from .protocols import PROTOCOLS
+    from .protocols import PROTOCOLS, NoWindowError
     from .readers.hdf5_arrays import read_hdf5_arrays
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
@@ -43,7 +43,7 @@ __getattr__, __dir__ = lazy_exports(
         "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
         "place_layout": ["PlaceLayout"],
         "trajnet_scenes": ["TRAJNET_CATEGORIES", "primary_windows", "scenes_of_category"],
-        "protocols": ["PROTOCOLS"],
+        "protocols": ["PROTOCOLS", "NoWindowError"],
         "readers.hdf5_arrays": ["read_hdf5_arrays"],
         "readers.time_base": ["RowRateError"],
         "readers.ucy": ["UCY_TO_METRES"],
@@ -68,6 +68,7 @@ __all__ = [
     "McapError",
     "McapOpcode",
     "McapReader",
+    "NoWindowError",
     "PlaceLayout",
     "PrimaryScene",
     "Recording",

@@ -18,7 +18,7 @@ from .rows import Runs, runs
 from .track_table import TrackTable
 from .windows import Windows
 
-__all__ = ["LATE", "PROTOCOLS", "cut_past", "cut_windows"]
+__all__ = ["LATE", "PROTOCOLS", "NoWindowError", "cut_past", "cut_windows"]
 
 PROTOCOLS = {
     "all": "all windows with a person who is present at all rows; frames without people are skipped",
@@ -27,6 +27,7 @@ PROTOCOLS = {
     "timesplit": "windows with exact time steps from the last fifth of the recording (Social Ways, Amirian et al."
     " 2019)",
     "timesplit-train": "the training part of timesplit, the first four fifths of the recording",
+    "trajnet++": "the scenes of a TrajNet++ file; only their primary persons are scored (Kothari et al. 2021)",
 }
 LATE = {
     "skip": "people who appear during the observed part are excluded",
@@ -41,6 +42,10 @@ MAX_BYTES = 4 * 1024**3
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+
+class NoWindowError(DataError):
+    """A recording has no window of the protocol, for example because its tracks are too short."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,9 @@ def cut_windows(
     need = min(SHORTEST_FUTURE, predict) if protocol == "partial" else predict
     scored = (rows.runs.behind >= observe) & (rows.runs.ahead >= need) & ~rows.robot
     if not np.any(scored):
-        raise DataError(_why_none(tracks, rows, observe, need, protocol))
+        raise NoWindowError(_why_none(tracks, rows, observe, need, protocol))
+    if protocol == "trajnet++":
+        scored = _primary(tracks, rows, scored, observe, predict)
     scored = _apply_protocol(tracks, rows, scored, protocol)
     if near is not None:
         scored = _near_robot(tracks, rows, scored, near)
@@ -129,8 +136,28 @@ def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: st
     else:
         return scored
     if not np.any(scored):
-        raise DataError(f"{tracks.name}: {why}")
+        raise NoWindowError(f"{tracks.name}: {why}")
     return scored
+
+
+def _primary(tracks: TrackTable, rows: _Rows, scored: Bools, observe: int, predict: int) -> Bools:
+    """Return who is scored and is the primary person of a scene with these rows."""
+    if not tracks.scenes:
+        raise DataError(f"{tracks.name} has no scenes with a primary person, as TrajNet++ files have")
+    known = {(scene.person, scene.first, scene.last) for scene in tracks.scenes}
+    frames = rows.runs.frames
+    primary = np.zeros_like(scored)
+    place = np.flatnonzero(scored)
+    at = rows.runs.instant[place]
+    first, last = frames[at - observe + 1], frames[at + predict]
+    whole = zip(rows.id[place].tolist(), first.tolist(), last.tolist(), strict=True)
+    primary[place] = [person in known for person in whole]
+    if not np.any(primary):
+        raise NoWindowError(
+            f"{tracks.name}: no scene has {observe} + {predict} rows of its primary person;"
+            " the scenes of TrajNet++ have 9 + 12"
+        )
+    return primary
 
 
 def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> Bools:
@@ -146,7 +173,7 @@ def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> 
     if not np.any(close):
         nearest = distance[scored].min()
         how = f"the nearest is {nearest:.2f} m away" if np.isfinite(nearest) else "no robot is present at these times"
-        raise DataError(f"{tracks.name}: no scored person comes within {near} m of a robot; {how}")
+        raise NoWindowError(f"{tracks.name}: no scored person comes within {near} m of a robot; {how}")
     return close
 
 

@@ -8,7 +8,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from crowdbot.core import DataError, InputError
+from crowdbot.core import DataError, InputError, did_you_mean
 
 from .file_formats import load
 from .place_layout import PlaceLayout
@@ -17,6 +17,7 @@ from .windows import Windows
 
 __all__ = ["Recording"]
 
+AGENTS = ("pedestrians", "all")
 EPISODE_STEP = 0.4
 """Time step [s] of recorded trials, which have no annotation rate."""
 
@@ -34,9 +35,11 @@ class Recording:
         columns: pairs of a quantity and the name of its column, see :func:`crowdbot.load`.
         transform: metres per pixel, or the rows of a homography to metres, see :func:`crowdbot.load`.
         layout: walls and exits of the place, instead of the walls of the file.
+        agents: ``pedestrians`` leaves out the cyclists, cars and others that the labels of a file name; ``all`` keeps
+            them.
 
     Raises:
-        InputError: ``learn`` is not in [0, 1), or ``every`` is below 1.
+        InputError: ``learn`` is not in [0, 1), ``every`` is below 1, or ``agents`` is unknown.
     """
 
     path: str
@@ -55,10 +58,14 @@ class Recording:
     columns: tuple[tuple[str, str], ...] = ()
     transform: float | tuple[tuple[float, ...], ...] | None = None
     layout: PlaceLayout | None = None
+    agents: str = "pedestrians"
 
     def __post_init__(self) -> None:
         if self.step is not None and not self.step > 0.0:
             raise InputError(f"step = {self.step} s must be above 0, such as 0.4 s")
+        if self.agents not in AGENTS:
+            near = did_you_mean(self.agents, AGENTS)
+            raise InputError(f"unknown agents {self.agents!r}{near}; known are {', '.join(AGENTS)}")
         if self.every < 1:
             raise InputError(f"every = {self.every} must be at least 1")
         if not 0.0 <= self.learn < 1.0:
@@ -110,6 +117,8 @@ class Recording:
 def _tracks(recording: Recording) -> Trajectories:
     one = recording
     tracks = load(one.path, one.fps, one.format, one.units, one.time_base, dict(one.columns), one.transform)
+    if one.agents == "pedestrians":
+        tracks = tracks.without_other_agents()
     if tracks.units == "px" and tracks.homography is not None:
         tracks = tracks.metres()
     if one.layout is not None:

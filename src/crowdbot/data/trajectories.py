@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -23,7 +24,7 @@ from crowdbot.core import (
     draw_svg,
 )
 
-from .protocols import cut_past, cut_windows
+from .protocols import NoWindowError, cut_past, cut_windows
 from .resample import resample
 from .rows import runs
 from .track_table import PrimaryScene, TrackTable
@@ -32,7 +33,13 @@ from .windows import Windows
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PrimaryScene", "Trajectories"]
+__all__ = ["OTHER_AGENTS", "PrimaryScene", "Trajectories"]
+
+OTHER_AGENTS = frozenset(
+    ("animal", "bicycle", "bicyclist", "bike", "biker", "bus", "car", "cart", "cyclist", "motorcycle", "motorcyclist",
+     "scooter", "skateboarder", "skater", "trailer", "tram", "truck", "truck_bus", "van", "veh", "vehicle")
+)  # fmt: skip
+"""Labels of tracks that are not of pedestrians, in lower case, as in SDD, inD and CITR."""
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -117,6 +124,34 @@ class Trajectories(TrackTable):
             raise DataError(f"{self.name} has no track of id {missing}; ids go from {self.ids[0]} to {self.ids[-1]}")
         return self._where(np.isin(self.id, np.asarray(wanted, dtype=np.int64)))
 
+    @property
+    def other_agents(self) -> dict[int, str]:
+        """Labels of the tracks that are neither of pedestrians nor of robots, by id, see :data:`OTHER_AGENTS`.
+
+        >>> kinds = {1: "Pedestrian", 2: "Biker"}
+        >>> Trajectories([1, 2], [0, 0], [0, 1], [0, 0], row_rate=2.5, labels=kinds).other_agents
+        {2: 'Biker'}
+        """
+        return {
+            id: label for id, label in self.labels.items() if label.lower() in OTHER_AGENTS and id not in self.robots
+        }
+
+    def without_other_agents(self) -> Trajectories:
+        """Return the tracks without those of :attr:`other_agents`; the note counts them.
+
+        Raises:
+            NoWindowError: no track is left. It is a :class:`DataError`.
+        """
+        other = self.other_agents
+        if not other:
+            return self
+        kept = ~np.isin(self.id, np.asarray(sorted(other), dtype=np.int64))
+        counts = ", ".join(f"{count} {label}" for label, count in sorted(Counter(other.values()).items()))
+        if not np.any(kept):
+            raise NoWindowError(f"{self.name} has no pedestrians; the labels of its tracks are {counts}")
+        note = "; ".join(filter(None, (self.note, f"left out by their labels: {counts}")))
+        return dataclasses.replace(self._where(kept), note=note)
+
     def split(self, fraction: float, by: str = "time") -> tuple[Trajectories, Trajectories]:
         """Return a first part and the rest.
 
@@ -194,14 +229,15 @@ class Trajectories(TrackTable):
 
         Args:
             observe, predict: rows of the two parts.
-            protocol: ``all``, ``sgan``, ``partial``, ``timesplit`` or ``timesplit-train``: see ``PROTOCOLS``.
+            protocol: ``all``, ``sgan``, ``partial``, ``timesplit``, ``timesplit-train`` or ``trajnet++``: see
+                ``PROTOCOLS``.
             near: score only people within this distance of a robot at the last observed row [m].
             late: people who appear during the observed part are excluded (``skip``) or, with at least two rows,
                 extrapolated backwards with their first velocity (``extrapolate``); they are never scored.
 
         Raises:
             InputError: an argument is not allowed.
-            DataError: there is no window; the message states the reason.
+            NoWindowError: there is no window; the message states the reason. It is a :class:`DataError`.
         """
         return cut_windows(self, observe, predict, protocol, near, late)
 

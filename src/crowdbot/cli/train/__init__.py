@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from crowdbot.cli.output import add_json, note, number, print_json, print_table, progress
 from crowdbot.cli.recordings import add_recordings, print_notes, recordings
@@ -17,7 +17,7 @@ from .navigator import NAVIGATOR, add_navigator, check_options, train_policy
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
-    from crowdbot.prediction import LogRow, Samples, TrainingResult
+    from crowdbot.prediction import LogRow, TimeSplit, TrainingResult
 
 LEARNERS = ("anchor-net", "social-ways")
 EPOCHS = 100
@@ -38,7 +38,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.2,
         metavar="SHARE",
-        help="final share of each recording for validation, without --check (default: 0.2)",
+        help="final share of each recording for validation, without --check (default: 0.2); recordings too short for it"
+        " are used whole, for training or validation",
     )
     add(
         "--leave-out",
@@ -122,17 +123,20 @@ def _train_predictor(options: argparse.Namespace) -> int:
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
-    training_set, (samples, check), excluded = _samples(options)
+    data = _read(options)
+    samples, check = data.split.training, data.split.validation
     start = str(getattr(options, "from") or "")
     model = make_learner(
         options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device,
         start,
     )  # fmt: skip
     if not options.json:
-        print_notes(training_set)
-        for sentence in short_recordings(training_set):
+        print_notes(data.recordings)
+        for sentence in short_recordings(data.recordings):
             note(f"warning: {sentence}")
-        size = f"{samples.people} futures in {len(samples)} windows, {len(training_set)} recordings"
+        for sentence in _remarks(options, data):
+            note(sentence)
+        size = f"{samples.people} futures in {len(samples)} windows, {len(data.recordings)} recordings"
         note(f"training {options.what} on {size}")
     before = dict(model.check()) if start else None
     with (
@@ -149,23 +153,57 @@ def _train_predictor(options: argparse.Namespace) -> int:
             _log_callback(options.json, events),
             lambda update, total: report(f"train {options.what}", update / total),
         )
-    _print_result(options, done, options.out / BEST, excluded, before)
+    _print_result(options, done, options.out / BEST, data, before)
     return 0
 
 
-def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[Samples, Samples], list[str]]:
-    """Return the training recordings, the training and validation samples, and the excluded files."""
-    from crowdbot.prediction import Samples, leave_out, split_in_time
+class _TrainingData(NamedTuple):
+    """What a training reads.
 
-    found, left = list(recordings(options)), list[Any]()
+    Fields:
+        recordings: the training recordings.
+        split: training and validation samples.
+        test: paths of the recordings of ``--leave-out``.
+        short: recordings without a window, which are left out.
+    """
+
+    recordings: tuple[Recording, ...]
+    split: TimeSplit
+    test: list[str]
+    short: list[Recording]
+
+
+def _read(options: argparse.Namespace) -> _TrainingData:
+    """Return the recordings and samples of the options."""
+    from crowdbot.prediction import Samples, TimeSplit, leave_out, recordings_with_windows, split_in_time
+
+    found, test = list(recordings(options)), list[Any]()
     if options.leave_out is not None:
-        found, left = leave_out(found, options.leave_out)
+        found, test = leave_out(found, options.leave_out)
+    found, short = recordings_with_windows(found)
+    paths = [one.path for one in test]
     if options.check is None:
-        return tuple(found), split_in_time(found, options.hold), [one.path for one in left]
-    watched = list(recordings(argparse.Namespace(**{**vars(options), "data": options.check})))
+        return _TrainingData(tuple(found), split_in_time(found, options.hold), paths, short)
+    watched = list(recordings(options, options.check))
     if options.leave_out is not None:
         watched, _ = leave_out(watched, options.leave_out)
-    return tuple(found), (Samples.of(found), Samples.of(watched)), [one.path for one in left]
+    watched, more = recordings_with_windows(watched)
+    return _TrainingData(tuple(found), TimeSplit(Samples.of(found), Samples.of(watched)), paths, [*short, *more])
+
+
+def _remarks(options: argparse.Namespace, data: _TrainingData) -> list[str]:
+    """Return a line on the recordings that are left out, and on those that are not cut in time."""
+    lines = []
+    if data.short:
+        names = [one.name for one in data.short]
+        words = [one.path if names.count(one.name) > 1 else one.name for one in data.short]
+        rows = f"{options.observe} + {options.predict} rows of {data.split.training.dt:.4g} s"
+        lines.append(f"left out, without a window of {rows}: {', '.join(words)}")
+    uses = (data.split.whole_training, "training"), (data.split.whole_validation, "validation")
+    parts = [f"{', '.join(names)} for {use}" for names, use in uses if names]
+    if parts:
+        lines.append(f"too short for --hold {options.hold:g}, used whole: {'; '.join(parts)}")
+    return lines
 
 
 class _Events:
@@ -214,14 +252,16 @@ def _log_callback(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
 
 
 def _print_result(
-    options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str], before: LogRow | None
+    options: argparse.Namespace, done: TrainingResult, file: Path, data: _TrainingData, before: LogRow | None
 ) -> None:
     best = done.rows[done.best] if done.best is not None else {}
     if options.json:
         print_json(
             {"checkpoint": str(file), "updates": done.updates, "stopped_early": done.stopped,
              "seconds": done.seconds, "start": before, "best": dict(best), "log": [dict(row) for row in done.rows],
-             "left_out": left}
+             "left_out": data.test, "without_windows": [one.path for one in data.short],
+             "used_whole": {"training": list(data.split.whole_training),
+                            "validation": list(data.split.whole_validation)}}
         )  # fmt: skip
         return
     rows = [] if before is None else [("start", "0", *(number(before.get(name)) for name in ("ade", "fde")))]
@@ -238,6 +278,6 @@ def _print_result(
         note("warning: the validation errors are not below those of the start; use the start, or more recordings")
     from crowdbot.prediction import WEIGHTS_FIELDS
 
-    data = " ".join(left) or "PATH"
+    test = " ".join(data.test) or "PATH"
     flags = f"--predictor {options.what} --set {WEIGHTS_FIELDS[options.what]}={file}"
-    note(f"evaluate with: crowdbot predict {flags} --samples 20 --data {data}")
+    note(f"evaluate with: crowdbot predict {flags} --samples 20 --data {test}")

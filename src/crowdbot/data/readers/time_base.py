@@ -28,6 +28,8 @@ MIN_ROW_RATE, MAX_ROW_RATE = 0.5, 15.0
 """Range of row rates of recordings of people [1/s]; another ``fps`` is not taken for one."""
 SLOWEST, FASTEST = 0.02, 5.0
 """Range of the median speed of people [m/s]."""
+SPEED_TIME = 0.4
+"""Time over which speeds are measured in recordings with shorter steps [s]."""
 MOVING, SLOW_WALK, FAST_WALK = 0.2, 0.3, 2.5
 """Speed above which people move, and range of the median speed of those who do [m/s]."""
 
@@ -134,14 +136,33 @@ def _median_speed(tracks: Trajectories) -> float:
 
 
 def _speeds(tracks: Trajectories) -> NDArray[np.float64]:
-    """Return the speeds of people [m/s]; none if the units are pixels."""
+    """Return the speeds of people [m/s]; none if the units are pixels.
+
+    Rows of a video are compared with those about 0.4 s before: boxes of whole pixels stand still from frame to frame.
+    """
     if tracks.units != "m":
         return np.empty(0)
-    people = ~np.isin(tracks.id, np.asarray(sorted(tracks.robots), dtype=np.int64))
+    others = sorted(tracks.robots | tracks.other_agents.keys())
+    people = ~np.isin(tracks.id, np.asarray(others, dtype=np.int64))
     with np.errstate(over="ignore", invalid="ignore"):
+        apart = _speeds_over(tracks, people, round(SPEED_TIME / tracks.dt))
+        if len(apart):
+            return apart
         velocity = tracks.velocities()[people]
         speed = np.hypot(velocity[:, 0], velocity[:, 1])
     return np.asarray(speed[~np.isnan(speed)])
+
+
+def _speeds_over(tracks: Trajectories, people: NDArray[np.bool_], rows: int) -> NDArray[np.float64]:
+    """Return the speeds of people between rows of a track that are this many rows apart [m/s]; none below 2 rows."""
+    if rows < 2:
+        return np.empty(0)
+    order = np.lexsort((tracks.frame[people], tracks.id[people]))
+    id, frame = tracks.id[people][order], tracks.frame[people][order]
+    place = tracks.position[people][order]
+    whole = (id[rows:] == id[:-rows]) & (frame[rows:] - frame[:-rows] == rows * tracks.frame_step)
+    moved = (place[rows:] - place[:-rows])[whole]
+    return np.asarray(np.hypot(moved[:, 0], moved[:, 1]) / (rows * tracks.dt))
 
 
 def _impossible(speed: float) -> bool:

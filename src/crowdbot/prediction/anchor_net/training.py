@@ -97,7 +97,7 @@ class AnchorTraining:
 
 
 PRESETS = {"shipped": AnchorTraining(), "general": AnchorTraining(reach=REACH, line=LINE_SHARE, variation=GENERAL)}
-"""Recipes of the leave-one-out weights and of the default weights."""
+"""Recipes: of the leave-one-out weights, and for other places and trackers."""
 
 
 def learner(
@@ -113,7 +113,7 @@ def learner(
 
     Args:
         settings: name of the preset: ``shipped``, the recipe of the leave-one-out weights (default), or ``general``,
-            that of the default weights: bounded features, and augmentation for other places and trackers.
+            with bounded features and augmentation for other places and trackers.
         values: settings that differ from the preset, including those of the augmentation, as text.
         samples, watched: training data and validation data.
         seed: random seed.

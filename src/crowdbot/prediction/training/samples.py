@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,9 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
-from crowdbot.data import Recording, Windows
+from crowdbot.data import NoWindowError, Recording, Windows
 
-__all__ = ["FOLDS", "Samples", "Scenes", "leave_out", "short_recordings", "split_in_time"]
+__all__ = [
+    "FOLDS",
+    "Samples",
+    "Scenes",
+    "TimeSplit",
+    "leave_out",
+    "recordings_with_windows",
+    "short_recordings",
+    "split_in_time",
+]
 
 FOLDS = {
     "eth": ("biwi_eth",),
@@ -84,7 +94,7 @@ class Samples:
 
         Raises:
             InputError: there is no recording, or they differ in time step, units or rows.
-            DataError: a recording has no window.
+            NoWindowError: a recording has no window, see :func:`recordings_with_windows`.
         """
         if not recordings:
             raise InputError("there is no training recording")
@@ -237,32 +247,98 @@ def _is_named(text: str, begins: tuple[str, ...]) -> bool:
     return any(text.startswith(begin) or begin in words for begin in begins)
 
 
-def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Samples, Samples]:
+def recordings_with_windows(recordings: Sequence[Recording]) -> tuple[list[Recording], list[Recording]]:
+    """Return the recordings that have a window, and those that have none, for example because they are too short.
+
+    Raises:
+        NoWindowError: no recording has a window.
+        DataError: a recording cannot be read.
+    """
+    kept, left, reason = list[Recording](), list[Recording](), ""
+    for one in recordings:
+        try:
+            _ = one.windows
+        except NoWindowError as error:
+            left.append(one)
+            reason = reason or str(error)
+        else:
+            kept.append(one)
+    if left and not kept:
+        others = f"; nor has any other of {len(left)} recordings" if len(left) > 1 else ""
+        raise NoWindowError(f"{reason}{others}")
+    return kept, left
+
+
+class TimeSplit(NamedTuple):
+    """Training and validation samples without common rows.
+
+    Fields:
+        training, validation: the samples.
+        whole_training, whole_validation: names of the recordings that are too short to be cut, and therefore in one of
+            the two as a whole.
+    """
+
+    training: Samples
+    validation: Samples
+    whole_training: tuple[str, ...] = ()
+    whole_validation: tuple[str, ...] = ()
+
+
+def split_in_time(recordings: Sequence[Recording], share: float) -> TimeSplit:
     """Split recordings in time into training scenes and validation scenes without common rows.
+
+    The last ``share`` of the windows of each recording is for validation. A recording that is too short for that is
+    used as a whole: with a share of 0.2, every fifth of them for validation; the last one if there is no other
+    validation.
 
     Raises:
         InputError: the share is not between 0 and 1.
+        NoWindowError: a recording has no window.
         DataError: no scene is left on one side.
     """
     if not 0.0 < share < 1.0:
         raise InputError(f"the validation share {share} must be above 0 and below 1")
-    early, late = [], []
-    for one in recordings:
+    sides: dict[int, tuple[Samples | None, Samples | None]] = {}
+    whole: list[tuple[int, Samples]] = []
+    for place, one in enumerate(recordings):
         past, future = one.windows
         border = past.frame[min(len(past) - 1, int(len(past) * (1.0 - share))), 0]
         before, after = future.frame[:, -1] < border, past.frame[:, 0] >= border
-        if not before.any() or not after.any():
-            raise DataError(f"{one.path}: {len(past)} windows are too few for a validation share of {share:.0%}")
-        early.append(Samples.from_windows(past[before], future[before], one.name))
-        late.append(Samples.from_windows(past[after], future[after], one.name))
-    return Samples.concatenate(early), Samples.concatenate(late)
+        if before.any() and after.any():
+            early = Samples.from_windows(past[before], future[before], one.name)
+            sides[place] = early, Samples.from_windows(past[after], future[after], one.name)
+        else:
+            whole.append((place, Samples.from_windows(past, future, one.name)))
+    if whole and len(recordings) == 1:
+        raise DataError(
+            f"{recordings[0].path}: {len(whole[0][1])} windows are too few for a validation share of {share:.0%}"
+        )
+    late = {place for rank, (place, _) in enumerate(whole) if _is_due(rank, share)}
+    if not sides and not late:
+        late = {whole[-1][0]}
+    sides |= {place: (None, part) if place in late else (part, None) for place, part in whole}
+    ordered = [sides[place] for place in range(len(recordings))]
+    return TimeSplit(
+        Samples.concatenate([early for early, _ in ordered if early is not None]),
+        Samples.concatenate([part for _, part in ordered if part is not None]),
+        tuple(recordings[place].name for place, _ in whole if place not in late),
+        tuple(recordings[place].name for place, _ in whole if place in late),
+    )
+
+
+def _is_due(rank: int, share: float) -> bool:
+    """Return whether the number of validation recordings grows at this one: every fifth with a share of 0.2."""
+    return math.floor((rank + 1) * share + 1e-9) > math.floor(rank * share + 1e-9)
 
 
 def short_recordings(recordings: Sequence[Recording]) -> list[str]:
-    """Return a warning for each recording shorter than 3 minutes."""
-    found = []
-    for one in recordings:
-        seconds = float(one.rest.time[-1] - one.rest.time[0])
-        if seconds < ENOUGH:
-            found.append(f"{one.name} has {seconds:.0f} s; more than 3 minutes are recommended for training")
-    return found
+    """Return a warning for each recording shorter than 3 minutes; one for all if more than three are."""
+    found = [(one.name, float(one.rest.time[-1] - one.rest.time[0])) for one in recordings]
+    short = [(name, seconds) for name, seconds in found if seconds < ENOUGH]
+    if len(short) > 3:
+        low, high = min(short, key=lambda one: one[1])[1], max(short, key=lambda one: one[1])[1]
+        return [
+            f"{len(short)} of {len(found)} recordings have {low:.0f} to {high:.0f} s;"
+            " more than 3 minutes are recommended for training"
+        ]
+    return [f"{name} has {seconds:.0f} s; more than 3 minutes are recommended for training" for name, seconds in short]
