@@ -164,12 +164,15 @@ class HeadwayLayer(CrowdModel):
 
     def _avoid_robots(self, scene: Scene, dt: float) -> Scene:
         """Return the scene with the desired velocities of people who keep away from robots."""
-        laws = parameter_rows(self, AVOIDANCE, scene.shape)
-        if scene.robot is None or not np.any(laws[:, 0]):
+        for name in AVOIDANCE:  # a wrong number of values is an error without robots, too
+            if np.ndim(value := getattr(self, name)):
+                per_agent(value, scene.shape, name)
+        if scene.robot is None or not np.any(self.robot_gap):
             return scene
         robots = robots_in(scene.robot & scene.active & scene.visible)
         if robots.shape[1] == 0:
             return scene
+        laws = parameter_rows(self, AVOIDANCE, scene.shape)
         start = begin_rows(scene, dt)
         wish = np.empty((*scene.shape, 2))
         values = start.agents, start.walking, robots, laws
