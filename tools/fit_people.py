@@ -61,7 +61,9 @@ their tolerances. Each profile moves one value over its range and keeps the othe
 cost is not significantly above the lowest one (95 % bootstrap over experiments within their kinds) by more than 0.05,
 one tolerance, since whole crowds have one start; a value is identified if the interval ends inside the range.
 `not from above` means that larger values are not worse. Intervals are conditional: with other values free they are
-wider. Where the part of tracks is 0, crowds alone determine the value: forecasts have no walls.
+wider. Where the part of tracks is 0, crowds alone determine the value: forecasts have no walls. The four values for
+two-way flows (oncoming, headway oncoming, sidestep and step back) are chosen by
+[crowds in trials](trial-crowds.md), whose long two-way corridors are not part of this cost: nothing here determines them.
 """
 
 
