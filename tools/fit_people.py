@@ -63,7 +63,8 @@ one tolerance, since whole crowds have one start; a value is identified if the i
 `not from above` means that larger values are not worse. Intervals are conditional: with other values free they are
 wider. Where the part of tracks is 0, crowds alone determine the value: forecasts have no walls. The four values for
 two-way flows (oncoming, headway oncoming, sidestep and step back) are chosen by
-[crowds in trials](trial-crowds.md), whose long two-way corridors are not part of this cost: nothing here determines them.
+[crowds in trials](trial-crowds.md), whose long two-way corridors are not part of this cost: nothing here determines
+them.
 """
 
 

@@ -128,7 +128,8 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
     points = {name: _points(model, name, poses) for name in model.links}
     solid = [rows for rows in points.values() if len(rows)]
     ground = float(min(rows[:, 2].min() for rows in solid)) if solid else 0.0
-    found, loose = [], []
+    found: list[FoundWheel] = []
+    loose: list[FoundWheel] = []
     for joint in model.movable:
         wheel = _wheel(model, joint, poses, points[joint.child], ground)
         if wheel is not None:
