@@ -1,6 +1,7 @@
 """Trials from files of Vadere, UMANS and pedsim: what is read, that it runs, and wrong files."""
 
 import copy
+import dataclasses
 import json
 
 import numpy as np
@@ -217,6 +218,74 @@ def test_pedsim_becomes_a_trial_that_runs(tmp_path):
     file.write_text("<scenario/>")
     with pytest.raises(TrialError, match="no agents that are people"):
         import_pedsim(file)
+
+
+HALL = """<scenario>
+  <obstacle x1="-5" y1="4" x2="25" y2="4"/><obstacle x1="-5" y1="-4" x2="25" y2="-4"/>
+  <waypoint id="door" x="1" y="0" r="1" b="1"/><waypoint id="shop" x="9" y="1" r="1"/>
+  <waypoint id="way_out" x="18" y="0" r="1.5" b="2"/><queue id="till" x="12" y="-1" direction="90"/>
+  {}
+</scenario>"""
+
+
+def hall(tmp_path, text):
+    file = tmp_path / "hall.xml"
+    file.write_text(HALL.format(text))
+    done = import_pedsim(file)
+    check_trial(done.trials[0][1])
+    return done.trials[0][1], done.left_out
+
+
+@pytest.mark.parametrize(
+    ("stops", "xs", "then"),
+    [
+        (("door", "way_out"), [1.0, 18.0], "leave"),
+        (("shop", "way_out", "door"), [9.0, 18.0], "leave"),
+        (("door", "shop"), [1.0, 9.0], "again"),
+    ],
+)
+def test_a_source_of_pedsim_becomes_a_source(tmp_path, stops, xs, then):
+    ways = "".join(f'<addwaypoint id="{stop}"/>' for stop in stops)
+    trial, notes = hall(tmp_path, f'<source x="0" y="0" n="3" dx="2" dy="3" type="0">{ways}</source>')
+    (source,) = trial.sources
+    assert (source.rate, source.timing, source.zone[0], source.zone[2]) == (0.6, "regular", (-1.0, -1.5), (1.0, 1.5))
+    assert ([stop.x for stop in trial.journeys[0].stops], trial.journeys[0].then) == (xs, then)
+    assert any("never leave" in note for note in notes) == (then == "again")
+    assert any("n people enter in 5 s" in note for note in notes)
+
+
+def test_people_of_a_source_of_pedsim_enter_and_leave_at_the_sink(tmp_path):
+    ways = '<addwaypoint id="way_out"/>'
+    trial, _ = hall(tmp_path, f'<source x="0" y="0" n="2" dx="2" dy="3">{ways}</source>')
+    tracks = run(dataclasses.replace(trial, duration=25.0)).tracks(0.4)
+    first = tracks.x[tracks.id == tracks.id.min()]
+    assert len(np.unique(tracks.id)) > 5 and np.ptp(first) > 12.0
+    assert len(first) * 0.4 < 20.0
+
+
+@pytest.mark.parametrize(
+    ("lost", "why"),
+    [
+        ('<agent x="4" y="0" n="2" dx="1" dy="1"><addwaypoint id="roof"/></agent>', "there is no waypoint 'roof'"),
+        ('<source x="4" y="0" n="2"><addqueue id="bar"/></source>', "there is no queue 'bar'"),
+        ('<agent x="4" y="0" n="1" type="2"><addwaypoint id="roof"/></agent>', "there is no waypoint 'roof'"),
+        ('<source x="4" y="0" n="2"/>', "it has no waypoints"),
+    ],
+)
+def test_a_cluster_of_pedsim_without_its_waypoint_is_left_out(tmp_path, lost, why):
+    kept = '<agent x="2" y="0" n="4" dx="2" dy="2"><addwaypoint id="shop"/></agent>'
+    trial, notes = hall(tmp_path, kept + lost)
+    assert (len(trial.spawners), trial.sources, trial.robots) == (1, (), ())
+    assert [note for note in notes if why in note][0].startswith(f"<{lost[1:].split()[0]}> in line 5 is left out: ")
+    with pytest.raises(TrialError, match="no agents that are people, and no sources; .*is left out: "):
+        hall(tmp_path, lost)
+
+
+def test_queues_of_pedsim_are_places_to_walk_to(tmp_path):
+    text = '<agent x="2" y="0" n="1"><addqueue id="till"/><addwaypoint id="way_out"/></agent>'
+    trial, notes = hall(tmp_path, text)
+    assert [stop.x for stop in trial.journeys[0].stops] == [12.0, 18.0]
+    assert "queues are not imported: people walk to the place of a queue and do not wait there" in notes
 
 
 def test_the_kind_of_file_is_found(tmp_path, umans):
