@@ -259,7 +259,8 @@ def test_people_of_a_source_of_pedsim_enter_and_leave_at_the_sink(tmp_path):
     trial, _ = hall(tmp_path, f'<source x="0" y="0" n="2" dx="2" dy="3">{ways}</source>')
     tracks = run(dataclasses.replace(trial, duration=25.0)).tracks(0.4)
     first = tracks.x[tracks.id == tracks.id.min()]
-    assert len(np.unique(tracks.id)) > 5 and np.ptp(first) > 12.0
+    assert len(np.unique(tracks.id)) > 5
+    assert np.ptp(first) > 12.0
     assert len(first) * 0.4 < 20.0
 
 
@@ -276,7 +277,7 @@ def test_a_cluster_of_pedsim_without_its_waypoint_is_left_out(tmp_path, lost, wh
     kept = '<agent x="2" y="0" n="4" dx="2" dy="2"><addwaypoint id="shop"/></agent>'
     trial, notes = hall(tmp_path, kept + lost)
     assert (len(trial.spawners), trial.sources, trial.robots) == (1, (), ())
-    assert [note for note in notes if why in note][0].startswith(f"<{lost[1:].split()[0]}> in line 5 is left out: ")
+    assert next(note for note in notes if why in note).startswith(f"<{lost[1:].split()[0]}> in line 5 is left out: ")
     with pytest.raises(TrialError, match="no agents that are people, and no sources; .*is left out: "):
         hall(tmp_path, lost)
 

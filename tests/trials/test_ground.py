@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 from PIL import Image
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.recording import run
-from crowdbot.trials import Stage, load_trial, parse_trial, trial_xml
+from crowdbot.recording import replay, run
+from crowdbot.trials import Stage, Wall, load_trial, parse_trial, trial_xml
 from crowdbot.trials.files import stage_maps
 from trial_texts import written
 
@@ -68,7 +70,23 @@ def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
         ('area="POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))"', "the WKT has a polygon that is not simple: self-intersection"),
         ('area="POLYGON EMPTY"', "holds nothing, it must hold polygons"),
         ('area="GEOMETRYCOLLECTION (POINT (1 1))"', "holds Point, it must hold polygons"),
-        ('area="POLYGON ((0 0, 1e9 0, 1e9 1e9, 0 0))"', "more than 1e+06 m from the origin"),
+        ('area="POLYGON ((0 0, 1e9 0, 1e9 1e9, 0 0))"', "not finite, or more than 1e+08 m from the origin"),
+        (
+            'area="POLYGON ((395130 5714230, 395150 5714230, 395150 5714240, 395130 5714230))"',
+            'the WKT has corners more than 1e+06 m from the origin of the trial; with offset="-395140,-5714235" its'
+            " centre is the origin",
+        ),
+        (
+            'area="POLYGON ((0 0, 9 0, 9 9, 0 0))" offset="2e6,0"',
+            'more than 1e+06 m from the origin of the trial; with offset="-4,-4"',
+        ),
+        ('area="POLYGON ((0 0, 9 0, 9 9, 0 0))" offset="2e9,0"', "must lie within 1e+08 m of the origin"),
+        ('area="POLYGON ((0 0, 9 0, 9 9, 0 0))" offset="1,2 3,4"', 'offset="1,2 3,4" must be one point x,y'),
+        ('area="POLYGON ((9e6 0, 9e6 9, 9e6 9, 9e6 0))" offset="1"', "where a point x,y should be"),
+        ('area="POLYGON ((0 0, 9 0, 9 9, 0 0))" rotation="7"', "rotation"),
+        ('walkable="0,0 9,0 9,9" offset="1,0"', "offset acts on area and map only, and the stage has neither"),
+        ('walkable="0,0 9,0 9,9" rotation="1"', "rotation acts on area and map only, and the stage has neither"),
+        ('map="far.yaml"', 'far.yaml has corners more than 1e+06 m from the origin of the trial; with offset="'),
         ('area="none.wkt"', "there is no file 'none.wkt'"),
         ('area="../area.wkt"', "lies outside"),
         ('area="/etc/passwd"', "lies outside"),
@@ -104,6 +122,8 @@ def test_wrong_grounds_are_told(tmp_path: Path, stage: str, sentence: str) -> No
         "many.wkt": f"POLYGON (({', '.join(f'{x} {y}' for x, y in [*ring, ring[0]])}))",
         "noimage.yaml": YAML.replace("map.pgm", "gone.pgm"),
         "outside.yaml": YAML.replace("map.pgm", "../../map.pgm"),
+        "far.yaml": YAML.replace("[-1.0, -0.5", "[395130.0, 5714230.0"),
+        "map.pgm": pgm(ROOM),
         "notpgm.yaml": YAML.replace("map.pgm", "bad.bin"),
         "short.yaml": YAML.replace("map.pgm", "short.pgm"),
         "short.pgm": b"P5 50 50 255\nabc",
@@ -266,3 +286,70 @@ def test_a_map_of_noise_is_refused(
     written(tmp_path, f"P5 {size} {size} 255\n".encode() + noise.tobytes(), "map.pgm")
     with pytest.raises(InputError, match=sentence):
         Stage(map="map.yaml", folder=tmp_path)
+
+
+def clearances(stage: Stage) -> list[float]:
+    """Return the clearance at some places of a stage."""
+    return [round(float(room), 6) for room in stage.clearance([(1, 3), (3, 3), (5, 3), (8, 1), (11, 3), (2, 5.5)])]
+
+
+def house_at(x: float, y: float, turn: float) -> str:
+    """Return the house turned about its corner and moved."""
+    shape = shapely.affinity.rotate(shapely.from_wkt(HOUSE), turn, origin=(0.0, 0.0), use_radians=True)
+    return str(shapely.to_wkt(shapely.affinity.translate(shape, x, y), rounding_precision=9))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.5 * np.pi, 0.3, -2.0])
+@pytest.mark.parametrize(("x", "y"), [(0.0, 0.0), (395_130.0, 5_714_230.0), (-1.9e7, 4.2e6)])
+def test_an_area_is_moved_and_turned(tmp_path: Path, x: float, y: float, turn: float) -> None:
+    text = house_at(x, y, turn)
+    written(tmp_path, text, "far.wkt")
+    shape = shapely.geometry.mapping(shapely.from_wkt(text))
+    written(tmp_path, json.dumps(shape), "far.geojson")
+    for area in ("far.wkt", "far.geojson", text):
+        stage = Stage(area=area, offset=[(-x, -y)], rotation=-turn, folder=tmp_path)
+        assert clearances(stage) == pytest.approx(clearances(Stage(area=HOUSE)), abs=1e-5)
+        assert np.concatenate(stage.rings).max(axis=0) == pytest.approx([10.0, 6.0], abs=1e-5)
+
+
+def test_a_map_is_moved_and_turned(tmp_path: Path) -> None:
+    (tmp_path / "map.pgm").write_bytes(pgm(ROOM))
+    written(tmp_path, YAML, "here.yaml")
+    written(tmp_path, YAML.replace("[-1.0, -0.5", "[395129.0, 5714229.5"), "far.yaml")
+    here, far = (
+        Stage(map=name, folder=tmp_path, offset=offset)
+        for name, offset in (("here.yaml", ()), ("far.yaml", "-395130,-5714230"))
+    )
+    assert np.concatenate(far.rings) == pytest.approx(np.concatenate(here.rings), abs=1e-6)
+    turned = Stage(map="here.yaml", folder=tmp_path, rotation=0.5 * np.pi)
+    x, y = np.concatenate(here.rings).T
+    assert np.concatenate(turned.rings) == pytest.approx(np.column_stack([-y, x]), abs=1e-9)
+
+
+def test_walls_of_the_trial_are_not_moved() -> None:
+    stage = Stage(area=house_at(100.0, 0.0, 0.0), offset="-100,0", walls=[Wall([(1, 1), (1, 5)])])
+    assert stage.clearance([(1.5, 3)]).tolist() == [0.5]
+
+
+def test_a_trial_on_a_moved_stage_is_recorded_and_replayed(tmp_path: Path) -> None:
+    written(tmp_path, house_at(395_130.0, 5_714_230.0, 0.25), "far.wkt")
+    stage = 'area="far.wkt" offset="-395130,-5714230" rotation="-0.25"'
+    trial = load_trial(written(tmp_path, TEXT.format(stage=stage)))
+    assert stage in trial_xml(trial)
+    assert parse_trial(trial_xml(trial), folder=tmp_path) == trial
+    episode = run(trial, out=tmp_path / "away")
+    file = tmp_path / "away" / "episode.mcap"
+    (tmp_path / "far.wkt").unlink()
+    done = replay(file)
+    assert (done.equal, done.recorded) == (True, episode.digest)
+
+
+@pytest.mark.parametrize(
+    "wrong", ['offset="1"', 'offset="1,2 3,4"', 'offset="9e9,0"', 'rotation="7"', 'rotation="east"']
+)
+def test_a_wrong_placement_is_the_only_problem(wrong: str) -> None:
+    text = TEXT.format(stage=f'area="{house_at(395_130.0, 5_714_230.0, 0.0)}" {wrong}')
+    with pytest.raises(TrialError) as found:
+        parse_trial(text, place="t.xml")
+    assert len(found.value.problems) == 1
+    assert wrong.partition("=")[0] in found.value.problems[0]

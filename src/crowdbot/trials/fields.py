@@ -100,8 +100,9 @@ class Constraint:
             return f"must be at least {self.points} different points, such as 0,0 4,0 4,2"
         if not all(math.isfinite(number) for point in value for number in point):
             return "is not finite"
-        if any(abs(number) > LARGEST for point in value for number in point):
-            return f"must lie within {LARGEST:.7g} {self.unit} of the origin"
+        largest = LARGEST if self.max is None else self.max
+        if any(abs(number) > largest for point in value for number in point):
+            return f"must lie within {largest:.7g} {self.unit} of the origin"
         return ""
 
     def _reach(self, low: float, high: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from crowdbot.core import InputError, Walls
 from crowdbot.world import add_rings
 
 from .fields import FieldProblem, attribute, check, children, quote_value
-from .files.stage_maps import area_of, map_of
+from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
 from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["Obstacle", "Stage", "Wall", "area"]
 
 TWO_GROUNDS = "has both walkable and area; give one of them"
+NOTHING_PLACED = "acts on area and map only, and the stage has neither; move the points of the trial instead"
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,20 @@ class Stage:
     area: str = attribute("", about="walkable area as WKT, or the name of a WKT or GeoJSON file", unit="m")
     map: str = attribute("", about="name of the .yaml file of a ROS map; occupied cells are solid")
     unknown: str = attribute("occupied", about="treatment of unknown cells of the map", choices=("occupied", "free"))
+    offset: Points = attribute(
+        Points(),
+        about="shift x,y of area and map, to the coordinates of the trial",
+        unit="m",
+        points=1,
+        max=FARTHEST_FILE,
+    )
+    rotation: float = attribute(
+        0.0,
+        about="turn of area and map about the origin of the trial after the shift, counter-clockwise",
+        unit="rad",
+        min=-2.0 * math.pi,
+        max=2.0 * math.pi,
+    )
     wall_height: float = attribute(2.5, about="height of walls and obstacles", unit="m", min=0.001, max=100.0)
     building: str = attribute(
         "",
@@ -100,6 +116,8 @@ class Stage:
         check(self)
         if self.walkable and self.area:
             raise InputError(TWO_GROUNDS)
+        for _, sentence in _placement_problems(vars(self)):
+            raise InputError(f"Stage: {sentence}")
         for word, name in (("area", "_ground"), ("map", "_map")):
             try:
                 getattr(self, name)
@@ -112,6 +130,11 @@ class Stage:
         said: list[FieldProblem] = []
         if values.get("walkable") and values.get("area"):
             said.append((("walkable", "area"), TWO_GROUNDS))
+        misplaced = _placement_problems(values)
+        said += misplaced
+        if misplaced or not {"offset", "rotation"} <= values.keys():  # the files may be anywhere
+            return said
+        placement = _placement(values["offset"], values["rotation"])
         folder, trust = values["folder"], values["trust"]
         if values.get("building"):
             try:
@@ -119,8 +142,8 @@ class Stage:
             except InputError as error:
                 said.append((("building",), f"building={quote_value(values['building'])}: {error}"))
         for word, read in (
-            ("area", area_of),
-            ("map", functools.partial(map_of, unknown=values.get("unknown", "free"))),
+            ("area", functools.partial(area_of, placement=placement)),
+            ("map", functools.partial(map_of, unknown=values.get("unknown", "free"), placement=placement)),
         ):
             try:
                 if values.get(word):
@@ -213,11 +236,19 @@ class Stage:
         """The polygons of the area."""
         import shapely
 
-        return tuple(shapely.get_parts(area_of(self.area, self.folder, self.trust))) if self.area else ()
+        if not self.area:
+            return ()
+        return tuple(
+            shapely.get_parts(area_of(self.area, self.folder, self.trust, _placement(self.offset, self.rotation)))
+        )
 
     @functools.cached_property
     def _map(self) -> tuple[Any, ...]:
-        return map_of(self.map, self.unknown, self.folder, self.trust) if self.map else ()
+        return (
+            map_of(self.map, self.unknown, self.folder, self.trust, _placement(self.offset, self.rotation))
+            if self.map
+            else ()
+        )
 
     @functools.cached_property
     def _area(self) -> Any:
@@ -253,6 +284,21 @@ class Stage:
         edges = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
         pieces = list(shapely.linestrings(np.concatenate(edges))) if edges else []
         return shapely.STRtree([*pieces, *self._blocks.geometries])
+
+
+def _placement(offset: Points, rotation: float) -> FilePlacement:
+    """Return the place of area and map in the trial."""
+    return FilePlacement(offset[0] if offset else (0.0, 0.0), rotation)
+
+
+def _placement_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
+    """Return what is wrong with the offset and the rotation of a stage."""
+    found = list[FieldProblem]()
+    if len(values.get("offset", ())) > 1:
+        found.append((("offset",), f"offset={quote_value(values['offset'])} must be one point x,y"))
+    if not values.get("area", "") and not values.get("map", ""):
+        found += [((name,), f"{name} {NOTHING_PLACED}") for name in ("offset", "rotation") if values.get(name)]
+    return found
 
 
 def _rings(polygons: Sequence[Any], solid: bool) -> list[NDArray[np.float64]]:

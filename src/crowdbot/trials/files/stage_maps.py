@@ -21,8 +21,10 @@ from .trial_files import read_beside, resolve_file
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["area_of", "is_area_file", "map_files", "map_of"]
+__all__ = ["FARTHEST_FILE", "FilePlacement", "area_of", "is_area_file", "map_files", "map_of"]
 
+FARTHEST_FILE = 1e8
+"""Largest coordinate in a file [m], above those of UTM (1e7) and Web Mercator (2e7); at it, a double has 1e-8 m."""
 MOST_CORNERS = 20_000
 MOST_DETAIL = 120_000
 MOST_TEXT = 4_000_000
@@ -36,16 +38,56 @@ RAW_OCCUPIED = 100
 WKT = re.compile(r"\s*(MULTI)?(POLYGON|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 
 
-def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
-    """Return the polygon or polygons of an area.
+class FilePlacement(NamedTuple):
+    """Where the coordinates of a file lie in the trial: they are moved by the offset, then turned about the origin.
+
+    >>> FilePlacement((-10.0, 0.0), 0.5 * math.pi).of(np.array([[11.0, 0.0]])).round(9).tolist()
+    [[0.0, 1.0]]
+    """
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+
+    def of(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return points ``[N, 2]`` [m] of the file in coordinates of the trial."""
+        moved = points + np.array(self.offset)
+        if self.rotation == 0.0:  # no change of any bit
+            return moved
+        cos, sin = math.cos(self.rotation), math.sin(self.rotation)
+        return np.asarray(moved @ np.array([[cos, sin], [-sin, cos]]))
+
+    def place(self, shapes: Any, what: str) -> Any:
+        """Return geometries of a file in coordinates of the trial.
+
+        Raises:
+            InputError: they are too far from the origin of the trial.
+        """
+        import shapely
+
+        corners = shapely.get_coordinates(shapes)
+        if len(corners) and np.any(np.abs(self.of(corners)) > LARGEST):
+            x, y = (-0.5 * (corners.min(axis=0) + corners.max(axis=0))).round() + 0.0
+            raise InputError(
+                f"{what} has corners more than {LARGEST:g} m from the origin of the trial;"
+                f' with offset="{x:.0f},{y:.0f}" its centre is the origin'
+            )
+        return shapes if self == IN_PLACE else shapely.transform(shapes, self.of)
+
+
+IN_PLACE = FilePlacement()
+
+
+def area_of(text: str, folder: Path | None, trust: bool, placement: FilePlacement = IN_PLACE) -> shapely.Geometry:
+    """Return the polygon or polygons of an area in coordinates of the trial.
 
     Args:
         text: WKT, or the name of a WKT or GeoJSON file in the folder.
         folder: folder of the trial.
         trust: whether the file may lie outside the folder.
+        placement: place of the coordinates of the text or file in the trial.
 
     Raises:
-        InputError: the text is neither, or has no valid polygon or too many corners.
+        InputError: the text is neither, has no valid polygon or too many corners, or is too far from the origin.
 
     >>> area_of("POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))", None, False).area
     12.0
@@ -55,12 +97,12 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     if is_area_file(text):
         path = resolve_file(text, folder, trust)
         stamp = path.stat()
-        return _from_file(path, stamp.st_mtime_ns, stamp.st_size)
+        return placement.place(_from_file(path, stamp.st_mtime_ns, stamp.st_size), path.name)
     try:
         shape = shapely.from_wkt(text)
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise InputError(f"is not WKT: {_first(error)}") from None
-    return _checked(shape, "the WKT")
+    return placement.place(_checked(shape, "the WKT"), "the WKT")
 
 
 def is_area_file(text: str) -> bool:
@@ -104,8 +146,8 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
     corners = shapely.get_coordinates(parts)
     if len(corners) > MOST_CORNERS:
         raise InputError(f"{what} has {len(corners)} corners, more than {MOST_CORNERS}; simplify it")
-    if not np.all(np.isfinite(corners)) or np.any(np.abs(corners) > LARGEST):
-        raise InputError(f"{what} has corners that are not finite, or more than {LARGEST:g} m from the origin")
+    if not np.all(np.isfinite(corners)) or np.any(np.abs(corners) > FARTHEST_FILE):
+        raise InputError(f"{what} has corners that are not finite, or more than {FARTHEST_FILE:g} m from the origin")
     wrong = next((part for part in parts if not part.is_valid), None)
     if wrong is not None:
         raise InputError(f"{what} has a polygon that is not simple: {shapely.is_valid_reason(wrong).lower()}")
@@ -133,7 +175,9 @@ class _Map(NamedTuple):
     mode: str
 
 
-def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[shapely.Polygon, ...]:
+def map_of(
+    name: str, unknown: str, folder: Path | None, trust: bool, placement: FilePlacement = IN_PLACE
+) -> tuple[shapely.Polygon, ...]:
     """Return the occupied cells of a ROS map (map_server, a ``.yaml`` file with an image) as polygons.
 
     Cells are read as by nav2_map_server in the modes ``trinary``, ``scale`` and ``raw``. Borders are simplified by at
@@ -144,13 +188,15 @@ def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[s
         unknown: treatment of unknown cells, ``occupied`` or ``free``.
         folder: folder of the trial.
         trust: whether the files may lie outside the folder.
+        placement: place of the coordinates of the map in the trial.
 
     Raises:
-        InputError: a file is missing, too large or not a map.
+        InputError: a file is missing, too large or not a map, or the map is too far from the origin.
     """
     _, row, image = _map_of(name, folder, trust)
     stamp = image.stat()
-    return _solids(image, stamp.st_mtime_ns, stamp.st_size, row, unknown)
+    solids = _solids(image, stamp.st_mtime_ns, stamp.st_size, row, unknown)
+    return tuple(placement.place(np.array(solids, dtype=object), name)) if solids else ()
 
 
 def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
@@ -178,7 +224,7 @@ def _yaml(data: bytes, name: str) -> _Map:
     origin = rows["origin"]
     if not isinstance(origin, list) or len(origin) != 3:
         raise InputError(f"{name}: origin = {str(origin)[:40]} must be a list of three numbers: x, y [m], yaw [rad]")
-    x, y, yaw = (_number(value, "origin", name) for value in origin)
+    x, y, yaw = (_number(value, "origin", name, FARTHEST_FILE) for value in origin)
     resolution = _number(rows["resolution"], "resolution", name)
     if resolution <= 0.0:
         raise InputError(f"{name}: resolution = {resolution:g} m must be above 0")
@@ -200,11 +246,11 @@ def _yaml(data: bytes, name: str) -> _Map:
     return _Map(str(rows["image"]), resolution, (x, y, yaw), bool(negate), occupied, free, mode)
 
 
-def _number(value: Any, key: str, name: str) -> float:
+def _number(value: Any, key: str, name: str, largest: float = LARGEST) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{name}: {key} has {str(value)[:40]!r}, which is not a number")
-    if not math.isfinite(value) or abs(value) > LARGEST:
-        raise InputError(f"{name}: {key} has {value:g}, which is not finite, or larger than {LARGEST:g}")
+    if not math.isfinite(value) or abs(value) > largest:
+        raise InputError(f"{name}: {key} has {value:g}, which is not finite, or larger than {largest:g}")
     return float(value)
 
 

@@ -31,7 +31,7 @@ ROBOT = 2
 SINK = 2
 """Behaviour ``b`` of waypoints where people leave."""
 SPAWN_PERIOD = 5.0
-"""Time between two clusters of a source [s]: the default of the ROS parameter ``spawn_period``, which is not in files."""
+"""Time between two clusters of a source [s]: default of the ROS parameter ``spawn_period``, not in files."""
 DURATION = 120.0
 STOPS = ("waypoint", "queue")
 NARROWEST = 0.1

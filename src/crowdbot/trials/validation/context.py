@@ -83,8 +83,11 @@ class ValidationContext:
     @functools.cached_property
     def stage(self) -> Stage:
         """The stage without its unreadable parts, which can only add problems of places."""
-        stage: Stage = fill_defaults(self.trial.stage)
-        return stage
+        stage = self.trial.stage
+        if not all(readable([stage], name) for name in ("offset", "rotation")):  # its files may be anywhere
+            stage = _without(stage, {id(stage): {"area", "map"}})
+        whole: Stage = fill_defaults(stage)
+        return whole
 
     @property
     def router(self) -> Router | None:

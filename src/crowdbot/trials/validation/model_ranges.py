@@ -7,9 +7,7 @@ from typing import NamedTuple
 from crowdbot.core import kebab_case
 from crowdbot.models import CrowdModel
 from crowdbot.trials.crowd import Crowds
-from crowdbot.trials.files.stage_maps import area_of
 from crowdbot.trials.randomized_model import RandomizedModel
-from crowdbot.trials.stage import area
 from crowdbot.trials.trial import Trial
 
 __all__ = ["MODEL_RANGES", "ModelRange", "model_range", "range_remarks"]
@@ -114,7 +112,7 @@ def start_density(trial: Trial) -> float:
     stage = trial.stage
     if not stage.bounded:
         return 0.0
-    ground = area_of(stage.area, stage.folder, stage.trust).area if stage.area else area(stage.walkable).area
+    ground = stage.shapes[1].area
     return float((len(trial.agents) + sum(spawner.count for spawner in trial.spawners)) / ground)
 
 
