@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from crowdbot.cli import main
 from crowdbot.core import TrialError
 from crowdbot.trials import import_dxf, import_trial, parse_trial, trial_xml
 
@@ -166,3 +167,46 @@ def test_random_bytes_never_raise_anything_else(tmp_path):
             told.append(str(error))
     assert len(told) > 50
     assert all("hall.dxf" in sentence for sentence in told)
+
+
+@pytest.mark.parametrize(
+    ("units", "size", "sentence"),
+    [
+        (
+            4,
+            25,
+            "the drawing is 0.025 m x 0.0125 m in the unit mm, which may be wrong; with --unit m it is 25 m x 12.5 m",
+        ),
+        (1, 40, "the drawing is 1.02 m x 0.508 m in the unit in, which may be wrong; with --unit m it is 40 m x 20 m"),
+        (6, 30000, "in the unit m, which may be wrong; with --unit mm it is 30 m x 15 m"),
+        (0, 18000, "in the unit m, which may be wrong; with --unit mm it is 18 m x 9 m"),
+        (4, 0.5, "the drawing is 0.0005 m x 0.00025 m in the unit mm, which may be wrong"),
+    ],
+)
+def test_a_drawing_of_implausible_size_names_the_unit_that_mends_it(tmp_path, units, size, sentence):
+    text = drawing(line(0, 0, size, 0), line(0, 0, 0, size / 2), units=units)
+    notes = read(tmp_path, text).left_out
+    assert [note for note in notes if sentence in note], notes
+    if "--unit" in sentence:
+        unit = sentence.partition("--unit ")[2].split()[0]
+        assert not any("may be wrong" in note for note in read(tmp_path, text, unit=unit).left_out)
+
+
+@pytest.mark.parametrize(("units", "size"), [(4, 2500), (6, 2000), (5, 900), (1, 300)])
+def test_a_drawing_of_plausible_size_has_no_note(tmp_path, units, size):
+    assert not any(
+        "may be wrong" in note for note in read(tmp_path, drawing(line(0, 0, size, 0), units=units)).left_out
+    )
+
+
+def test_the_commands_tell_the_size_of_a_drawing(tmp_path, capsys):
+    file = tmp_path / "hall.dxf"
+    file.write_text(drawing(SQUARE.replace("4000", "9").replace("3000", "5"), units=4))
+    out = tmp_path / "hall.xml"
+    assert main(["new", "trial", str(out), "--import", str(file)]) == 0
+    assert "with --unit m it is 9 m x 5 m" in capsys.readouterr().out
+    main(["check", str(out)])
+    assert "note: the box around the walls is 0.009 m x 0.005 m, below 2 m" in capsys.readouterr().out
+    assert main(["new", "trial", str(out), "--import", str(file), "--unit", "m", "--force"]) == 0
+    main(["check", str(out)])
+    assert "note" not in capsys.readouterr().out

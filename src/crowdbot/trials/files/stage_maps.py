@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
+import json
 import math
 import re
 import warnings
@@ -35,6 +36,10 @@ IMAGES = ("PPM", "PNG", "BMP", "JPEG")
 """Formats of map images; PPM includes PGM and PBM."""
 RAW_OCCUPIED = 100
 """Largest value of a cell with a known occupancy [%] in the mode raw."""
+MOST_DEGREES = 0.1
+"""Largest extent of an area that is taken for degrees: 11 km, and as metres too small for one person."""
+GEOGRAPHIC = re.compile(r"CRS84|EPSG:+(?:[0-9.]+:)?(4326|4258|4269|4979)\b", re.IGNORECASE)
+"""Names of reference systems in degrees: WGS 84, ETRS89 and NAD83."""
 WKT = re.compile(r"\s*(MULTI)?(POLYGON|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 
 
@@ -126,7 +131,39 @@ def _from_file(path: Path, changed: int, size: int) -> shapely.Geometry:
         raise InputError(f"{path.name} is not text; an area is a file of WKT or GeoJSON") from None
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise InputError(f"{path.name} is neither WKT nor GeoJSON of an area: {_first(error)}") from None
-    return _checked(shape, path.name)
+    whole = _checked(shape, path.name)
+    if not WKT.match(text):
+        _check_degrees(text, whole, path.name)
+    return whole
+
+
+def _check_degrees(text: str, whole: shapely.Geometry, name: str) -> None:
+    """Refuse GeoJSON in degrees, which its standard (RFC 7946) prescribes but an area cannot use."""
+    west, south, east, north = whole.bounds
+    if max(abs(west), abs(east)) > 180.0 or max(abs(south), abs(north)) > 90.0:
+        return
+    project = "project it to metres, for example to UTM, and give the stage an offset"
+    kind = _reference_system(text)
+    if GEOGRAPHIC.search(kind):
+        raise InputError(f'{name} is in degrees ({kind[:60]}): {project}; remove its "crs" if the numbers are metres')
+    size = max(east - west, north - south)
+    if size < MOST_DEGREES and max(abs(west), abs(south)) > 1.0:
+        raise InputError(
+            f"{name} is {east - west:.3g} m x {north - south:.3g} m: its coordinates look like degrees of longitude and"
+            f" latitude; {project}"
+        )
+
+
+def _reference_system(text: str) -> str:
+    """Return the name of the reference system in a GeoJSON text (a member of the format of 2008), empty without one."""
+    found: Any
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):  # shapely reads some texts that Python does not
+        return ""
+    for key in ("crs", "properties", "name"):
+        found = found.get(key) if isinstance(found, dict) else None
+    return found if isinstance(found, str) else ""
 
 
 def _first(error: Exception) -> str:

@@ -13,11 +13,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from crowdbot.core import TrialError
 from crowdbot.models import ORCA
 from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
+from crowdbot.trials.validation.stage_size import LARGEST_EXTENT, SMALLEST_EXTENT, size_text
 
 from .dxf_curves import Ring, arc_points, bulge_points
 from .original import ImportedTrial
@@ -33,6 +36,8 @@ UNITS = {"in": 0.0254, "ft": 0.3048, "mm": 0.001, "cm": 0.01, "m": 1.0, "km": 10
 """Units by name [m]."""
 INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km"}
 """Units by the number in ``$INSUNITS``."""
+LIKELY_UNITS = ("m", "mm", "cm", "in", "ft")
+"""Units that are tried for a drawing of implausible size, the likely ones first."""
 KINDS = ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE")
 PARTS = ("VERTEX", "SEQEND")
 
@@ -160,6 +165,7 @@ class _Reader:
             raise TrialError(
                 f"{self.path}: {len(rings)} walls are more than {MOST_WALLS}; choose layers: {', '.join(known[:20])}"
             )
+        self._note_size(rings)
         self.notes["people and robots are not in the file: the trial has only the stage"] = None
         return Trial(
             name=(self.path.stem.strip() or "imported")[:80],
@@ -169,6 +175,22 @@ class _Reader:
             crowd=ORCA(),
             end=End(goal=False, collision=False),
         )
+
+    def _note_size(self, rings: Collection[Ring]) -> None:
+        """Note a size that no hall has: editors often leave a unit in the header that is not that of the drawing."""
+        corners = np.concatenate([np.array(ring) for ring in rings])
+        width, height = np.ptp(corners, axis=0)
+        longest = max(width, height)
+        if SMALLEST_EXTENT <= longest <= LARGEST_EXTENT:
+            return
+        unit = next(name for name, size in UNITS.items() if size == self.scale)
+        sentence = f"the drawing is {size_text(width, height)} in the unit {unit}, which may be wrong"
+        for other in LIKELY_UNITS:
+            ratio = UNITS[other] / self.scale
+            if SMALLEST_EXTENT <= longest * ratio <= LARGEST_EXTENT:
+                sentence += f"; with --unit {other} it is {size_text(width * ratio, height * ratio)}"
+                break
+        self.notes[sentence] = None
 
     def _unit(self, header: list[DxfGroup], unit: str) -> float:
         """Return the unit of the drawing [m]."""

@@ -12,6 +12,7 @@ from crowdbot.trials.trial import Trial
 
 from .ground_checks import ground_remarks
 from .model_ranges import range_remarks
+from .stage_size import stage_size_remarks
 
 __all__ = ["fitting", "misfits", "trial_remarks"]
 
@@ -45,7 +46,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
-    Robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
+    Stages of implausible size, robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -74,7 +75,7 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return [*found, *ground_remarks(trial), *camera_remarks(trial)]
+    return [*stage_size_remarks(trial), *found, *ground_remarks(trial), *camera_remarks(trial)]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:
