@@ -238,17 +238,14 @@ class Stage:
 
         if not self.area:
             return ()
-        return tuple(
-            shapely.get_parts(area_of(self.area, self.folder, self.trust, _placement(self.offset, self.rotation)))
-        )
+        placement = _placement(self.offset, self.rotation)
+        return tuple(shapely.get_parts(area_of(self.area, self.folder, self.trust, placement)))
 
     @functools.cached_property
     def _map(self) -> tuple[Any, ...]:
-        return (
-            map_of(self.map, self.unknown, self.folder, self.trust, _placement(self.offset, self.rotation))
-            if self.map
-            else ()
-        )
+        if not self.map:
+            return ()
+        return map_of(self.map, self.unknown, self.folder, self.trust, _placement(self.offset, self.rotation))
 
     @functools.cached_property
     def _area(self) -> Any:

@@ -55,7 +55,7 @@ class FilePlacement(NamedTuple):
 
     def of(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points ``[N, 2]`` [m] of the file in coordinates of the trial."""
-        moved = points + np.array(self.offset)
+        moved: NDArray[np.float64] = points + np.array(self.offset)
         if self.rotation == 0.0:  # no change of any bit
             return moved
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)

@@ -65,7 +65,9 @@ def size_text(width: float, height: float) -> str:
 
 def _starts_outside(trial: Trial, bounds: NDArray[Any]) -> bool:
     """Return whether a person or a robot starts outside a box, or may do so."""
-    zones = [point for one in (*trial.spawners, *trial.sources) for point in one.zone]
-    starts = [(one.x, one.y) for one in (*trial.agents, *trial.robots)]
-    places = np.array([*zones, *starts], dtype=np.float64).reshape(-1, 2)
+    spots = [point for spawner in trial.spawners for point in spawner.zone]
+    spots += [point for source in trial.sources for point in source.zone]
+    spots += [(agent.x, agent.y) for agent in trial.agents]
+    spots += [(robot.x, robot.y) for robot in trial.robots]
+    places = np.array(spots, dtype=np.float64).reshape(-1, 2)
     return bool(trial.recorded) or bool(np.any((places < bounds[:2]) | (places > bounds[2:])))
