@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot.cli import main
+
 ARGUMENTS = ("crossing-flows", "--set", "duration=2", "--sensors", "sick-tim571@10", "--shard-size", "1")
 
 
@@ -35,7 +37,6 @@ def test_it_writes_data_and_a_card(tmp_path: Path) -> None:
     assert told["wall"] > 0.0
 
 
-@pytest.mark.program
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -47,11 +48,11 @@ def test_it_writes_data_and_a_card(tmp_path: Path) -> None:
         (("flo",), "there is no trial or recipe 'flo', did you mean 'flow'?"),
     ],
 )
-def test_wrong_input_is_told(tmp_path: Path, words: tuple[str, ...], message: str) -> None:
-    done = crowdbot(*words, "--out", tmp_path / "data")
-    assert done.returncode == 2
-    assert message in " ".join(done.stderr.split())
-    assert "Traceback" not in done.stderr
+def test_wrong_input_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], message: str
+) -> None:
+    assert main(["generate", *words, "--out", str(tmp_path / "data")]) == 2
+    assert message in " ".join(capsys.readouterr().err.split())
     assert not (tmp_path / "data").exists()
 
 
