@@ -45,7 +45,8 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
-    Robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
+    Robots that cannot pass uneven ground, cameras that look at a wall, and recordings whose units can hardly be those
+    that are read, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -74,7 +75,8 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return [*found, *ground_remarks(trial), *camera_remarks(trial)]
+    recorded = [sentence for one in trial.recorded for sentence in one.remarks()]
+    return [*found, *recorded, *ground_remarks(trial), *camera_remarks(trial)]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:
