@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from crowdbot import cli
 from crowdbot.core import DataError, InputError
 from crowdbot.data import load
 
@@ -176,3 +177,9 @@ def test_recordings_of_people_have_no_warning(tmp_path, change):
     path = tmp_path / "t.csv"
     path.write_text("id,time,x,y,z\n" + "\n".join(",".join(map(repr, map(float, row))) for row in rows) + "\n")
     assert warnings_of(path) == []
+
+
+def test_measure_prints_the_warnings(tmp_path, capsys):
+    path = write(tmp_path / "t.csv", "id,time,x,y", [(a, 1e3 * t, x, y) for a, _, t, x, y, _ in walkers()])
+    assert cli.main(["measure", str(path), "--methods", "individual"]) == 0
+    assert "t.csv: warning: the times in time are 100 s apart" in capsys.readouterr().err
