@@ -58,6 +58,56 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
     assert main(["check", str(tmp_path / "imported.xml")]) == 0
 
 
+COLUMNS = ["--columns", "id=who", "time=clock", "x=east", "y=north"]
+
+
+@pytest.mark.parametrize(
+    ("per", "second", "words"),
+    [
+        (100.0, 1.0, [*COLUMNS, "--units", "cm"]),
+        (1.0 / 0.3048, 1.0, [*COLUMNS, "--units", "export=ft"]),
+        (50.0, 1.0, [*COLUMNS, "--scale", "0.02"]),
+        (50.0, 1.0, [*COLUMNS, "--homography", "{}/H.txt"]),
+        (1.0, 1000.0, ["--columns", "id=who", "time_ms=clock", "x=east", "y=north"]),
+        (1.0, 1.0, [*COLUMNS, "label=kind", "--agents", "pedestrians"]),
+    ],
+)
+def test_a_trial_from_a_recording_has_the_options_of_predict(tmp_path, capsys, per, second, words):
+    rows = [(who, second * 0.4 * k, per * 0.5 * k, per * 2.0 * who) for k in range(20) for who in (1, 2)]
+    rows += [(3, second * 0.4 * k, per * 2.0 * k, per * 9.0) for k in range(20)] * ("--agents" in words)
+    text = "".join(f"{','.join(map(str, row))},{'car' if row[0] == 3 else 'pedestrian'}\n" for row in rows)
+    (tmp_path / "export.csv").write_text("who,clock,east,north,kind\n" + text)
+    (tmp_path / "H.txt").write_text("0.02 0 0\n0 0.02 0\n0 0 1\n")
+    file = tmp_path / "t.xml"
+    words = [word.format(tmp_path) for word in words]
+    assert main(["new", "trial", str(file), "--recorded", str(tmp_path / "export.csv"), *words, "--replace", "1"]) == 0
+    said = capsys.readouterr().err
+    assert "t-people.csv: the people of export.csv, as they were read, in m" in said
+    assert "warning" not in said
+    people = load_trial(file).recorded[0]
+    tracks = people.tracks()
+    assert (people.data, tracks.ids.tolist(), tracks.dt) == ("t-people.csv", [1, 2], pytest.approx(0.4))
+    assert tracks.x.max() == pytest.approx(9.5)
+    assert main(["check", str(file)]) == 0
+    (tmp_path / "v-people.csv").write_text("of somebody else")
+    capsys.readouterr()
+    again = ["new", "trial", tmp_path / "v.xml", "--recorded", tmp_path / "export.csv", *words]
+    assert "v-people.csv already exists" in refused(capsys, tmp_path, *again)
+    wrong = ["new", "trial", tmp_path / "u.xml", "--recorded", tmp_path / "export.csv", *words, "--replace", "77"]
+    assert main([str(word) for word in wrong]) == 2
+    assert not list(tmp_path.glob("u*"))
+
+
+def test_a_trial_from_a_recording_says_what_is_odd_in_it(tmp_path, capsys):
+    rows = [f"{who},{400 * k},{0.5 * k},{2 * who}\n" for k in range(20) for who in (1, 2)]
+    (tmp_path / "milli.csv").write_text("id,time,x,y\n" + "".join(rows))
+    file = str(tmp_path / "t.xml")
+    assert main(["new", "trial", file, "--recorded", str(tmp_path / "milli.csv")]) == 0
+    assert "milli.csv: warning: the times in time are 400 s apart" in capsys.readouterr().err
+    assert main(["check", file]) == 0
+    assert "they are probably in milliseconds, give --columns time_ms=time" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -69,6 +119,10 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
         (["new", "trial", "{}/t.xml", "--set", "trust=true"], "frontal has no parameter 'trust'"),
         (["new", "trial", "{}/t.xml", "--import", "{}/none.xml"], "there is no trial file"),
         (["new", "trial", "{}/t.xml", "--recorded", "{}/none.txt"], "there is no file 'none.txt'"),
+        (
+            ["new", "trial", "{}/t.xml", "--recorded", "{}/none.txt", "--units", "citr=cm"],
+            "--units citr=cm: no recording has 'citr' in its path",
+        ),
         (["run", "frontal", "--variant", "1"], "--variant 1: frontal has no variants"),
         (["run", "frontal", "--set", "widht=2"], "frontal has no parameter 'widht', did you mean 'width'?"),
         (["list", "trials", "frontl"], "'frontl' is not a built-in trial with parameters, did you mean 'frontal'?"),

@@ -85,7 +85,7 @@ def test_wrong_homographies(tmp_path, text):
 def test_speeds_that_are_not_those_of_walkers(tmp_path):
     fast = load(write(tmp_path / "t.csv", walker(np.arange(10), speed=3.0)))
     assert (
-        "people who move have a median speed of 3 m/s, people who walk 0.3 to 2.5 m/s; check fps and units" in fast.note
+        "people who move have a median speed of 3 m/s, people who walk 0.3 to 2.5 m/s, check fps and units" in fast.note
     )
     assert load(write(tmp_path / "t.csv", walker(np.arange(10)))).note == ""
 

@@ -63,13 +63,14 @@ def main(options: argparse.Namespace) -> int:
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
     plan = _plan(options)
-    found = []
+    found, odd = [], list[str]()
     with progress(options.json) as report:
         for source in options.source:
             for tracks in _tracks(source, options, report):
                 found.append(measure(tracks, plan))
+                odd += [f"{tracks.name}: warning: {sentence}" for sentence in tracks.warnings]
                 report(f"measure {tracks.name}", 1.0)
-    for sentence in dict.fromkeys(f"{one.name}: {text}" for one in found for text in one.notes):
+    for sentence in dict.fromkeys([*odd, *(f"{one.name}: {text}" for one in found for text in one.notes)]):
         note(sentence)
     summary = _summary(found)
     if options.out is not None:

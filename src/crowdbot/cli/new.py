@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .output import note
+from .recordings import add_agents, add_file_options, add_time_base, check_parts, recording
 from .settings import add_settings, settings
 from .templates import (
     CLASSES,
@@ -23,9 +24,12 @@ from .templates.maker_file import add_robot_options, convert_robot, is_robot_fil
 from .templates.people_files import add_body_options, write_body_file, write_clip_file
 
 if TYPE_CHECKING:
+    from crowdbot.data import Recording
     from crowdbot.trials import Trial
 
 KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "clip", "body", "schema")
+TRIAL_UNITS = ("m", "cm", "mm", "px")
+"""Units that the recording of a trial can have."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +76,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot_options(parser)
     add_body_options(parser)
     group = parser.add_argument_group("trial from a recording")
-    group.add_argument("--fps", type=float, help="frame rate of the recording in Hz (default: from the file)")
+    add_file_options(group)
+    add_time_base(group)
+    add_agents(group, default="all")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
     group.add_argument("--replace", type=int, metavar="ID", help="id of the person that the robot replaces")
 
@@ -155,33 +161,69 @@ def _place(trial: Trial, options: argparse.Namespace) -> Trial:
 
 
 def _recorded_trial(options: argparse.Namespace) -> Trial:
-    from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.core import InputError
     from crowdbot.trials import recorded_trial
 
-    trial = recorded_trial(
-        options.recorded,
-        fps=options.fps,
-        mode="reactive" if options.reactive else "scripted",
-        replace=options.replace,
-        name=options.file.stem,
-    )
-    beside = options.file.parent / options.recorded.name
-    if beside.resolve() != options.recorded.resolve():
-        if not beside.exists():
-            data = options.recorded.read_bytes()
-            try:
-                with explain_write_errors(beside):
-                    beside.write_bytes(data)
-            except InputError:
-                beside.unlink(missing_ok=True)
-                raise
-            note(
-                f"copied {options.recorded.name} to the folder of the trial, since a trial reads only files in "
-                f"its folder"
-            )
-        elif beside.read_bytes() != options.recorded.read_bytes():
-            raise InputError(f"{beside} exists with a different content; write the trial to another folder")
+    check_parts(options, [options.recorded])
+    read = recording(options, options.recorded)
+    direct = not read.columns and read.transform is None and read.agents == "all" and read.time_base == "true"
+    rest: dict[str, Any] = {
+        "mode": "reactive" if options.reactive else "scripted",
+        "replace": options.replace,
+        "name": options.file.stem,
+    }
+    if direct and read.units in (None, *TRIAL_UNITS):
+        trial = recorded_trial(options.recorded, fps=read.fps, format=read.format or "", units=read.units or "", **rest)
+        _copy_beside(options)
+    else:
+        file = _written_tracks(read, options)
+        try:
+            trial = recorded_trial(file, **rest)
+        except InputError:
+            file.unlink()
+            raise
+    for sentence in (sentence for one in trial.recorded for sentence in one.remarks()):
+        note(sentence)
     return trial
+
+
+def _written_tracks(read: Recording, options: argparse.Namespace) -> Path:
+    """Write the tracks as they are understood to a file beside the trial, and return it.
+
+    A trial has no attributes for columns, scales and labels: its recording has the usual columns, in metres.
+    """
+    from crowdbot.core import InputError
+    from crowdbot.data import save
+
+    file: Path = options.file.with_name(f"{options.file.stem}-people.csv")
+    if file.exists() and not options.force:
+        raise InputError(f"{file} already exists; use another name of the trial, or --force to replace it")
+    if file.resolve() == options.recorded.resolve():
+        raise InputError(f"{file} is the recording, which is not replaced; use another name of the trial")
+    save(read.tracks, file)
+    note(f"wrote {file}: the people of {options.recorded.name}, as they were read, in {read.tracks.units}")
+    return file
+
+
+def _copy_beside(options: argparse.Namespace) -> None:
+    """Copy the recording to the folder of the trial, unless it is there."""
+    from crowdbot.core import InputError, explain_write_errors
+
+    beside = options.file.parent / options.recorded.name
+    if beside.resolve() == options.recorded.resolve():
+        return
+    if beside.exists():
+        if beside.read_bytes() != options.recorded.read_bytes():
+            raise InputError(f"{beside} exists with a different content; write the trial to another folder")
+        return
+    data = options.recorded.read_bytes()
+    try:
+        with explain_write_errors(beside):
+            beside.write_bytes(data)
+    except InputError:
+        beside.unlink(missing_ok=True)
+        raise
+    note(f"copied {options.recorded.name} to the folder of the trial, since a trial reads only files in its folder")
 
 
 def _import_trials(options: argparse.Namespace) -> None:

@@ -13,15 +13,22 @@ if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
 __all__ = [
+    "add_agents",
     "add_file_options",
     "add_recordings",
+    "add_time_base",
+    "check_parts",
     "columns",
     "horizon",
     "print_notes",
+    "recording",
     "recordings",
     "transform",
     "value_for",
 ]
+
+WINDOW_OPTIONS = ("step", "observe", "predict", "protocol", "near", "late", "learn", "every")
+"""Options that are fields of :class:`crowdbot.data.Recording` of the same name."""
 
 
 def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
@@ -43,12 +50,7 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         help="maximum distance of scored people from a recorded robot (default: none)",
     )
     add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
-    add(
-        "--time-base",
-        default="true",
-        metavar="NAME",
-        help="time base of the ETH recording: true or published (default: true)",
-    )
+    add_time_base(parser)
     add_file_options(parser)
     _add_stage(parser)
     add(
@@ -61,13 +63,28 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         "--learn", type=float, default=0.0, metavar="SHARE",
         help="initial share of each recording for learning goals; only the rest is predicted (default: 0)",
     )  # fmt: skip
-    add(
-        "--agents",
-        default="pedestrians",
-        metavar="NAME",
-        help="who is read where the file has labels: pedestrians, or all with cyclists and cars (default: pedestrians)",
-    )
+    add_agents(parser)
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
+
+
+def add_time_base(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """Add the option for the two time bases of the ETH recording."""
+    parser.add_argument(
+        "--time-base",
+        default="true",
+        metavar="NAME",
+        help="time base of the ETH recording: true or published (default: true)",
+    )
+
+
+def add_agents(parser: argparse.ArgumentParser | argparse._ArgumentGroup, default: str = "pedestrians") -> None:
+    """Add the option for the tracks that are read by their labels."""
+    parser.add_argument(
+        "--agents",
+        default=default,
+        metavar="NAME",
+        help=f"who is read where the file has labels: pedestrians, or all with cyclists and cars (default: {default})",
+    )
 
 
 def _add_stage(parser: argparse.ArgumentParser) -> None:
@@ -99,14 +116,16 @@ def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup) 
         type=_per_file(str),
         action="append",
         metavar="NAME",
-        help="units of the coordinates: m, cm, mm, ft or px (default: from the file); PART=NAME as for --fps",
+        help="units of the coordinates: m, cm, mm, ft, px, or deg for longitude and latitude (default: from the file);"
+        " PART=NAME as for --fps",
     )
     add(
         "--columns",
         nargs="+",
         default=[],
         metavar="NAME=COLUMN",
-        help="columns of a CSV or Parquet file: id, frame, time, x, y, label (default: by their usual names)",
+        help="columns of a CSV or Parquet file: id, frame, time (time_ms, time_us, time_ns), x, y,"
+        " label (default: by their usual names)",
     )
     add(
         "--scale",
@@ -140,14 +159,13 @@ def value_for(path: Path | str, pairs: Sequence[tuple[str, Any]] | None) -> Any:
     return next((value for part, value in reversed(pairs or ()) if part in str(path)), None)
 
 
-def _check_parts(options: argparse.Namespace) -> None:
+def check_parts(options: argparse.Namespace, paths: Sequence[Path]) -> None:
     """Raise :class:`InputError` for a part of ``--fps PART=FRAMES`` and the like that is in no path."""
     from crowdbot.core import InputError
 
-    paths = [str(path) for path in (*options.data, *(getattr(options, "check", None) or ()))]
     for name in ("fps", "units", "scale"):
         for part, value in getattr(options, name) or ():
-            if not any(part in path for path in paths):
+            if not any(part in str(path) for path in paths):
                 raise InputError(f"--{name} {part}={value}: no recording has {part!r} in its path")
 
 
@@ -176,26 +194,37 @@ def transform(options: argparse.Namespace, path: Path) -> float | tuple[tuple[fl
     return tuple(map(tuple, read_homography(options.homography).tolist()))
 
 
-def recordings(options: argparse.Namespace, paths: Sequence[Path] | None = None) -> tuple[Recording, ...]:
-    """Return the recordings of ``--data``, or of other paths with the same options."""
+def recording(options: argparse.Namespace, path: Path, **windows: Any) -> Recording:
+    """Return one file with the options of :func:`add_file_options`, the time base and the agents; ``windows`` are
+    other fields of :class:`crowdbot.data.Recording`.
+    """
     from crowdbot.data import Recording
 
-    _check_parts(options)
-    named = columns(options)
+    return Recording(
+        str(path),
+        fps=value_for(path, options.fps),
+        format=options.format,
+        units=value_for(path, options.units),
+        time_base=options.time_base,
+        columns=columns(options),
+        transform=transform(options, path),
+        agents=options.agents,
+        **windows,
+    )
+
+
+def recordings(options: argparse.Namespace, paths: Sequence[Path] | None = None) -> tuple[Recording, ...]:
+    """Return the recordings of ``--data``, or of other paths with the same options."""
+    check_parts(options, [*options.data, *(getattr(options, "check", None) or ())])
     layout = None
     if options.stage is not None:
         from crowdbot.trials import load_layout
 
         layout = load_layout(options.stage)
+    windows = {name: getattr(options, name) for name in WINDOW_OPTIONS}
     return tuple(
-        Recording(
-            str(path), value_for(path, options.fps), options.format, value_for(path, options.units),
-            options.time_base, options.step, options.observe,
-            options.predict, options.protocol, options.near, options.late, options.learn, options.every,
-            named, transform(options, path), layout, options.agents,
-        )
-        for path in (options.data if paths is None else paths)
-    )  # fmt: skip
+        recording(options, path, layout=layout, **windows) for path in (options.data if paths is None else paths)
+    )
 
 
 def print_notes(found: tuple[Recording, ...]) -> None:

@@ -29,8 +29,9 @@ from .readers import (
 )
 from .readers.assemble import check_units
 from .readers.columns import check_quantities
+from .readers.plausibility import check_walkers
 from .readers.reader import Reader, ReadOptions
-from .readers.time_base import check_fps, check_walkers
+from .readers.time_base import check_fps
 from .source import Source
 from .trajectories import Trajectories
 
@@ -85,10 +86,12 @@ def load(
             step of 10 frames at ``fps=25``, which is 0.4 s. Without a frame column, or where frames number the rows
             (``social-ways``, ``episode``), ``fps`` is rows per second.
         format: one of ``FORMATS`` (default: detected).
-        units: units of the coordinates in the file, ``m``, ``cm``, ``mm``, ``ft`` or ``px`` (default: from the file).
+        units: units of the coordinates in the file, ``m``, ``cm``, ``mm``, ``ft``, ``px``, or ``deg`` for longitude and
+            latitude (default: from the file).
         time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong time step.
         columns: columns of a CSV or Parquet file by quantity (``id``, ``frame``, ``time``, ``x``, ``y``, ``label``),
-            for names that are not found: ``{"id": "who", "x": "east"}``.
+            for names that are not found: ``{"id": "who", "x": "east"}``. Times that are not in seconds are
+            ``time_ms``, ``time_us`` or ``time_ns``.
         transform: metres per pixel, or a homography ``[3, 3]`` from (x, y, 1) of the file to metres. The coordinates
             of the file are pixels then.
 

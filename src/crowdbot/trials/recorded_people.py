@@ -115,6 +115,14 @@ class RecordedPeople:
         options = (self.fps, self.format or None, self.units or None, self.time_base)
         return _load(path, stamp.st_mtime_ns, stamp.st_size, *options)
 
+    def remarks(self) -> list[str]:
+        """Return why the file can hardly have the units or the columns that it is read with.
+
+        Raises:
+            InputError, DataError: as :meth:`tracks`.
+        """
+        return [f"{self.data}: warning: {sentence}" for sentence in self.tracks().warnings]
+
     def walks(self, duration: float) -> tuple[Walk, ...]:
         """Return the people of a trial of this duration [s], by id.
 

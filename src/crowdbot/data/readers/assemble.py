@@ -12,13 +12,14 @@ from crowdbot.data.rows import check_rows, floats, frame_step, integers
 from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
 
+from .plausibility import METRES_PER_DEGREE, FileColumns, check_walkers
 from .reader import ReadOptions
-from .time_base import check_walkers, row_rate_of
+from .time_base import row_rate_of
 
 __all__ = ["PER_METRE", "assemble", "check_units"]
 
-PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "px": 1.0}
-"""Units per metre; pixels are not converted."""
+PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "px": 1.0, "deg": 1.0 / METRES_PER_DEGREE}
+"""Units per metre; pixels are not converted, and degrees of longitude depend on the latitude, too."""
 
 
 def assemble(
@@ -34,6 +35,7 @@ def assemble(
     units: str = "m",
     note: str = "",
     line: NDArray[np.int64] | None = None,
+    columns: FileColumns | None = None,
     **rest: Any,
 ) -> Trajectories:
     """Assemble Trajectories from the columns of a file.
@@ -43,9 +45,10 @@ def assemble(
         id, frame, x, y: columns ``[N]`` of the file.
         fps: frames per second of the frame counter [1/s], if the file or its format defines it.
         row_rate: rows per second of a track [1/s], if the file defines that instead.
-        units: default units: ``m``, ``cm``, ``mm``, ``ft`` or ``px``.
+        units: default units: ``m``, ``cm``, ``mm``, ``ft``, ``deg`` or ``px``.
         note: remarks on the data.
         line: ``[N]`` line of each row in the file, for messages.
+        columns: names of the time column and of the third coordinate, for the plausibility check.
         rest: other fields of :class:`Trajectories`.
 
     Raises:
@@ -61,8 +64,14 @@ def assemble(
     step = int(rest.pop("frame_step", 0)) or frame_step(ids, frames)
     rate, assumed = row_rate_of(step, options, name, fps, row_rate)
     units = options.units or units
-    if PER_METRE[units] != 1.0:
+    columns = columns or FileColumns()
+    if units == "deg":
+        place, origin = _local_metres(place[0], place[1], name)
+        note = "; ".join(filter(None, (note, origin)))
+    elif PER_METRE[units] != 1.0:
         place = [axis / PER_METRE[units] for axis in place]
+        if columns.heights is not None:
+            columns = columns._replace(heights=columns.heights / PER_METRE[units])
     tracks = Trajectories(
         id=ids,
         frame=frames,
@@ -75,7 +84,24 @@ def assemble(
         note="; ".join(part for part in (note, assumed) if part),
         **rest,
     )
-    return check_walkers(tracks, options)
+    return check_walkers(tracks, options, columns)
+
+
+def _local_metres(
+    longitude: NDArray[np.float64], latitude: NDArray[np.float64], name: str
+) -> tuple[list[NDArray[np.float64]], str]:
+    """Return metres to the east and north of the middle of all places [degrees], and a note on the origin."""
+    for what, values, largest in (("longitude", longitude, 180.0), ("latitude", latitude, 90.0)):
+        if np.max(np.abs(values)) > largest:
+            wrong = values[np.argmax(np.abs(values))]
+            raise DataError(f"{name}: {what} is {wrong:g}, but degrees of {what} are at most {largest:g}")
+    east, north = (0.5 * float(np.min(axis) + np.max(axis)) for axis in (longitude, latitude))
+    x = (longitude - east) * METRES_PER_DEGREE * np.cos(np.radians(north))
+    y = (latitude - north) * METRES_PER_DEGREE
+    return [
+        x,
+        y,
+    ], f"degrees are converted to metres east (x) and north (y) of longitude {east:.7g}, latitude {north:.7g}"
 
 
 def check_units(units: str | None) -> None:

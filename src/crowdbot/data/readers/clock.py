@@ -66,7 +66,9 @@ def regular_rows(
         raise DataError(f"{where(name, int(np.argmin(np.isfinite(time))), line)}: its time is missing")
     dt = _step(id, time, name, line) if fps is None else 1.0 / fps
     if not FASTEST <= dt <= SLOWEST:
-        raise DataError(f"{name}: the time step is {dt:.4g}; times must be in seconds")
+        short = "time_ms" if dt < 2e3 else "time_us" if dt < 2e6 else "time_ns"
+        hint = f"; give --columns {short}=COLUMN if they are in another unit" if dt > SLOWEST else ""
+        raise DataError(f"{name}: the time step is {dt:.4g}; times must be in seconds{hint}")
     since = time - time.min()
     frame, phase, fitted = _fit(since, dt, fps is None)
     off = float(np.max(np.abs(since - phase - frame * fitted)))

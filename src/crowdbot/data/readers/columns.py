@@ -13,6 +13,7 @@ from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data.rows import integers, where
 
 __all__ = [
+    "TIME_UNITS",
     "Columns",
     "Lines",
     "check_columns",
@@ -21,6 +22,7 @@ __all__ = [
     "ids",
     "labels",
     "numbers",
+    "time_unit",
 ]
 
 Columns = dict[str, NDArray[Any]]
@@ -34,9 +36,19 @@ _NAMES = {
     "x": "x pos_x x_pos position_x x_position x_est x_center xcenter",
     "y": "y pos_y y_pos position_y y_position y_est y_center ycenter",
     "label": "label class type agent_type category",
+    "height": "z pos_z z_pos position_z z_position z_est z_center zcenter",
 }
 NAMES = {meaning: names.split() for meaning, names in _NAMES.items()}
 """Known names of each column, in lower case; x and y may have a unit, as in ``x_cm``, ``x/m`` or ``y [m]``."""
+LONGITUDE, LATITUDE = ("lon", "lng", "long", "longitude"), ("lat", "latitude")
+"""Names of columns in degrees, which are x and y where no column is called so."""
+TIME_UNITS = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
+TIME_QUANTITIES = {"time_ms": "milliseconds", "time_us": "microseconds", "time_ns": "nanoseconds"}
+"""Quantities that a user may name instead of ``time``, for times that are not in seconds."""
+TIME_WITH_UNIT = re.compile(
+    r"^(?:(.*?[a-z0-9])[\s_/]*[\[(/_\s]\s*)?"
+    r"(?:(ms|msec|millis|milliseconds)|(us|µs|usec|micros|microseconds)|(ns|nsec|nanos|nanoseconds))\s*[\])]?$"
+)
 
 DECIMAL_COMMA = re.compile(r"^[+-]?\d*(,\d*)?([eE][+-]?\d+)?$")
 """A number with a decimal comma; a table with such numbers has another delimiter."""
@@ -56,7 +68,7 @@ def find_columns(names: list[str], given: Mapping[str, str] | None = None) -> tu
     >>> find_columns(["who", "t", "x", "y"], {"id": "who"})
     ({'id': 'who', 'time': 't', 'x': 'x', 'y': 'y'}, '')
     """
-    chosen = dict(given or {})
+    chosen = {"time" if meaning in TIME_QUANTITIES else meaning: name for meaning, name in (given or {}).items()}
     found: dict[str, str] = {}
     units = ""
     plain = {name: name.strip().lower() for name in names}
@@ -66,11 +78,39 @@ def find_columns(names: list[str], given: Mapping[str, str] | None = None) -> tu
         for name, small in plain.items():
             wanted = name == chosen[meaning] if meaning in chosen else None
             unit = WITH_UNIT.match(small) if meaning in "xy" and small not in known else None
-            usual = (unit.group(1) if unit else small) in known and name not in chosen.values()
+            usual = (unit.group(1) if unit else small) in known or (meaning == "time" and _is_time_with_unit(small))
+            usual = usual and name not in chosen.values()
             if meaning not in found and (usual if wanted is None else wanted):
                 found[meaning] = name
                 units = unit.group(2) if unit else units
+    if not {"x", "y"} & {*found, *chosen}:
+        east, north = (next((n for n in names if plain[n] in known), None) for known in (LONGITUDE, LATITUDE))
+        found |= {"x": east, "y": north} if east is not None and north is not None else {}
+    if plain.get(found.get("x", "")) in LONGITUDE and plain.get(found.get("y", "")) in LATITUDE:
+        units = "deg"
+    if plain.get(found.get("x", "")) in LATITUDE and plain.get(found.get("y", "")) in LONGITUDE:
+        raise InputError(f"columns x={found['x']} y={found['y']}: x is the longitude and y the latitude, exchange them")
     return found, units
+
+
+def time_unit(column: str, given: Mapping[str, str] | None = None) -> str:
+    """Return the unit of a time column that the user or its name says, one of ``TIME_UNITS``; empty for seconds.
+
+    >>> time_unit("timestamp_ms"), time_unit("clock [us]"), time_unit("stamp", {"time_ns": "stamp"}), time_unit("time")
+    ('milliseconds', 'microseconds', 'nanoseconds', '')
+    """
+    named = next((unit for meaning, unit in TIME_QUANTITIES.items() if (given or {}).get(meaning) == column), "")
+    if named:
+        return named
+    unit = TIME_WITH_UNIT.match(column.strip().lower())
+    return next((long for long, short in zip(TIME_UNITS, unit.groups()[1:], strict=True) if short), "") if unit else ""
+
+
+def _is_time_with_unit(small: str) -> bool:
+    unit = TIME_WITH_UNIT.match(small)
+    if not unit:
+        return False
+    return unit.group(1) in NAMES["time"] if unit.group(1) else small in TIME_UNITS
 
 
 def check_columns(
@@ -96,10 +136,11 @@ def check_columns(
 
 def check_quantities(given: Mapping[str, str]) -> None:
     """Raise :class:`InputError` for columns of unknown quantities."""
+    known = [meaning for meaning in (*NAMES, *TIME_QUANTITIES) if meaning != "height"]
     for meaning in given:
-        if meaning not in NAMES:
+        if meaning not in known:
             raise InputError(
-                f"columns: unknown {meaning!r}{did_you_mean(meaning, NAMES)}; known are {', '.join(NAMES)}"
+                f"columns: unknown {meaning!r}{did_you_mean(meaning, known)}; known are {', '.join(known)}"
             )
 
 

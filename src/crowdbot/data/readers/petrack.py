@@ -16,6 +16,7 @@ from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
+from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
 __all__ = ["READER"]
@@ -62,6 +63,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         units=units,
         note="; ".join(note for note in notes if note),
         line=line,
+        columns=FileColumns(height="z", heights=values[:, 4]) if values.shape[1] == 5 else None,
     )
 
 

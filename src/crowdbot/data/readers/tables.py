@@ -19,6 +19,7 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .clock import regular_rows, row_rate_of_times
 from .columns import (
+    TIME_UNITS,
     Columns,
     Lines,
     check_columns,
@@ -26,7 +27,9 @@ from .columns import (
     ids,
     labels,
     numbers,
+    time_unit,
 )
+from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
 __all__ = ["CSV", "PARQUET", "ROBOT"]
@@ -106,8 +109,12 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
     name = source.name
     found, units = find_columns(list(columns), options.columns)
     check_columns(found, list(columns), name, options.columns)
-    known = [meaning for meaning in ("frame", "time", "x", "y") if meaning in found]
+    known = [meaning for meaning in ("frame", "time", "x", "y", "height") if meaning in found]
     values = {meaning: numbers(columns[found[meaning]], found[meaning], name, line) for meaning in known}
+    seconds, remark = found.get("time", ""), ""
+    if "time" in found and (unit := time_unit(found["time"], options.columns)):
+        values["time"] *= TIME_UNITS[unit]
+        seconds, remark = "", f"{found['time']} is read as {unit}"
     id, renamed = ids(columns[found["id"]], found["id"], name, line)
     named = labels(columns[found["label"]], id) if "label" in found else {}
     beside: dict[str, Any] = {
@@ -119,13 +126,15 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
         frame = integers(values["frame"], found["frame"], name, line)
         rate = row_rate_of_times(id, frame, values["time"]) if "time" in found else None
         rows: dict[str, Any] = {"id": id, "frame": frame, "x": values["x"], "y": values["y"], "row_rate": rate}
-        notes = renamed
+        notes = "; ".join(filter(None, (renamed, remark)))
+        seconds = seconds if options.fps is None else ""
     else:
         regular = regular_rows(id, values["time"], values["x"], values["y"], options.fps, name, line)
         rows = {"id": regular.id, "frame": regular.frame, "x": regular.x, "y": regular.y, "fps": regular.fps}
         line = line if regular.id is id else None  # positions that are interpolated are on no line
-        notes = "; ".join(filter(None, (renamed, regular.note)))
-    return assemble(source, options, line=line, **{**rows, "note": notes, **beside, **extra})
+        notes = "; ".join(filter(None, (renamed, remark, regular.note)))
+    evidence = FileColumns(seconds, found.get("height", ""), values.get("height"), named=True)
+    return assemble(source, options, line=line, columns=evidence, **{**rows, "note": notes, **beside, **extra})
 
 
 def _metadata_fields(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:

@@ -46,7 +46,8 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
-    Stages of implausible size, robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
+    Stages of implausible size, recordings whose units can hardly be those that are read, robots that cannot pass uneven
+    ground, and cameras that look at a wall, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -75,7 +76,8 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return [*stage_size_remarks(trial), *found, *ground_remarks(trial), *camera_remarks(trial)]
+    recorded = [sentence for one in trial.recorded for sentence in one.remarks()]
+    return [*stage_size_remarks(trial), *found, *recorded, *ground_remarks(trial), *camera_remarks(trial)]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:

@@ -1,0 +1,249 @@
+"""Plausibility of a recording: whether the speeds, times and places in a file can be those of people.
+
+Nothing is converted here: a wrong guess would be silent. Each warning in the note of the tracks says which number is
+odd, and which option corrects it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import DataError
+from crowdbot.data.trajectories import Trajectories
+
+from .reader import ReadOptions
+from .time_base import RowRateError
+
+__all__ = ["FileColumns", "check_walkers"]
+
+LONG_ROW, LONGEST_ROW = 1.0, 2.0
+"""Time step [s] above which the speed decides whether ``fps`` is a row rate, and above which it always is one."""
+MIN_ROW_RATE, MAX_ROW_RATE = 0.5, 15.0
+"""Range of row rates of recordings of people [1/s]; another ``fps`` is not taken for one."""
+SLOWEST, FASTEST = 0.02, 5.0
+"""Range of the median speed of people [m/s]."""
+SPEED_TIME = 0.4
+"""Time over which speeds are measured in recordings with shorter steps [s]."""
+MOVING, SLOW_WALK, FAST_WALK = 0.2, 0.3, 2.5
+"""Speed above which people move, and range of the median speed of those who do [m/s]."""
+LONG_STAMPS = 60.0
+"""Time between rows [s] above which time stamps are not in seconds, whatever the speeds are."""
+STAMP_UNITS = (("ms", "milliseconds", 1e3), ("us", "microseconds", 1e6), ("ns", "nanoseconds", 1e9))
+"""Units of time stamps, per second."""
+TRACKER_STEPS = (1e-3, 10.0)
+"""Shortest and longest plausible time between rows [s]."""
+WALKED = 1.0
+"""Shortest way [m] of somebody in a recording whose slow speeds are judged: people who stand are slow, too."""
+WIDEST_DEGREES = 0.1
+"""Largest extent of places in degrees: 11 km."""
+METRES_PER_DEGREE = 111_195.0
+SMALLER_UNITS = (("cm", 100.0), ("mm", 1000.0))
+HEAD_RANGE = 0.6
+"""Largest range [m] of the heights of heads, 5 to 95 %: adults differ by 0.3 m, children and adults by 0.5 m."""
+LINE = 0.01
+"""Extent [m] below which a coordinate is constant."""
+OVERLAP, OVERLAP_SHARE = 0.2, 0.02
+"""Distance [m] at which bodies overlap, and the share of rows above which people seem to walk through each other."""
+
+
+class FileColumns(NamedTuple):
+    """What a reader knows of the columns of a file.
+
+    Fields:
+        time: name of the time column that gives the time step; empty if frames and a frame rate do.
+        height: name of the third coordinate; empty if there is none.
+        heights: ``[N]`` values of the third coordinate, in the units of x and y.
+        named: whether the user can choose the columns by name.
+    """
+
+    time: str = ""
+    height: str = ""
+    heights: NDArray[np.float64] | None = None
+    named: bool = False
+
+
+def check_walkers(tracks: Trajectories, options: ReadOptions, columns: FileColumns | None = None) -> Trajectories:
+    """Return the tracks, with warnings in their note if their speeds, times or places are not those of people.
+
+    Raises:
+        RowRateError: ``options.fps`` is 0.5 to 15 and makes the time step longer than 2 s, or longer than 1 s at a
+            speed that is impossible, but possible with the same number as rows per second.
+        DataError: ``options.fps`` is given and the time stamps are not in seconds.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):  # coordinates may be as large as numbers get
+        return _check(tracks, options, columns or FileColumns())
+
+
+def _check(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> Trajectories:
+    stamps = _stamp_warning(tracks, columns)
+    speed = _median_speed(tracks)
+    fps, step = options.fps, tracks.frame_step
+    if fps is not None and step > 1:
+        slow = tracks.dt > LONG_ROW and _impossible(speed) and not _impossible(speed * step)
+        if MIN_ROW_RATE <= fps <= MAX_ROW_RATE and (tracks.dt > LONGEST_ROW or slow):
+            if stamps:
+                raise DataError(f"{tracks.name}: {stamps}")
+            moved = "" if math.isnan(speed) else f" and the median speed {speed:.2g} m/s"
+            raise RowRateError(
+                f"{tracks.name}: fps {fps:g} makes the time step {tracks.dt:.4g} s ({step} frames per row){moved};"
+                f" fps is frames per second, for {fps:g} rows per second give fps {fps * step:g}",
+                fps * step,
+            )
+    odd = stamps or _degree_warning(tracks, options) or _speed_warning(tracks, options, speed)
+    sentences = (odd, _height_warning(tracks, columns))
+    warnings = [f"warning: {sentence}" for sentence in sentences if sentence]
+    new = [warning for warning in warnings if warning not in tracks.note]
+    return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, *new)))) if new else tracks
+
+
+def _stamp_warning(tracks: Trajectories, columns: FileColumns) -> str:
+    """Return a warning if the times of a file are probably not in seconds, else an empty text."""
+    dt = tracks.dt
+    if not columns.time or dt < 1.0:
+        return ""
+    speed = _speeds(tracks)
+    fast = float(np.percentile(speed, 90)) if len(speed) else math.nan
+    fits = [unit for unit in STAMP_UNITS if TRACKER_STEPS[0] <= dt / unit[2] <= TRACKER_STEPS[1]]
+    walks = [unit for unit in fits if SLOW_WALK <= fast * unit[2] <= FASTEST]
+    if dt <= LONG_STAMPS and not (walks and fast < SLOWEST and _longest_way(tracks) > WALKED):
+        return ""
+    short, unit, _ = next(iter(walks or fits), STAMP_UNITS[-1])
+    moved = "" if math.isnan(fast) else f" and 90 % of the speeds are below {fast:.2g} m/s"
+    return (
+        f"the times in {columns.time} are {dt:.4g} s apart{moved}: they are probably in {unit},"
+        f" give --columns time_{short}={columns.time}"
+    )
+
+
+def _degree_warning(tracks: Trajectories, options: ReadOptions) -> str:
+    """Return a warning if places are probably longitude and latitude in degrees, else an empty text."""
+    x, y = tracks.x, tracks.y
+    extent = max(float(np.ptp(x)), float(np.ptp(y)))
+    if tracks.units != "m" or options.units is not None or not 0.0 < extent < WIDEST_DEGREES:
+        return ""
+    if np.max(np.abs(x)) > 180.0 or np.max(np.abs(y)) > 180.0:
+        return ""
+    speed = _speeds(tracks)
+    fast = float(np.percentile(speed, 90)) if len(speed) else 0.0
+    walks = SLOW_WALK <= fast * METRES_PER_DEGREE <= FASTEST
+    if not walks or _longest_way(tracks) * METRES_PER_DEGREE < WALKED:
+        return ""
+    return (
+        f"all places are within {extent:.2g} m and 90 % of the speeds are below {fast:.2g} m/s: they are probably"
+        " degrees of longitude (x) and latitude (y), give --units deg"
+    )
+
+
+def _height_warning(tracks: Trajectories, columns: FileColumns) -> str:
+    """Return a warning if x or y is probably the height of heads, else an empty text."""
+    if tracks.units != "m":
+        return ""
+    place = {"y": tracks.y, "x": tracks.x}
+    spread = {name: _spread(values) for name, values in place.items()}
+    varied = 0.0 if columns.heights is None else _spread(columns.heights)
+    remedy = f"give --columns y={columns.height or 'NAME'}" if columns.named else "write a CSV and give --columns"
+    for name, values in place.items():
+        if spread[name] < HEAD_RANGE and varied > max(1.0, 4.0 * spread[name]):
+            return (
+                f"{name} stays within {spread[name]:.2g} m at {np.median(values):.3g} m while {columns.height} varies"
+                f" by {varied:.3g} m: {name} is probably the height, {remedy.replace('y=', name + '=')}"
+            )
+    flat = next((name for name, values in place.items() if float(np.ptp(values)) < LINE), "")
+    if not flat or max(spread.values()) < 1.0:
+        return ""
+    share = _overlap_share(tracks)
+    if share < OVERLAP_SHARE:
+        return ""
+    return (
+        f"{flat} is constant at {np.median(place[flat]):.3g} m, and {100.0 * share:.2g} % of the positions are within"
+        f" {OVERLAP} m of somebody: {flat} is perhaps the height, {remedy.replace('y=', flat + '=')}"
+    )
+
+
+def _spread(values: NDArray[np.float64]) -> float:
+    """Return the range of 5 to 95 % of the values."""
+    finite = values[np.isfinite(values)]
+    return float(np.ptp(np.percentile(finite, [5, 95]))) if len(finite) else 0.0
+
+
+def _longest_way(tracks: Trajectories) -> float:
+    """Return the largest extent of a track along x or y, in the units of the tracks."""
+    order = np.argsort(tracks.id, kind="stable")
+    begins = np.flatnonzero(np.diff(tracks.id[order], prepend=tracks.id[order[0]] - 1))
+    place = tracks.position[order]
+    return float(np.max(np.maximum.reduceat(place, begins) - np.minimum.reduceat(place, begins)))
+
+
+def _overlap_share(tracks: Trajectories) -> float:
+    """Return the share of positions that have another one of the same frame within ``OVERLAP`` along x and y."""
+    order = np.lexsort((tracks.y, tracks.x, tracks.frame))
+    near = (np.diff(tracks.frame[order]) == 0) & np.all(np.abs(np.diff(tracks.position[order], axis=0)) < OVERLAP, 1)
+    return float(np.mean(np.append(near, False) | np.insert(near, 0, False)))
+
+
+def _speed_warning(tracks: Trajectories, options: ReadOptions, speed: float) -> str:
+    """Return a warning if people are too fast or too slow, else an empty text."""
+    given = options.fps is not None or options.units is not None
+    if not (speed > FASTEST or (given and speed < SLOWEST)):
+        return _walking_warning(tracks)
+    smaller = () if options.units is not None else SMALLER_UNITS
+    fits = next((unit for unit, per in smaller if SLOW_WALK < speed / per < FAST_WALK), "")
+    hint = f", with --units {fits} it is {speed / dict(SMALLER_UNITS)[fits]:.2g} m/s" if fits else ""
+    return f"the median speed {speed:.2g} m/s is impossible for people, check fps and units{hint}"
+
+
+def _walking_warning(tracks: Trajectories) -> str:
+    """Return a warning if the people who move do not walk, else an empty text."""
+    speed = _speeds(tracks)
+    moving = speed[speed > MOVING]
+    usual = float(np.median(moving)) if len(moving) > 0.1 * len(speed) else math.nan
+    if SLOW_WALK <= usual <= FAST_WALK or math.isnan(usual):
+        return ""
+    return (
+        f"people who move have a median speed of {usual:.2g} m/s, people who walk {SLOW_WALK:g} to"
+        f" {FAST_WALK:g} m/s, check fps and units"
+    )
+
+
+def _median_speed(tracks: Trajectories) -> float:
+    """Return the median speed of people [m/s]; NaN if no one has two rows, or the units are pixels."""
+    known = _speeds(tracks)
+    return float(np.median(known)) if len(known) else math.nan
+
+
+def _speeds(tracks: Trajectories) -> NDArray[np.float64]:
+    """Return the speeds of people [m/s]; none if the units are pixels.
+
+    Rows of a video are compared with those about 0.4 s before: boxes of whole pixels stand still from frame to frame.
+    """
+    if tracks.units != "m":
+        return np.empty(0)
+    others = sorted(tracks.robots | tracks.other_agents.keys())
+    people = ~np.isin(tracks.id, np.asarray(others, dtype=np.int64))
+    apart = _speeds_over(tracks, people, round(SPEED_TIME / tracks.dt))
+    if len(apart):
+        return apart
+    velocity = tracks.velocities()[people]
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    return np.asarray(speed[~np.isnan(speed)])
+
+
+def _speeds_over(tracks: Trajectories, people: NDArray[np.bool_], rows: int) -> NDArray[np.float64]:
+    """Return the speeds of people between rows of a track that are this many rows apart [m/s]; none below 2 rows."""
+    if rows < 2:
+        return np.empty(0)
+    order = np.lexsort((tracks.frame[people], tracks.id[people]))
+    id, frame = tracks.id[people][order], tracks.frame[people][order]
+    place = tracks.position[people][order]
+    whole = (id[rows:] == id[:-rows]) & (frame[rows:] - frame[:-rows] == rows * tracks.frame_step)
+    moved = (place[rows:] - place[:-rows])[whole]
+    return np.asarray(np.hypot(moved[:, 0], moved[:, 1]) / (rows * tracks.dt))
+
+
+def _impossible(speed: float) -> bool:
+    return speed < SLOWEST or speed > FASTEST
