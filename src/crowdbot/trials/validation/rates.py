@@ -45,7 +45,8 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
-    Robots that cannot pass uneven ground, and cameras that look at a wall, are told, too.
+    Robots that cannot pass uneven ground or whose motors are too weak for their wheels, and cameras that look at a
+    wall, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -74,7 +75,13 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    return [*found, *ground_remarks(trial), *camera_remarks(trial)]
+    return [*found, *_weak_motors(trial), *ground_remarks(trial), *camera_remarks(trial)]
+
+
+def _weak_motors(trial: Trial) -> list[str]:
+    if trial.world != "physics":
+        return []
+    return [f"robot {robot.name!r}: {why}" for robot in trial.robots for why in robot.body.weak_motors]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:

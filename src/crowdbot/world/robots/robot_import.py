@@ -141,7 +141,8 @@ def import_robot(
     root = _robot_element(done)
     _sensor_elements(done, root, document.root)
     urdf, copies = _urdf_element(done, document.root)
-    add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), done.urdf)
+    speed = float(root.each("drive")[0].attributes["max-speed"])
+    remarks += add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), speed, done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
     if base.rolls_sideways:
