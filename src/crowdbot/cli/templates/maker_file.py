@@ -223,7 +223,10 @@ def _print_drives(tests: Sequence[DriveTest]) -> None:
     """Print the speeds that the robot reaches, and what is wrong with its motion."""
     worlds = {"planar": "in the plane", "physics": "in the physics world"}
     after = ("after 2 s ", *("" for _ in tests))
-    speeds = [f"{test.speed:.2f} m/s {when}{worlds[test.world]}" for when, test in zip(after, tests, strict=False)]
+    speeds = [
+        f"{round(test.speed, 2) + 0.0:.2f} m/s {when}{worlds[test.world]}"
+        for when, test in zip(after, tests, strict=False)
+    ]
     print(f"drives: {', '.join(speeds)}")
     for test in tests:
         if test.problem:
