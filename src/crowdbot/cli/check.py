@@ -123,13 +123,13 @@ def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    row = describe(robot.model, robot.posture) | {
+    found = describe(robot.model, robot.posture) | {
         "footprint": robot.footprint.tolist(),
         "drive": repr(robot.drive),
         "latency": robot.latency,
         "sensors": {mount.name: repr(mount.sensor) for mount in robot.mounts},
     }
-    return {"problems": [], "robot": row}
+    return {"problems": [], "robot": found, "remarks": list(robot.weak_motors)}
 
 
 def _print(name: str, row: dict[str, Any]) -> None:

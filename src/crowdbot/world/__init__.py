@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.gl_context import graphics_library
     from .rendering.renderer import Renderer
-    from .robot_contract import check_robot
+    from .robot_contract import DriveTest, check_robot, drive_tests
     from .robots.guess_table import Guess
     from .robots.joint_motion import check_joint, free_joints, move_joint
     from .robots.mount import MountPlacement, SensorMount
@@ -182,6 +182,8 @@ _LAZY = {
     "check_room": "live_changes",
     "check_robot": "robot_contract",
     "describe": "urdf",
+    "drive_tests": "robot_contract",
+    "DriveTest": "robot_contract",
     "environment_seeds": "crowd.people_flow",
     "frame": "urdf.transforms",
     "Fall": "physics.balance.fall",
@@ -252,6 +254,7 @@ __all__ = [
     "DoorLeaf",
     "Doors",
     "Drive",
+    "DriveTest",
     "Fall",
     "Ground",
     "GroundPart",
@@ -312,6 +315,7 @@ __all__ = [
     "check_robot",
     "check_room",
     "describe",
+    "drive_tests",
     "environment_seeds",
     "frame",
     "free_joints",

@@ -7,6 +7,7 @@ import math
 import re
 import shutil
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from crowdbot.cli.output import add_json, note, print_json
 from crowdbot.cli.settings import settings
 
 if TYPE_CHECKING:
-    from crowdbot.world import Guess, Robot, RobotFolder
+    from crowdbot.world import DriveTest, Guess, Robot, RobotFolder
 
 __all__ = ["add_robot_options", "convert_robot", "is_robot_file"]
 
@@ -65,7 +66,7 @@ def is_robot_file(path: Path) -> bool:
 def convert_robot(options: argparse.Namespace) -> int:
     """Write the robot folder and a trial, and print what was recognized."""
     from crowdbot.core import InputError
-    from crowdbot.world import Robot
+    from crowdbot.world import Robot, drive_tests
 
     out = options.out or Path(_robot_name(options.file))
     if not re.fullmatch(r"[A-Za-z][\w-]*", out.name, re.ASCII):
@@ -80,10 +81,12 @@ def convert_robot(options: argparse.Namespace) -> int:
     _write_folder(out, made)
     robot = Robot.load(out)
     _write_text(trial, _hall(out.name, robot))
+    tests = drive_tests(robot)
     if options.json:
-        print_json(_summary(made, out, trial, confirmed))
+        print_json(_summary(made, out, trial, confirmed) | {"drives": [test._asdict() for test in tests]})
         return 0
     print(f"wrote {out}\nwrote {trial}")
+    _print_drives(tests)
     print(f"\ncheck it    crowdbot check {out}")
     print(f"look at it  crowdbot render {trial} --out {out.name}.png")
     print(f"run it      crowdbot run {trial}")
@@ -214,6 +217,20 @@ def _print_table(made: RobotFolder) -> None:
         if len(made.remarks) > MOST_REMARKS:
             print(f"  - and {len(made.remarks) - MOST_REMARKS} more, in import.json of the robot folder")
     print()
+
+
+def _print_drives(tests: Sequence[DriveTest]) -> None:
+    """Print the speeds that the robot reaches, and what is wrong with its motion."""
+    worlds = {"planar": "in the plane", "physics": "in the physics world"}
+    after = ("after 2 s ", *("" for _ in tests))
+    speeds = [
+        f"{round(test.speed, 2) + 0.0:.2f} m/s {when}{worlds[test.world]}"
+        for when, test in zip(after, tests, strict=False)
+    ]
+    print(f"drives: {', '.join(speeds)}")
+    for test in tests:
+        if test.problem:
+            print(f"warning: {worlds[test.world]}, {test.problem}")
 
 
 def _row(guess: Guess) -> tuple[str, str, str, str, str]:

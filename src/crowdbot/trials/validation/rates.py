@@ -47,7 +47,7 @@ def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every model beyond its range, and for every robot with other sensor rates than its type.
 
     Stages of implausible size, recordings whose units can hardly be those that are read, robots that cannot pass uneven
-    ground, and cameras that look at a wall, are told, too.
+    ground or whose motors are too weak for their wheels, and cameras that look at a wall, are told, too.
 
     Sensors with ``sensor-rates="exact"`` keep the mean rate of their type.
 
@@ -77,7 +77,14 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f" {trial.step:g} s: {words}{exact}"
             )
     recorded = [sentence for one in trial.recorded for sentence in one.remarks()]
-    return [*stage_size_remarks(trial), *found, *recorded, *ground_remarks(trial), *camera_remarks(trial)]
+    robots, rest = _weak_motors(trial), (*ground_remarks(trial), *camera_remarks(trial))
+    return [*stage_size_remarks(trial), *found, *recorded, *robots, *rest]
+
+
+def _weak_motors(trial: Trial) -> list[str]:
+    if trial.world != "physics":
+        return []
+    return [f"robot {robot.name!r}: {why}" for robot in trial.robots for why in robot.body.weak_motors]
 
 
 def _keep_rates(mounts: Sequence[Mount], clock: FreeClock) -> str:

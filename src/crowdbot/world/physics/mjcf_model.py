@@ -15,6 +15,7 @@ from crowdbot.world.robots.drives.ackermann import AckermannDrive
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot
+from crowdbot.world.robots.wheel import resistance
 from crowdbot.world.urdf import BaseServo, mjcf
 from crowdbot.world.urdf.geoms import row
 
@@ -144,7 +145,9 @@ def _torques(robot: Robot) -> dict[str, float]:
             if joint:
                 effort = robot.model.joints[joint].motor.effort
                 limited = math.isfinite(effort) and effort > 0.0
-                found[joint] = effort if limited else GRAVITY * robot.model.mass * wheel.radius
+                speed = float(getattr(robot.drive, "max_speed", 0.0)) / wheel.radius
+                spin = GRAVITY * robot.model.mass * wheel.radius + resistance(robot.model.joints[joint], speed)
+                found[joint] = effort if limited else spin
     return found
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from crowdbot.core import Element, InputError, parse_number
 
-__all__ = ["DriveParameters", "FoundSensor", "find_sensors", "guess_sensors", "read_drive_parameters"]
+__all__ = ["SAME", "DriveParameters", "FoundSensor", "find_sensors", "guess_sensors", "read_drive_parameters"]
 
 
 class FoundSensor(NamedTuple):
@@ -24,18 +24,33 @@ class FoundSensor(NamedTuple):
 
 
 class DriveParameters(NamedTuple):
-    """Numbers of drive plugins and controllers by name, the names of plugins, and where each number is from."""
+    """Numbers of drive plugins and controllers.
+
+    Fields:
+        plugins: names of plugins.
+        values: numbers by name.
+        sources: where each number is from; that of the drive plugin if left out.
+        others: what a place that does not count gives instead, by name.
+    """
 
     plugins: tuple[str, ...]
     values: dict[str, float]
     sources: Mapping[str, str] = MappingProxyType({})
+    others: Mapping[str, str] = MappingProxyType({})
 
     def extend(self, plugins: tuple[str, ...], values: Mapping[str, float], source: str) -> DriveParameters:
         """Return the parameters with those of a controller, which come first."""
         sources = {**self.sources, **dict.fromkeys(values, source)}
-        return DriveParameters((*plugins, *self.plugins), {**self.values, **values}, sources)
+        others = dict(self.others)
+        for name, value in values.items():
+            old = self.values.get(name, value)
+            if not math.isclose(old, value, rel_tol=SAME):
+                others[name] = f"{self.sources.get(name, 'the drive plugin')} has {old:.4g}"
+        return DriveParameters((*plugins, *self.plugins), {**self.values, **values}, sources, others)
 
 
+SAME = 0.01
+"""Largest relative difference of two values that are the same, rounded."""
 NAMES = {
     "track": ("wheelSeparation", "wheel_separation", "wheelseparation", "kingpin_width"),
     "radius": ("wheel_radius", "wheelRadius"),

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, did_you_mean, parse_number
 
-__all__ = ["DERIVED", "FILE", "GIVEN", "GUESS", "Guess", "GuessTable"]
+__all__ = ["DERIVED", "DOUBTFUL", "FILE", "GIVEN", "GUESS", "Guess", "GuessTable"]
 
-FILE, DERIVED, GUESS, GIVEN = "file", "derived", "guess", "given"
+FILE, DERIVED, GUESS, GIVEN, DOUBTFUL = "file", "derived", "guess", "given", "doubtful"
 
 
 class Guess(NamedTuple):
@@ -19,7 +19,8 @@ class Guess(NamedTuple):
         what, value: name and value.
         source: where it is from.
         change: how to change it.
-        status: ``file`` (the file gives it), ``derived`` (follows from the file), ``guess``, or ``given`` by the user.
+        status: ``file`` (the file gives it), ``derived`` (follows from the file), ``guess``, ``doubtful`` (the file
+            gives it, but it is implausible or contradicts another place), or ``given`` by the user.
     """
 
     what: str
@@ -31,7 +32,7 @@ class Guess(NamedTuple):
     @property
     def open(self) -> bool:
         """Whether the user has to confirm the value."""
-        return self.status in (DERIVED, GUESS)
+        return self.status in (DERIVED, GUESS, DOUBTFUL)
 
 
 class GuessTable:

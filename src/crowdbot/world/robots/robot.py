@@ -21,7 +21,7 @@ from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 from .link_dynamics import LinkDynamics, link_problem
 from .mount import SensorMount
 from .robot_file import FILE, read_robot_file
-from .wheel import Wheel
+from .wheel import Wheel, weak_motor
 
 __all__ = ["Robot", "builtin_robots", "spatial"]
 
@@ -191,6 +191,22 @@ class Robot:
         points = self.model.points(self.posture)
         lowest = float(points[:, 2].min()) if len(points) else 0.0
         return -lowest if lowest < -SUNK else 0.0
+
+    @property
+    def weak_motors(self) -> tuple[str, ...]:
+        """Sentences about motors that do not turn their wheels at the maximum speed in the physics world.
+
+        >>> Robot.load("turtlebot2").weak_motors
+        ()
+        """
+        speed, joints = float(getattr(self.drive, "max_speed", 0.0)), self.model.joints
+        motors = [] if self.base == "planar" else [wheel for wheel in self.wheels if wheel.driven]
+        found = [
+            weak_motor(joints[wheel.joint], joints[wheel.joint].motor.effort, speed / wheel.radius)
+            for wheel in motors
+            if joints[wheel.joint].motor.effort > 0.0
+        ]
+        return tuple(sentence for sentence in found if sentence)
 
     def mount(self, name: str) -> SensorMount:
         """Return the sensor of this name.

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from crowdbot.core import Element, RobotError, format_xml
 from crowdbot.world.robots.drives.base_drive import (
@@ -26,8 +27,8 @@ from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, rea
 
 from .base_kind import BaseKind, recognize_base, wheel_springs
 from .controllers import JointLimits, find_controller_files, read_controllers, read_joint_limits
-from .gazebo_tags import DriveParameters, find_sensors, guess_sensors, read_drive_parameters
-from .guess_table import DERIVED, FILE, GIVEN, GUESS, Guess, GuessTable
+from .gazebo_tags import SAME, DriveParameters, find_sensors, guess_sensors, read_drive_parameters
+from .guess_table import DERIVED, DOUBTFUL, FILE, GIVEN, GUESS, Guess, GuessTable
 from .robot_urdf import (
     add_masses,
     add_motors,
@@ -41,6 +42,13 @@ from .robot_urdf import (
 __all__ = ["Guess", "RobotFolder", "import_robot"]
 
 GROUND_LINK = "drive_center"
+TEMPLATE = 1.0
+"""Limit of commands in the templates of ``<ros2_control>``, which many files keep."""
+PLAUSIBLE = {
+    "max_speed": (0.2, 5.0), "max_acceleration": (0.1, 5.0), "max_turn_rate": (0.2, 10.0),
+    "max_turn_acceleration": (0.2, 20.0),
+}  # fmt: skip
+"""Usual limits of bases, in SI units; a file with others may have been written for another purpose."""
 SIDEWAYS = (
     "the wheels roll along y, but the front of a robot is along x (REP 103), so it would drive sideways; turn the base"
     " of the robot file by 90 degrees"
@@ -133,7 +141,8 @@ def import_robot(
     root = _robot_element(done)
     _sensor_elements(done, root, document.root)
     urdf, copies = _urdf_element(done, document.root)
-    add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), done.urdf)
+    speed = float(root.each("drive")[0].attributes["max-speed"])
+    remarks += add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), speed, done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
     if base.rolls_sideways:
@@ -183,9 +192,8 @@ def _robot_element(done: _Conversion) -> Element:
         table.add("footprint", "outline of the visuals", "the file has no colliders", "<footprint> in robot.xml", GUESS)
         root.children.append(Element("footprint", {"radius": format_number(_reach(model))}))
     for wheel in base.wheels:
-        radius = table.number(
-            f"wheel {wheel.joint}", wheel.radius, "radius of its shape", "<wheel> in robot.xml", DERIVED, unit="m"
-        )
+        why = "radius of its shape" + _other(done, "radius", wheel.radius)
+        radius = table.number(f"wheel {wheel.joint}", wheel.radius, why, "<wheel> in robot.xml", DERIVED, unit="m")
         row = {"joint": wheel.joint, "radius": format_number(radius)}
         row |= {"steering": wheel.steering} if wheel.steering else {}
         row |= {} if wheel.joint in base.driven else {"driven": "false"}
@@ -213,14 +221,13 @@ def _reach(model: RobotModel) -> float:
 
 def _drive(done: _Conversion) -> dict[str, str]:
     """Return the attributes of <drive>, and list each with its source."""
-    base, given, sources = done.base, done.parameters.values, done.parameters.sources
+    base, given = done.base, done.parameters.values
     kind = drive_type(base, done.wheeled)
     done.table.add("drive", kind, f"{base.kind} base", "type= of <drive> in robot.xml", DERIVED)
     row = {"type": kind}
 
     def choose(key: str, guess: float, why: str, status: str, unit: str) -> float:
-        if key in given:
-            guess, why, status = given[key], sources.get(key, "the drive plugin"), FILE
+        guess, why, status = _plausible(done, key, *(_given(done, key) if key in given else (guess, why, status)))
         name = key.replace("_", "-")
         value = done.table.number(name, guess, why, f"{name}= of <drive> in robot.xml", status, unit=unit)
         row[name] = repr(value) if key == "max_steering" else format_number(value)  # rounded up, it may exceed pi / 2
@@ -233,13 +240,14 @@ def _drive(done: _Conversion) -> dict[str, str]:
     if kind in ("ackermann-drive", "tricycle-drive"):
         angle, why, status = _steering(done)
         if status == FILE and given.get("max_steering", 0.0) > angle:  # the inner wheel would reach its joint limit
+            why, status = why + _other(done, "max_steering", angle), DOUBTFUL
             given = {key: value for key, value in given.items() if key != "max_steering"}
         choose("max_steering", angle, why, status, "rad")
         choose("max_steering_rate", 1.0, "common value", GUESS, "rad/s")
         if base.wheelbase:
             given = {key: value for key, value in given.items() if key != "wheelbase"}
-        choose("wheelbase", base.wheelbase or 0.6, "places of the wheels" if base.wheelbase else "common value",
-               DERIVED if base.wheelbase else GUESS, "m")  # fmt: skip
+        why = "places of the wheels" + _other(done, "wheelbase", base.wheelbase) if base.wheelbase else "common value"
+        choose("wheelbase", base.wheelbase or 0.6, why, DERIVED if base.wheelbase else GUESS, "m")
     else:
         track = base.track or given.get("track", 0.5)
         wheels, reach, most = wheel_attributes(base, track, done.wheeled)
@@ -252,10 +260,9 @@ def _drive(done: _Conversion) -> dict[str, str]:
         given = {}
         for key, value, unit in wheels:
             if key == "first_angle":
-                done.table.add("first-angle", f"{value:.4g} rad", "places of the wheels", "first-angle=", DERIVED)
-                row["first-angle"] = format_number(value)
+                row["first-angle"] = _first_angle(done, value)
             else:
-                choose(key, value, "places of the wheels", DERIVED, unit)
+                choose(key, value, "places of the wheels" + _other(done, key, value), DERIVED, unit)
         if kind == "differential-drive":
             most, why = curve_limit(done.model, base, done.wheeled)
             choose("max_lateral_acceleration", most, why, DERIVED, "m/s2")
@@ -264,33 +271,102 @@ def _drive(done: _Conversion) -> dict[str, str]:
                 choose(key, value, "masses of the links", DERIVED, "m")
             choose("friction", tire_friction(done.model, base), "<mu1> of the wheels, at most 1", DERIVED, "")
         if wheels:
-            fastest = _wheel_limit(done)
+            fastest = _wheel_speed(done)
             need = (speed + turn * reach) * (math.sqrt(2.0) if kind == "mecanum-drive" else 1.0) / base.wheels[0].radius
-            why = "<limit> of the wheels" if fastest else "speed and turn rate"
-            choose("max_wheel_speed", fastest or need, why, FILE if fastest else DERIVED, "rad/s")
+            why, status = (fastest.source, fastest.status) if fastest.value else ("speed and turn rate", DERIVED)
+            choose("max_wheel_speed", fastest.value or need, why, status, "rad/s")
     return row
+
+
+def _first_angle(done: _Conversion, angle: float) -> str:
+    done.table.add("first-angle", f"{angle:.4g} rad", "places of the wheels", "first-angle=", DERIVED)
+    return format_number(angle)
+
+
+def _given(done: _Conversion, key: str) -> tuple[float, str, str]:
+    """Return what a plugin or controller gives, with source and status."""
+    parameters = done.parameters
+    value, why = parameters.values[key], parameters.sources.get(key, "the drive plugin")
+    others = [parameters.others[key]] if key in parameters.others else []
+    others += _exceeded(done, value) if key == "max_speed" else []
+    return value, "; ".join([why, *others]), DOUBTFUL if others else FILE
+
+
+def _other(done: _Conversion, key: str, value: float) -> str:
+    """Return what a plugin or controller gives instead of a value that counts, as an end of a sentence."""
+    other = done.parameters.values.get(key, value)
+    if math.isclose(other, value, rel_tol=SAME):
+        return ""
+    return f"; {done.parameters.sources.get(key, 'the drive plugin')} has {other:.4g}"
+
+
+def _plausible(done: _Conversion, key: str, value: float, why: str, status: str) -> tuple[float, str, str]:
+    """Return a value with source and status, which say whether it is implausible."""
+    low, high = PLAUSIBLE.get(key, (0.0, math.inf))
+    if low <= value <= (high if done.base.wheels else math.inf):
+        return value, why, status
+    reason = f"below {low:g}" if value < low else f"above {high:g}"
+    return value, f"{why}; implausible: {reason}", DOUBTFUL if status == FILE else status
+
+
+class _WheelSpeed(NamedTuple):
+    """The limit of the driven wheels that counts [rad/s] (0 without one), its source and status, and what does not."""
+
+    value: float
+    source: str
+    status: str
+    ignored: str = ""
+
+
+def _wheel_speed(done: _Conversion) -> _WheelSpeed:
+    """Return the limit of the driven wheels in ``<ros2_control>`` or ``<limit>``.
+
+    The lower one counts. But commands of up to 1, or for a base that creeps, are often left from a template: then the
+    joint decides.
+    """
+    radius = done.base.wheels[0].radius if done.base.wheels else 0.0
+    commands = [done.joints[name].velocity for name in done.base.driven if name in done.joints]
+    limits = [done.model.joints[name].motor.velocity for name in done.base.driven]
+    rows = [[value for value in row if 0.0 < value < math.inf] for row in (commands, limits)]
+    command, limit = (min(row, default=0.0) for row in rows)
+    places = ((command, "<ros2_control> of the wheels"), (limit, "<limit> of the wheels"))
+    usable = [(value, place) for value, place in places if 0.05 <= value * radius <= 5.0]
+    ignored = "; ".join(f"{place} has {value:.4g} rad/s" for value, place in places if value > 0.0)
+    if not usable:
+        return _WheelSpeed(0.0, "", GUESS, ignored)
+    creeps = command == TEMPLATE or command * radius < PLAUSIBLE["max_speed"][0]
+    if len(usable) == 2 and not math.isclose(command, limit, rel_tol=SAME):
+        value, place = usable[1] if creeps else min(usable)
+        other, elsewhere = usable[0] if place == usable[1][1] else usable[1]
+        template = ", perhaps of a template" if creeps else ""
+        return _WheelSpeed(value, f"{value:.4g} rad/s in {place}; {elsewhere} has {other:.4g}{template}", DOUBTFUL)
+    value, place = usable[0]
+    others = [f"{elsewhere} has {other:.4g} rad/s" for other, elsewhere in places if other > 0.0 and elsewhere != place]
+    if len(usable) == 1 and others:
+        return _WheelSpeed(value, f"{value:.4g} rad/s in {place}; {others[0]}", DOUBTFUL)
+    if place == places[0][1] and command == TEMPLATE:
+        return _WheelSpeed(value, f"{place}: {value:g} rad/s, perhaps of a template", DOUBTFUL)
+    most = max(max(row, default=0.0) for row in rows)
+    if not math.isclose(value, most, rel_tol=SAME):
+        return _WheelSpeed(value, f"{value:.4g} rad/s in {place}; another wheel has {most:.4g}", DOUBTFUL)
+    return _WheelSpeed(value, place, FILE)
 
 
 def _top_speed(done: _Conversion) -> tuple[float, str, str]:
     """Return the maximum speed [m/s] of a base that no plugin or controller gives, with source and status."""
-    base = done.base
-    radius = base.wheels[0].radius if base.wheels else 0.0
-    commands = [done.joints[name].velocity for name in base.driven if name in done.joints]
-    limits = [done.model.joints[name].motor.velocity for name in base.driven]
-    for rows, why in ((commands, "<ros2_control> of the wheels"), (limits, "<limit> of the wheels")):
-        usable = [value * radius for value in rows if math.isfinite(value) and 0.05 <= value * radius <= 5.0]
-        if usable:
-            return min(usable), why, FILE
-    guess = min(1.0, 10.0 * radius) if radius else 1.0
-    return guess, "10 rad/s of the wheels" if radius else "common value", GUESS
+    radius = done.base.wheels[0].radius if done.base.wheels else 0.0
+    found = _wheel_speed(done)
+    if found.value:
+        return found.value * radius, found.source, found.status
+    guess, why = (min(1.0, 10.0 * radius), "10 rad/s of the wheels") if radius else (1.0, "common value")
+    return guess, f"{why}; {found.ignored}, not used" if found.ignored else why, GUESS
 
 
-def _wheel_limit(done: _Conversion) -> float:
-    """Return the maximum speed [rad/s] of the driven wheels in the file, 0 without one."""
-    radius = done.base.wheels[0].radius
-    limits = [done.joints[name].velocity for name in done.base.driven if name in done.joints]
-    limits += [done.model.joints[name].motor.velocity for name in done.base.driven]
-    return min([value for value in limits if math.isfinite(value) and 0.05 <= value * radius <= 5.0], default=0.0)
+def _exceeded(done: _Conversion, speed: float) -> list[str]:
+    """Return the limit of the wheels that a speed [m/s] of a plugin or controller exceeds."""
+    found = _wheel_speed(done)
+    most = found.value * done.base.wheels[0].radius if found.value else math.inf
+    return [f"the wheels allow {most:.4g} m/s: {found.source}"] if speed > (1.0 + SAME) * most else []
 
 
 def _steering(done: _Conversion) -> tuple[float, str, str]:

@@ -17,6 +17,7 @@ from crowdbot.world.urdf.transforms import across
 
 from .base_kind import BaseKind
 from .guess_table import DERIVED, FILE, GUESS, GuessTable
+from .wheel import resistance, weak_motor
 
 __all__ = [
     "add_masses",
@@ -237,9 +238,12 @@ def add_motors(
     base: BaseKind,
     wheeled: bool,
     torque: float | None,
+    speed: float,
     urdf: str,
-) -> None:
+) -> list[str]:
     """Add motors of wheels and other joints, and limits that the file does not give.
+
+    Return a sentence for every wheel that its motor does not turn at the maximum speed.
 
     Args:
         table: lists the motors.
@@ -248,6 +252,7 @@ def add_motors(
         base: its base.
         wheeled: whether motors turn the wheels.
         torque: largest torque [N m] of the wheels, if a plugin gives it.
+        speed: maximum speed [m/s] of the robot.
         urdf: name of the URDF file.
     """
     elements = {joint.attributes.get("name", ""): joint for joint in root.each("joint")}
@@ -255,6 +260,9 @@ def add_motors(
     parents = {joint.child: joint.parent for joint in model.joints.values()}
     swivels = {parents.get(link, "") for link in base.castors} - {model.root}
     motors: dict[str, str] = {}
+    weak: list[str] = []
+    dragged = sum(resistance(model.joints[name], speed / wheel.radius) for name, wheel in wheels.items())
+    dragged /= max(1, len(base.driven))
     for joint in model.movable:
         if elements[joint.name].attributes.get("type") == "fixed":
             continue
@@ -274,17 +282,21 @@ def add_motors(
             continue
         motors[joint.name] = kind
         if 0.0 < joint.motor.effort < math.inf:
+            weak += [weak_motor(joint, joint.motor.effort, speed / wheel.radius)] if wheel else []
             continue
-        effort = max(10.0, model.mass)
+        effort, why = max(10.0, model.mass), "mass of the robot"
         if wheel:  # skid-steer wheels also push against the friction of the others
             share = (2.0 if base.kind == "skid-steer" else 1.0) / max(1, len(base.driven))
-            effort = share * model.mass * GRAVITY * wheel.radius
+            against = max(resistance(joint, speed / wheel.radius), dragged)  # also that of wheels without motors
+            effort = share * model.mass * GRAVITY * wheel.radius + against
+            why = f"weight and radius, and {against:.4g} N m of <dynamics>" if against else "weight and radius"
         known = wheel is not None and torque is not None
-        why = "the drive plugin" if known else ("weight and radius" if wheel else "mass of the robot")
+        why = "the drive plugin" if known else why
         effort = table.number(
             f"effort of {joint.name}", torque if known and torque is not None else effort, why, f"<limit> in {urdf}",
             FILE if known else GUESS, unit="N" if joint.kind == "prismatic" else "N m",
         )  # fmt: skip
+        weak += [weak_motor(joint, effort, speed / wheel.radius)] if wheel else []
         limit = next(iter(elements[joint.name].each("limit")), None)
         if limit is None:
             limit = Element("limit")
@@ -294,6 +306,7 @@ def add_motors(
             limit.attributes["velocity"] = format_number(3.0 / wheel.radius if wheel else 2.0)
     if motors:
         root.children.append(_control(motors))
+    return [sentence for sentence in weak if sentence]
 
 
 def _control(motors: Mapping[str, str]) -> Element:

@@ -25,7 +25,8 @@ class WheelServos:
     A motor that is an actuator of the engine is either unstable with light wheels (explicit integration) or changes
     velocities after the tyre forces have been found (implicit integration), and the tyres slip. Here each servo is a
     friction constraint about the commanded speed, limited by the torque of the motor: the solver finds the torques of
-    motors and the forces of tyres together.
+    motors and the forces of tyres together. The friction of a joint takes its part of the torque; a motor that is not
+    stronger does not turn it.
 
     Args:
         model: model of the engine; the motors of the wheels are replaced in it.
@@ -38,13 +39,18 @@ class WheelServos:
             (int(model.joint(name).dofadr[0]), int(model.actuator(name).id), most) for name, most in torques.items()
         ]
         self.lag = lag(model.opt.timestep)
-        for dof, motor, most in rows:
+        rows.sort()
+        self._turns = np.ones(len(rows))
+        for k, (dof, motor, most) in enumerate(rows):
             model.actuator_gainprm[motor], model.actuator_biasprm[motor] = 0.0, 0.0
-            model.dof_frictionloss[dof] = most
+            friction = float(model.dof_frictionloss[dof])  # of the joint, which the motor has to overcome
+            if most <= friction and friction > 0.0:
+                self._turns[k] = 0.0
+            else:
+                model.dof_frictionloss[dof] = most - friction
             model.dof_solref[dof] = 2.0 * self.lag / STIFF[1], 1.0
             model.dof_solimp[dof] = STIFF
         rubbing = np.flatnonzero(model.dof_frictionloss > 0.0)
-        rows.sort()
         self._rows = np.searchsorted(rubbing, [dof for dof, _, _ in rows])
         self._motors = np.array([motor for _, motor, _ in rows], dtype=np.int64)
         self._mj = mj
@@ -52,7 +58,7 @@ class WheelServos:
     def apply(self, data: Any) -> None:
         """Set the speeds that the wheels approach in this step, between ``mj_step1`` and ``mj_step2``."""
         if len(self._rows):
-            data.efc_aref[data.ne + self._rows] += data.ctrl[self._motors] / self.lag
+            data.efc_aref[data.ne + self._rows] += self._turns * data.ctrl[self._motors] / self.lag
 
 
 def lag(step: float) -> float:

@@ -14,6 +14,7 @@ from crowdbot.world.physics.robots.wheel_servo import lag
 from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
+from crowdbot.world.robots.wheel import fastest
 
 __all__ = ["WheelFriction"]
 
@@ -243,6 +244,10 @@ class WheelFriction:
         names = [prefix + wheel.joint for wheel in wheels]
         self.dof = np.asarray(model.jnt_dofadr[self.joint], dtype=np.int64)
         self.motor = np.array([model.actuator(name).id for name in names], dtype=np.int64)
+        joints = robot.model.joints
+        self._fastest = np.array(
+            [fastest(joints[wheel.joint], joints[wheel.joint].motor.effort or math.inf) for wheel in wheels]
+        )
         whole, step = robot.model.inertial(robot.posture), float(model.opt.timestep)
         self._mass, self._share = whole.mass, step / lag(step)
         self._heft = np.array([whole.mass, whole.mass, float(whole.tensor[2, 2])]) / step
@@ -278,7 +283,8 @@ class WheelFriction:
         """Apply the friction of sliding tyres; return the number of their contacts."""
         contact = data.contact
         slips, force = np.empty((len(contact.geom), 12)), np.zeros((len(self), 3))
-        gain = self._share * (data.ctrl[self.motor] - data.qvel[self.dof])
+        reached = np.clip(data.ctrl[self.motor], -self._fastest, self._fastest)
+        gain = self._share * (reached - data.qvel[self.dof])
         count = _slips(
             contact.geom, contact.pos, contact.frame, contact.friction, self.wheel_of, self.body, self.root,
             data.xaxis[self.joint], data.xanchor[self.joint], data.cvel, data.subtree_com, gain, loads, slips,
