@@ -15,7 +15,7 @@ from crowdbot.core import Element
 from crowdbot.world.urdf import Cylinder, Joint, Link, LinkInertia, LinkShape, RobotModel, replacement_shape
 from crowdbot.world.urdf.transforms import across
 
-from .base_kind import BaseKind
+from .base_kind import BaseKind, FoundWheel
 from .guess_table import DERIVED, FILE, GUESS, GuessTable
 from .wheel import resistance, weak_motor
 
@@ -261,8 +261,6 @@ def add_motors(
     swivels = {parents.get(link, "") for link in base.castors} - {model.root}
     motors: dict[str, str] = {}
     weak: list[str] = []
-    dragged = sum(resistance(model.joints[name], speed / wheel.radius) for name, wheel in wheels.items())
-    dragged /= max(1, len(base.driven))
     for joint in model.movable:
         if elements[joint.name].attributes.get("type") == "fixed":
             continue
@@ -284,12 +282,7 @@ def add_motors(
         if 0.0 < joint.motor.effort < math.inf:
             weak += [weak_motor(joint, joint.motor.effort, speed / wheel.radius)] if wheel else []
             continue
-        effort, why = max(10.0, model.mass), "mass of the robot"
-        if wheel:  # skid-steer wheels also push against the friction of the others
-            share = (2.0 if base.kind == "skid-steer" else 1.0) / max(1, len(base.driven))
-            against = max(resistance(joint, speed / wheel.radius), dragged)  # also that of wheels without motors
-            effort = share * model.mass * GRAVITY * wheel.radius + against
-            why = f"weight and radius, and {against:.4g} N m of <dynamics>" if against else "weight and radius"
+        effort, why = _effort(model, base, wheel, speed) if wheel else (max(10.0, model.mass), "mass of the robot")
         known = wheel is not None and torque is not None
         why = "the drive plugin" if known else why
         effort = table.number(
@@ -307,6 +300,19 @@ def add_motors(
     if motors:
         root.children.append(_control(motors))
     return [sentence for sentence in weak if sentence]
+
+
+def _effort(model: RobotModel, base: BaseKind, wheel: FoundWheel, speed: float) -> tuple[float, str]:
+    """Return the torque [N m] that a wheel needs at the maximum speed [m/s] of the robot, and where it is from."""
+    share = (2.0 if base.kind == "skid-steer" else 1.0) / max(1, len(base.driven))
+    effort = (
+        share * model.mass * GRAVITY * wheel.radius
+    )  # skid-steer wheels also push against the friction of the others
+    dragged = sum(resistance(model.joints[one.joint], speed / one.radius) for one in base.wheels)
+    own = resistance(model.joints[wheel.joint], speed / wheel.radius)
+    against = max(own, dragged / max(1, len(base.driven)))  # also that of wheels without motors
+    why = f"weight and radius, and {against:.4g} N m of <dynamics>" if against else "weight and radius"
+    return effort + against, why
 
 
 def _control(motors: Mapping[str, str]) -> Element:

@@ -57,7 +57,7 @@ def fastest(joint: Joint, effort: float) -> float:
 
     >>> from crowdbot.world import Robot
     >>> fastest(Robot.load("differential").model.joints["left_wheel_joint"], 1.0)
-    inf
+    100.0
     """
     left = max(0.0, effort - joint.friction)
     if joint.damping > 0.0:
