@@ -36,7 +36,7 @@ FILE = "around-robots.json"
 NOTICES = {
     "likelier": "contacts with {} are likelier than with real people",
     "rarer": "contacts with {} are rarer than with real people",
-    "alike": "{} keep the distance of recorded people around a robot",
+    "alike": "{} keep about the distance of recorded people around a robot",
     "unknown": "{} were not compared with recordings around a robot",
 }
 """What a reader of a verdict must know, by what the realism of a crowd means for contacts."""
@@ -49,9 +49,11 @@ BIAS = {
         "It keeps farther away than recorded people, so contacts are rarer here than with real people: the verdict is"
         " rather too mild."
     ),
-    "alike": "It keeps the distance of recorded people.",
+    "alike": "It keeps the distance of recorded people within 20 %, and touches the robot as rarely.",
 }
 UNKNOWN = "whether contacts are likelier or rarer here than with real people is unknown"
+TOLERANCE = 0.2
+"""Crowds whose median clearance differs by less than this share of that of recorded people are alike."""
 MOST_CHANGES = 3
 """Largest number of changed parameters that a sentence names."""
 
@@ -171,7 +173,7 @@ def trial_realism(trial: Trial) -> tuple[CrowdRealism, ...]:
 
     >>> from crowdbot.trials import load_trial
     >>> [(one.crowd, one.contacts) for one in trial_realism(load_trial("frontal"))]
-    [('people', 'likelier')]
+    [('people', 'alike')]
     """
     every: tuple[Group, ...] = (*trial.agents, *trial.spawners, *trial.sources, *trial.recorded)
     groups = [one for one in every if _has_people(one)]
@@ -195,7 +197,7 @@ def realism_notice(realism: Sequence[CrowdRealism]) -> str:
 
     >>> from crowdbot.trials import load_trial
     >>> realism_notice(trial_realism(load_trial("frontal")))
-    'Contacts with these people are likelier than with real people.'
+    'These people keep about the distance of recorded people around a robot.'
     """
     kinds = dict.fromkeys(one.contacts for one in realism)
     if not kinds:
@@ -254,8 +256,9 @@ def _crowd_realism(name: str, model: CrowdModel, change: str) -> CrowdRealism:
             title, "unknown", f"The crowd {title}{own} was not compared with recordings around a robot: {UNKNOWN}."
         )
     values = f" with {', '.join(changes)}" if (changes := _changes(inner)) else ""
-    gap = row.median - table.recorded.median
-    contacts = "alike" if abs(gap) < 0.005 else "likelier" if gap < 0.0 else "rarer"
+    gap, same = row.median - table.recorded.median, row.touched == table.recorded.touched
+    alike = same and abs(gap) <= TOLERANCE * table.recorded.median
+    contacts = "alike" if alike else "likelier" if gap < 0.0 else "rarer"
     parts = [
         f"Around a golf cart, recorded people keep a median least clearance of"
         f" {_metres(table.recorded.median)} (quartiles {_ends(table.recorded)}), the crowd"
