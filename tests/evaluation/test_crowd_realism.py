@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import html
 import json
 import sys
@@ -130,6 +131,21 @@ def test_each_of_two_crowds_that_people_follow_has_a_sentence(tmp_path: Path) ->
         "Note: Some of these people keep about the distance of recorded people around a robot; some of these people"
         " were not compared with recordings around a robot." in text
     )
+
+
+@pytest.mark.parametrize(
+    ("median", "touched", "contacts"),
+    [(0.8, 3, "likelier"), (1.9, 3, "likelier"), (0.7, 0, "alike"), (0.3, 0, "likelier"), (1.9, 0, "rarer")],
+)
+def test_contacts_count_before_clearances(
+    monkeypatch: pytest.MonkeyPatch, median: float, touched: int, contacts: str
+) -> None:
+    table = load_clearances()
+    rows = [dataclasses.replace(row, median=median, touched=touched) for row in table.crowds]
+    changed = dataclasses.replace(table, crowds=tuple(rows))
+    monkeypatch.setattr("crowdbot.evaluation.realism.load_clearances", lambda: changed)
+    (realism,) = trial_realism(trial('<crowd type="people"/>'))
+    assert realism.contacts == contacts
 
 
 def test_people_who_do_not_see_the_robot_are_not_compared(tmp_path: Path) -> None:

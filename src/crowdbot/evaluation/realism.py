@@ -42,12 +42,12 @@ NOTICES = {
 """What a reader of a verdict must know, by what the realism of a crowd means for contacts."""
 BIAS = {
     "likelier": (
-        "It comes nearer than recorded people, so contacts are likelier here than with real people: the verdict is"
-        " rather too strict."
+        "It comes nearer than recorded people or touches the robot more often, so contacts are likelier here than with"
+        " real people: the verdict is rather too strict."
     ),
     "rarer": (
-        "It keeps farther away than recorded people, so contacts are rarer here than with real people: the verdict is"
-        " rather too mild."
+        "It keeps farther away than recorded people or touches the robot less often, so contacts are rarer here than"
+        " with real people: the verdict is rather too mild."
     ),
     "alike": "It keeps the distance of recorded people within 20 %, and touches the robot as rarely.",
 }
@@ -256,9 +256,7 @@ def _crowd_realism(name: str, model: CrowdModel, change: str) -> CrowdRealism:
             title, "unknown", f"The crowd {title}{own} was not compared with recordings around a robot: {UNKNOWN}."
         )
     values = f" with {', '.join(changes)}" if (changes := _changes(inner)) else ""
-    gap, same = row.median - table.recorded.median, row.touched == table.recorded.touched
-    alike = same and abs(gap) <= TOLERANCE * table.recorded.median
-    contacts = "alike" if alike else "likelier" if gap < 0.0 else "rarer"
+    contacts = _compare_contacts(row, table.recorded)
     parts = [
         f"Around a golf cart, recorded people keep a median least clearance of"
         f" {_metres(table.recorded.median)} (quartiles {_ends(table.recorded)}), the crowd"
@@ -268,6 +266,16 @@ def _crowd_realism(name: str, model: CrowdModel, change: str) -> CrowdRealism:
         *(["Its parameters are fitted to these recordings, so this is no independent test."] if row.fitted else []),
     ]
     return CrowdRealism(title, contacts, " ".join(parts))
+
+
+def _compare_contacts(crowd: ClearanceRow, recorded: ClearanceRow) -> str:
+    """Return how likely contacts with a crowd are: by its contacts where they differ, else by its clearance."""
+    if crowd.touched != recorded.touched:
+        return "likelier" if crowd.touched > recorded.touched else "rarer"
+    gap = crowd.median - recorded.median
+    if abs(gap) <= TOLERANCE * recorded.median:
+        return "alike"
+    return "likelier" if gap < 0.0 else "rarer"
 
 
 def _people_of_their_own(trial: Trial, groups: Sequence[Group]) -> Iterator[CrowdRealism]:

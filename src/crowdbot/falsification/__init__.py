@@ -8,7 +8,7 @@ from .event import describe_event
 from .factor import Factor, parse_factor
 from .failure import FAILURES, FailureCriterion, parse_failure
 from .falsifier import falsify, parse_sampling
-from .found_trial import FoundTrial, write_failures, write_trial_files
+from .found_trial import FoundTrial, write_failures
 from .plain_sampling import PlainSampling
 from .proposal import Proposal, fit_proposal, mixture_weights
 from .report import describe_rarity, factor_ranges, write_report
@@ -56,5 +56,4 @@ __all__ = [
     "run_samples",
     "write_failures",
     "write_report",
-    "write_trial_files",
 ]

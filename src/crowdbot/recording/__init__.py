@@ -1,6 +1,6 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
-from .attachments import AttachedFile, SkippedAttachmentWarning, named_files
+from .attachments import AttachedFile, SkippedAttachmentWarning
 from .episode_branch import branch
 from .episode_export import export
 from .episode_reader import RecordedEpisode, iterate_steps, read_episode
@@ -17,6 +17,7 @@ from .recorded_run import episode_path, open_run, record, run
 from .recorded_simulation import RecordedSimulation
 from .step_messages import StepMessage, StepMessages
 from .step_records import RecordedStep
+from .trial_files import write_trial_files
 
 __all__ = [
     "READING_TABLES",
@@ -39,7 +40,6 @@ __all__ = [
     "folder_of",
     "iterate_steps",
     "keyframe_ticks",
-    "named_files",
     "open_rerun",
     "open_run",
     "read_episode",
@@ -48,4 +48,5 @@ __all__ = [
     "replay",
     "run",
     "versions",
+    "write_trial_files",
 ]

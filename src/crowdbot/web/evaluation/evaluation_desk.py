@@ -19,8 +19,7 @@ from crowdbot.evaluation import (
     parse_statistic,
     remark_lines,
 )
-from crowdbot.falsification import write_trial_files
-from crowdbot.recording import record
+from crowdbot.recording import record, write_trial_files
 from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
