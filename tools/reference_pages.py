@@ -23,7 +23,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 import crowdbot
-from crowdbot.cli import COMMANDS
+from crowdbot.cli import COMMAND_GROUPS, COMMANDS
 from crowdbot.trials import schema
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -141,11 +141,10 @@ def all_commands() -> str:
         "",
         "`crowdbot COMMAND --help` prints the same. The exit status is 0 when a command is done, 1 when a check",
         "failed, 2 when the input is wrong, and 130 after Ctrl-C.",
-        "",
-        "| command | task |",
-        "|---|---|",
     ]
-    lines += [f"| [`crowdbot {name}`]({name}.md) | {line[0].upper()}{line[1:]}. |" for name, line in COMMANDS.items()]
+    for title, group in COMMAND_GROUPS.items():
+        lines += ["", f"## {title[0].upper()}{title[1:]}", "", "| command | task |", "|---|---|"]
+        lines += [f"| [`crowdbot {name}`]({name}.md) | {line[0].upper()}{line[1:]}. |" for name, line in group.items()]
     return "\n".join(lines) + "\n"
 
 

@@ -2,13 +2,14 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from crowdbot.cli import main
+from crowdbot.cli import COMMANDS, main
 
 
 def _json(capsys, *arguments):
@@ -18,6 +19,16 @@ def _json(capsys, *arguments):
 
 def _program(*arguments, **options):
     return subprocess.run([sys.executable, "-m", "crowdbot", *arguments], capture_output=True, text=True, **options)
+
+
+def test_the_help_lists_each_command_once_by_job_in_80_columns(capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["--help"])
+    lines = capsys.readouterr().out.splitlines()
+    named = [line.split()[0] for line in lines if re.match(r"  [a-z]+  ", line)]
+    assert sorted(named) == sorted(COMMANDS)
+    assert "test a robot in a crowd:" in lines
+    assert max(map(len, lines)) <= 80
 
 
 def test_predict_scores_files_one_by_one_and_together(capsys, recordings):

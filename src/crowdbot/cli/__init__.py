@@ -11,40 +11,55 @@ import os
 import shlex
 import sys
 import tempfile
+import textwrap
 import traceback
 from collections.abc import Iterator, Sequence
 
 __all__ = ["main"]
 
-COMMANDS = {
-    "demo": "run a demonstration on built-in data and write a report",
-    "run": "run one trial and record it",
-    "join": "let a real robot drive among the people of a trial",
-    "app": "open the app in the browser: simulator, prediction, editor",
-    "render": "render a trial as an image or a video",
-    "replay": "run a recorded episode again and check its digest",
-    "branch": "continue a recorded episode from a given time with other settings",
-    "repair": "repair the episode file of a killed run",
-    "export": "write an episode as a table, Parquet or CSV",
-    "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
-    "falsify": "search a trial for failures of its navigator, and estimate how likely they are",
-    "generate": "write labelled sensor data of many runs, with true people",
-    "challenge": "run, verify and rank submissions to a competition of navigators",
-    "experiment": "run trials with participants, instructions and questionnaires",
-    "measure": "measure density, speed and flow in recordings, episodes and trials",
-    "track": "find and track people in laser scans, and score the tracks",
-    "predict": "score predictors on recordings of people",
-    "calibrate": "fit the parameters of a crowd model to recordings of people",
-    "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
-    "study": "compare GANs on a toy dataset with several modes",
-    "degrade": "score predictors on degraded tracks, or write a degraded recording",
-    "list": "list built-in names: models, predictors, trials and others",
-    "new": "create a trial, robot, crowd model or another extension, with its test",
-    "check": "report all errors in trials, experiments and robots",
-    "cite": "print the references of built-in names",
-    "bench": "measure speed on this machine",
-    "validate": "compare crowd models with experiments",
+COMMAND_GROUPS = {
+    "first steps": {
+        "demo": "run a demonstration on built-in data and write a report",
+        "app": "open the app in the browser: simulator, prediction, editor",
+        "list": "list built-in names: models, predictors, trials and others",
+        "new": "create a trial, robot, crowd model or another extension, with its test",
+        "check": "report all errors in trials, experiments and robots",
+    },
+    "test a robot in a crowd": {
+        "run": "run one trial and record it",
+        "evaluate": "compare navigators in many trials and seeds, with intervals and requirements",
+        "falsify": "search a trial for failures of its navigator, and estimate how likely they are",
+        "challenge": "run, verify and rank submissions to a competition of navigators",
+        "join": "let a real robot drive among the people of a trial",
+        "experiment": "run trials with participants, instructions and questionnaires",
+    },
+    "recorded runs": {
+        "replay": "run a recorded episode again and check its digest",
+        "branch": "continue a recorded episode from a given time with other settings",
+        "render": "render a trial or an episode as an image or a video",
+        "export": "write an episode as a table, Parquet or CSV",
+        "repair": "repair the episode file of a killed run",
+        "generate": "write labelled sensor data of many runs, with true people",
+    },
+    "predict and track people": {
+        "predict": "score predictors on recordings of people",
+        "calibrate": "fit the parameters of a crowd model to recordings of people",
+        "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
+        "degrade": "score predictors on degraded tracks, or write a degraded recording",
+        "track": "find and track people in laser scans, and score the tracks",
+        "study": "compare GANs on a toy dataset with several modes",
+    },
+    "crowds": {
+        "measure": "measure density, speed and flow in recordings, episodes and trials",
+        "validate": "compare crowd models with experiments",
+    },
+    "this installation": {
+        "bench": "measure speed on this machine",
+        "cite": "print the references of built-in names",
+    },
 }
+"""Commands and what they do, by the job of the user."""
+COMMANDS = {name: line for group in COMMAND_GROUPS.values() for name, line in group.items()}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -200,22 +215,42 @@ def _parse(words: Sequence[str]) -> argparse.Namespace:
     )
 
 
+def _list_commands(parser: argparse.ArgumentParser) -> None:
+    """Add the commands and what they do to the help, by the job of the user, in lines of at most 80 characters."""
+    for title, group in COMMAND_GROUPS.items():
+        lines = []
+        for name, line in group.items():
+            first = f"{name:<12}"
+            lines += textwrap.wrap(line, 78, initial_indent=first, subsequent_indent=" " * len(first))
+        parser.add_argument_group(title, "\n".join(lines))
+
+
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     from crowdbot import __version__
 
     parser = argparse.ArgumentParser(
         prog="crowdbot",
-        description="Predict how a crowd moves in the next seconds, and test robots in simulated crowds.",
-        epilog="Run crowdbot COMMAND --help for the options of a command. Start with: crowdbot demo",
+        usage="crowdbot [-h] [--version] [--debug] COMMAND ...",
+        description="Predict how a crowd moves in the next seconds, and test robots in crowds.",
+        epilog="Options of a command: crowdbot COMMAND --help. Start with: crowdbot demo",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"crowdbot {__version__}")
     trace = "print the traceback of an error (also: CROWDBOT_DEBUG=1)"
     parser.add_argument("--debug", action="store_true", help=trace)
-    commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
+    commands = parser.add_subparsers(
+        prog="crowdbot", metavar="COMMAND", help=argparse.SUPPRESS, required=True, dest="command"
+    )
+    _list_commands(parser)
     wanted = next((word for word in words if not word.startswith("-")), None)
+    if wanted is not None and wanted not in COMMANDS:
+        from crowdbot.core import did_you_mean
+
+        meant = did_you_mean(wanted, COMMANDS)
+        parser.exit(2, f"crowdbot: error: {wanted!r} is not a command{meant}; crowdbot --help lists them\n")
     for name, line in COMMANDS.items():
-        command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".", allow_abbrev=False)
+        command = commands.add_parser(name, description=line[0].upper() + line[1:] + ".", allow_abbrev=False)
         if name == wanted:  # only the chosen command is imported, so that --help stays fast
             module = importlib.import_module(f"crowdbot.cli.{name}")
             command.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=trace)
