@@ -1,4 +1,4 @@
-"""A program that receives topics of a bridge and does nothing with them: ``python viewer.py TRANSPORT PORT TOPIC...``.
+"""A program that receives topics of a bridge and only counts them: ``python bridge_viewer.py NAME PORT TOPIC...``.
 
 It prints ``ready``, and at its end, when a line comes in or the connection ends, the number of messages and bytes.
 """
