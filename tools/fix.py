@@ -9,8 +9,7 @@ Kept results are protected: digests of the built-in trials and the golden files 
 written only where they are missing. To change one on purpose, delete the file first, and name the change in the commit.
 In the same way the step ``constraints`` adds packages and does not change a version; ``tools/pin.py`` writes all.
 
-Pages whose numbers need recordings or hours are not part of it (``--list`` names their commands), and neither are the
-limits of ``tools/house.toml``: to lower them is a decision, ``tools/house.py --tighten``.
+Pages whose numbers need recordings or hours are not part of it (``--list`` names their commands).
 """
 
 from __future__ import annotations

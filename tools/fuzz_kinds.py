@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import random
 import shutil
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,7 +23,7 @@ from crowdbot.core import CrowdbotError
 
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests" / "data"))
-OLD = ROOT / "tests" / "compatibility" / "files"
+SAMPLES = ROOT / "tests" / "fuzz-samples"
 ASSETS = ROOT / "src" / "crowdbot" / "assets"
 OUT = "out"
 """Folder for what a reader writes, beside the files of the sample."""
@@ -86,16 +88,16 @@ def _flatten(path: Path) -> None:
 
 
 def _other_trials(folder: str, names: list[str]) -> list[str]:
-    return [name for name in names if name.endswith(".xml")] if Path(folder) == OLD / "trials" else []
+    return [name for name in names if name.endswith(".xml")] if Path(folder) == SAMPLES / "trials" else []
 
 
 def make_trials(folder: Path) -> None:
     """Write trials with all elements; the main file is trial.xml."""
     texts = {"extra": EXTRA, "new": NEW, "physics": NEW.replace("planar", "physics")}
-    for path in sorted((OLD / "trials").glob("*.xml")):
+    for path in sorted((SAMPLES / "trials").glob("*.xml")):
         texts[path.stem] = path.read_text(encoding="utf-8")
     for name, text in texts.items():
-        shutil.copytree(OLD / "trials", folder / name, ignore=_other_trials)
+        shutil.copytree(SAMPLES / "trials", folder / name, ignore=_other_trials)
         (folder / name / "trial.xml").write_text(text, encoding="utf-8")
 
 
@@ -276,12 +278,17 @@ def read_map(folder: Path, name: str, rng: random.Random) -> None:
 
 
 def make_episodes(folder: Path) -> None:
-    """Write episodes of an earlier version, whole and without chunks."""
-    for name in ("frontal", "hall", "own-code", "scripted", "pepper", "flow"):
+    """Record episodes of 2 s, each with and without chunks."""
+    from crowdbot.recording import record
+    from crowdbot.trials import load_trial
+
+    trials = {name: SAMPLES / "trials" / f"{name}.xml" for name in ("hall", "own-code", "scripted", "pepper", "flow")}
+    for name, source in {"frontal": "frontal", **trials}.items():
+        trial = load_trial(source)
         (folder / name).mkdir()
-        shutil.copyfile(OLD / "episodes" / f"{name}.mcap", folder / name / "episode.mcap")
+        record(replace(trial, duration=min(trial.duration, 2.0)), 1, folder / name / "episode.mcap")
         if name == "own-code":
-            shutil.copyfile(OLD / "trials" / "shy.py", folder / name / "shy.py")
+            shutil.copyfile(SAMPLES / "trials" / "shy.py", folder / name / "shy.py")
         _flatten(folder / name / "episode.mcap")
 
 
@@ -344,8 +351,18 @@ def read_experiment(folder: Path, name: str, rng: random.Random) -> None:
 
 
 def make_sessions(folder: Path) -> None:
-    """Write the sessions of two participants without their episodes."""
-    shutil.copytree(OLD / "sessions", folder / "sessions", ignore=shutil.ignore_patterns("*.mcap"))
+    """Run the sessions of two participants with scripted answers, and leave out their episodes."""
+    from crowdbot.cli import main
+
+    source, sessions = SAMPLES / "experiment", folder / "sessions"
+    for participant in ("1", "2"):
+        words = ["experiment", "run", str(source), "--participant", participant, "--out", str(sessions)]
+        with contextlib.redirect_stdout(io.StringIO()):
+            status = main([*words, "--answers", str(source / "answers.json")])
+        if status:
+            raise AssertionError(f"the session of participant {participant} failed with status {status}")
+    for path in sessions.rglob("*.mcap"):
+        path.unlink()
 
 
 def read_session(folder: Path, name: str, rng: random.Random) -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from crowdbot.benchmark import measure
-from crowdbot.bridges import LOADED_BRIDGES, bridge_load
+from crowdbot.benchmark.speed.bridge_loads import LOADED_BRIDGES, bridge_load
 from crowdbot.core import InputError
 
 

@@ -21,24 +21,16 @@ import pytest
 from bridge_runs import MemoryTransport, Running, endless_trial
 from ros1_master import PYTHON, RosMaster
 
-from crowdbot.bridges import (
-    LOADED_BRIDGES,
-    BridgeClock,
-    Inbox,
-    RobotInterface,
-    bridge_load,
-    open_transport,
-    run_bridge,
-)
-from crowdbot.bridges.load import viewer as load_viewer
-from crowdbot.bridges.load.bridge_load import LOAD_TOPICS, LoadTraffic
+from crowdbot.benchmark.speed import bridge_viewer
+from crowdbot.benchmark.speed.bridge_loads import LOAD_TOPICS, LOADED_BRIDGES, LoadTraffic, bridge_load
+from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
 from crowdbot.bridges.ros2.domain_lock import lock_domain
 from crowdbot.core import CrowdbotError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
 
 HERE = Path(__file__).parent
-VIEWER = load_viewer.__file__
+VIEWER = bridge_viewer.__file__
 NETWORK = """
 ip link set lo up
 ip link add v0 type veth peer name v1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -15,6 +16,7 @@ from pages import ROOT
 import crowdbot as cb
 from crowdbot.core import Disc, Path2D, draw_svg
 from crowdbot.data import Forecast
+from crowdbot.recording import record
 from crowdbot.trials import builtin_trials
 from samples import sample
 
@@ -66,10 +68,18 @@ def test_every_builtin_trial_shows_itself() -> None:
         assert "nan" not in ElementTree.fromstring(drawing).attrib["viewBox"]
 
 
-@pytest.mark.parametrize("name", ["frontal", "branch", "killed"])
-def test_a_recorded_episode_shows_itself(name: str) -> None:
-    file = ROOT / "tests" / "compatibility" / "files" / "episodes" / f"{name}.mcap"
+@pytest.mark.parametrize("name", ["whole", "branch", "killed"])
+def test_a_recorded_episode_shows_itself(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "episode.mcap"
+    record(replace(cb.load_trial("frontal"), duration=2.0), 3, file)
+    if name == "branch":
+        file = tmp_path / "branch.mcap"
+        cb.branch(tmp_path / "episode.mcap", 1.0, seed=9, out=file)
+    elif name == "killed":
+        whole = file.read_bytes()
+        file.write_bytes(whole[: len(whole) * 3 // 4])
     episode = cb.read_episode(file)
+    assert episode.complete == (name != "killed")
     drawing = episode._repr_svg_()
     assert f"{episode.name}, seed {episode.seed}" in drawing
     tracks = episode.tracks(0.2)

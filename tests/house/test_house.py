@@ -1,4 +1,4 @@
-"""The house rules that a machine can check: sizes, names, public lists, light imports, tests that assert."""
+"""The house rules that a machine can check: names, public lists, light imports, tests that assert."""
 
 import ast
 import importlib

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import crowdbot
-from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
 from crowdbot.recording import read_episode, replay, run
 from crowdbot.trials import load_trial, parse_trial
@@ -104,22 +103,10 @@ def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
     assert f"does NOT replay from {done.differs:g} s on" in str(done)
 
 
-LARGE = changed('name="east" count="2"', 'name="east" radius="uniform(0.2, 0.3)" count="2"')
-"""A trial with the bodies that people without a radius had up to format 2."""
-
-
-def test_an_episode_of_format_1_is_read_and_replayed(tmp_path: Path) -> None:
-    episode = run(parse_trial(LARGE), out=tmp_path)
-    source, target = tmp_path / "episode.mcap", tmp_path / "old.mcap"
-    copy_episode(source, target, {"format": "1", "step_ns": None}, without=["/crowdbot/digest"])
-    read = read_episode(target)
-    assert (read.complete, read.digest, read.outcome) == (True, episode.digest, episode.outcome)
-    assert replay(target).equal
-    assert len(data.load(target)) == int(episode.active.sum())
-
-
-def test_people_without_a_radius_have_their_former_bodies_in_episodes_of_format_2(tmp_path: Path) -> None:
-    run(parse_trial(LARGE), out=tmp_path)
-    for form, equal in (("2", True), ("3", False)):
-        path = copy_episode(tmp_path / "episode.mcap", tmp_path / f"{form}.mcap", {"format": form, "trial": GOOD})
-        assert replay(path).equal is equal
+def test_an_episode_of_another_format_is_rejected(tmp_path: Path) -> None:
+    run(parse_trial(GOOD), out=tmp_path)
+    path = copy_episode(tmp_path / "episode.mcap", tmp_path / "other.mcap", {"format": "2"})
+    with pytest.raises(EpisodeError, match="has the episode format '2' of crowdbot .*; this version reads '3'"):
+        read_episode(path)
+    with pytest.raises(EpisodeError, match="record it again"):
+        replay(path)

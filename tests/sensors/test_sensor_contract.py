@@ -233,14 +233,6 @@ def test_the_state_is_a_value_and_continues_the_sequence(kind):
     assert (state is not None) == (kind in (sensors.IMU, sensors.WheelOdometry))
 
 
-def test_a_sensor_of_the_older_contract_says_what_to_write():
-    with pytest.raises(InputError, match=r"sensor Old: measure\(scene, pose, rng\) is an older contract; write"):
-
-        class Old(sensors.Sensor):
-            def measure(self, scene, pose, rng=None):
-                return sensors.Reading(scene.time, pose)
-
-
 @every_sensor
 def test_skins_are_asked_for_in_one_way(kind):
     assert not kind().sees_skins

@@ -51,7 +51,6 @@ def tree() -> Element:
         ("crowd/time_horizon", "crowd 0 time-horizon"),
         ("crowd.time-horizon", "crowd 0 time-horizon"),
         ("robot[tim]/default_sensors", "robot 1 default-sensors"),
-        ("robot[tim]/equipped", "robot 1 default-sensors"),  # a word of earlier versions
     ],
 )
 def test_a_path_leads_to_one_attribute(path: str, where: str) -> None:

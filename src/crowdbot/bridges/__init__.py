@@ -33,7 +33,6 @@ from .join.join_run import JoinRun, joined_trial
 from .join.real_robot_link import RealRobotLink, open_real_robot
 from .join.simulated_robot import SimulatedRobot
 from .latency import CommandLatency, LatencySummary
-from .load.bridge_load import LOADED_BRIDGES, BridgeLoad, bridge_load
 from .motion_capture import (
     CaptureSet,
     FootLock,
@@ -58,14 +57,12 @@ from .transports import TRANSPORTS, open_transport
 from .verbs.definitions import SERVICES, interface_store, request_kind, response_kind
 
 __all__ = [
-    "LOADED_BRIDGES",
     "MODES",
     "PLAIN_SERVICES",
     "QUALITIES",
     "SERVICES",
     "TRANSPORTS",
     "BridgeClock",
-    "BridgeLoad",
     "BridgePort",
     "BridgeRun",
     "CaptureSet",
@@ -96,7 +93,6 @@ __all__ = [
     "SourceSkeleton",
     "StreamStatistics",
     "Transport",
-    "bridge_load",
     "fields_of",
     "interface_store",
     "joined_trial",

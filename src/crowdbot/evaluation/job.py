@@ -74,7 +74,7 @@ def run_job(job: RunJob) -> list[RunRow]:
     Raises:
         KeyboardInterrupt: Ctrl-C has ended the runs.
     """
-    trial = parse_trial(job.xml, folder=job.folder, trust=job.trust, quiet=True)
+    trial = parse_trial(job.xml, folder=job.folder, trust=job.trust)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RunFailureWarning)
         episodes = _episodes(trial, job.seeds)

@@ -77,7 +77,7 @@ class Method:
         trust = trust or _all_inside((self.type, robot_type), trial.folder, folder)
         place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
         try:
-            new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust, quiet=True)
+            new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust)
         except TrialError as error:
             raise TrialError(*(re.sub(r":\d+:", ":", str(line), count=1) for line in error.args)) from None
         return dataclasses.replace(new, name=trial.name)

@@ -6,7 +6,7 @@ import dataclasses
 from pathlib import Path
 
 from crowdbot.core import TrialError, format_xml
-from crowdbot.trials import XmlReader, element_from, parse_trial_xml, update_names
+from crowdbot.trials import XmlReader, element_from, parse_trial_xml
 
 from .checks import everything, problems_of
 from .experiment import Experiment
@@ -43,7 +43,6 @@ def parse_experiment(
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, expected <{ROOT}>")
-    update_names(root, place)
     result = XmlReader(place, folder or Path.cwd(), trust).read(Experiment, root)
     for thing, sentence in problems_of(result.elements, folder, trust) if whole else []:
         result.report(thing, sentence)

@@ -14,7 +14,7 @@ from typing import Any
 from crowdbot.core import CrowdbotError, EpisodeError, InputError
 from crowdbot.recording import as_json, versions
 from crowdbot.simulation import Episode, Sink
-from crowdbot.trials import Trial, restore_old_names, trial_xml
+from crowdbot.trials import Trial, trial_xml
 
 from .event import Answered, Begin, Event, Fail, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
@@ -228,8 +228,7 @@ class SessionRunner:
             raise EpisodeError(f"participant {self.participant} has no session in {self.folder.parent} to resume")
         self.log, records = SessionLog.open(path)
         try:
-            known = (head["digest"], self._digest(old_names=True))
-            if records[0].get("experiment") != head["experiment"] or records[0].get("digest") not in known:
+            if any(records[0].get(key) != head[key] for key in ("experiment", "digest")):
                 raise EpisodeError(
                     f"{path} belongs to another version of the experiment or of its screens and trials;"
                     " restore that version, or begin another session"
@@ -271,11 +270,10 @@ class SessionRunner:
         if self.session.phase == "running":
             self.do(Repeat())
 
-    def _digest(self, *, old_names: bool = False) -> str:
-        """Return the hash of the experiment, its screens and its trials; optionally as version 0.1 made it."""
-        texts = [experiment_xml(self.experiment), *(trial_xml(trial) for trial in self.trials.values())]
-        first, *trials = map(restore_old_names, texts) if old_names else texts
-        whole = json.dumps([first, [page.digest for page in self.pages.values()], trials])
+    def _digest(self) -> str:
+        """Hash of the experiment, its screens and its trials."""
+        trials = [trial_xml(trial) for trial in self.trials.values()]
+        whole = json.dumps([experiment_xml(self.experiment), [page.digest for page in self.pages.values()], trials])
         return hashlib.blake2b(whole.encode(), digest_size=16).hexdigest()
 
     def _write_answers(self, number: int) -> None:

@@ -108,7 +108,7 @@ def run_samples(job: SampleJob) -> list[Sample]:
 
 @functools.lru_cache(maxsize=4)
 def _space(xml: str, folder: Path | None, trust: bool, factors: tuple[Factor, ...]) -> SearchSpace:
-    return SearchSpace(parse_trial(xml, folder=folder, trust=trust, quiet=True), factors, trust)
+    return SearchSpace(parse_trial(xml, folder=folder, trust=trust), factors, trust)
 
 
 def _variant(space: SearchSpace, point: tuple[float, ...]) -> Trial | str:

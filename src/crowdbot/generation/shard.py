@@ -59,7 +59,7 @@ def make_shard(job: ShardJob) -> Shard:
         KeyboardInterrupt: Ctrl-C has ended the runs.
         MissingExtra: a sensor needs a package that is not installed.
     """
-    trial = parse_trial(job.xml, folder=job.folder, trust=job.trust, quiet=True)
+    trial = parse_trial(job.xml, folder=job.folder, trust=job.trust)
     if job.kind == "mcap":
         return _record_episodes(job, trial)
     possible = _possible(trial, job.seeds)

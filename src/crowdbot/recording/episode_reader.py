@@ -23,7 +23,7 @@ from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, 
 from crowdbot.trials import floor_plan_of_xml
 
 from .episode_repair import EpisodeEnd
-from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, KEYS, METADATA, from_json
+from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, FORMAT, KEYS, METADATA, from_json
 from .recorded_arrays import joint_positions, reaction_arrays, robot_tilts
 from .step_records import RecordedContact, RecordedStep, read_steps
 
@@ -156,7 +156,7 @@ class RecordedEpisode:
 
     @property
     def footprints(self) -> tuple[Floats | None, ...]:
-        """Outline ``[N, 2]`` [m] of each robot in its own frame; None for a disc, and in older files."""
+        """Outline ``[N, 2]`` [m] of each robot in its own frame; None for a disc."""
         shapes = [one.get("footprint") for one in self._robot_records]
         return tuple(None if shape is None else np.array(shape, dtype=np.float64) for shape in shapes)
 
@@ -266,6 +266,11 @@ def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
     if any(key not in known for key in KEYS):
         raise EpisodeError(
             f"{path} is an MCAP file but not an episode of crowdbot: it has no metadata record {METADATA!r}"
+        )
+    if known["format"] != FORMAT:
+        raise EpisodeError(
+            f"{path} has the episode format {known['format']!r} of crowdbot {known['version']}; this version reads"
+            f" {FORMAT!r}: record it again"
         )
     return known
 

@@ -21,7 +21,6 @@ __all__ = [
     "GROUND_TRUTH",
     "KEYS",
     "METADATA",
-    "ODOM",
     "ORDERS",
     "REACTION_TOPIC",
     "TWIST",
@@ -37,12 +36,12 @@ ADDED_ROBOTS = "crowdbot.robots"
 """Name of the metadata record of the robots that orders have added; the last one counts."""
 ENDING = "crowdbot.end"
 """Name of the metadata record at the end; missing in files of killed runs."""
-KEYS = ("trial", "trial_name", "seed", "version", "walls", "robots")
+KEYS = ("format", "trial", "trial_name", "seed", "version", "walls", "robots")
 """Required keys of the record at the start (text values)."""
 END_KEYS = ("digest", "outcome", "steps", "people", "metrics")
-"""Required keys of the record at the end. In format 1, a single record at the end had all keys."""
+"""Required keys of the record at the end."""
 FORMAT = "3"
-"""Format of episode files. Up to format 2, people without a radius in the text of the trial have larger bodies."""
+"""Format of episode files; other formats are rejected."""
 DIGEST = "/crowdbot/digest"
 """Topic of the digest up to each recorded step, as if interrupted there."""
 TWIST = ("linear_x", "angular_z", "linear_y")
@@ -51,8 +50,8 @@ ORDERS = "/crowdbot/orders"
 """Topic of the orders from outside, as JSON."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
-GROUND_TRUTH, ODOM = "/ground_truth/odom", "/odom"
-"""Topics of the true pose of a robot, after its name: of today, and of files before."""
+GROUND_TRUTH = "/ground_truth/odom"
+"""Topic of the true pose of a robot, after its name."""
 REACTION_TOPIC = "/crowdbot/reactions"
 """Topic of the reactions to robots that are in force, as JSON: ids of people by kind of reaction."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import EpisodeError, InputError, format_xml
+from crowdbot.core import EpisodeError, InputError
 from crowdbot.data import McapReader
 from crowdbot.simulation import (
     DecisionOrder,
@@ -25,7 +25,7 @@ from crowdbot.simulation import (
     read_order,
     write_order,
 )
-from crowdbot.trials import Trial, parse_trial, parse_trial_xml, trial_xml
+from crowdbot.trials import Trial, parse_trial, trial_xml
 
 from .episode_reader import read_metadata
 from .metadata import DIGEST, ORDERS
@@ -102,26 +102,6 @@ def replay_decisions(simulation: Simulation, orders: Iterable[tuple[int, Order]]
             control.timer.replay(e, recorded)
 
 
-SMALL_BODIES = 3
-"""Format of episode files from which on people without a radius have the bodies of today."""
-LARGE_BODIES = {
-    "spawner": "uniform(0.2, 0.3)",
-    "source": "uniform(0.2, 0.3)",
-    "recorded": "uniform(0.2, 0.3)",
-    "agent": "0.25",
-}
-"""Default radius [m] of people before, by element."""
-
-
-def _with_large_bodies(xml: str, place: str) -> str:
-    """Return the text of a trial in which people without a radius have the bodies of an earlier format."""
-    root = parse_trial_xml(xml.encode(), place)
-    for element in root.children:
-        if element.tag in LARGE_BODIES:
-            element.attributes.setdefault("radius", LARGE_BODIES[element.tag])
-    return format_xml(root)
-
-
 @dataclass(frozen=True)
 class Provenance:
     """Segments of an episode, the first from tick 0. The recording starts with the last segment."""
@@ -140,8 +120,7 @@ class Provenance:
         place = f"{path} (trial, written by crowdbot {known['version']})"
 
         def parsed(xml: str) -> Trial:
-            text = xml if int(known.get("format", "1")) >= SMALL_BODIES else _with_large_bodies(xml, place)
-            return parse_trial(text, place=place, folder=folder or path.parent, trust=trust, quiet=True)
+            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust)
 
         try:
             origin = json.loads(known.get("origin", "[]"))
@@ -246,7 +225,7 @@ def _on(
 
 
 def digests(path: Path) -> dict[int, str]:
-    """Return the recorded digests by time [ns]; empty for files of format 1.
+    """Return the recorded digests by time [ns].
 
     Raises:
         EpisodeError: the file cannot be read.

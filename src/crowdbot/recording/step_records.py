@@ -36,7 +36,7 @@ from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ODOM, ORDERS, REACTION_TOPIC, heading_of
+from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
 
 __all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
 
@@ -72,17 +72,17 @@ class RecordedStep:
         people: the people present, without robots; None if only readings or contacts were due.
         robots: robots by name.
         commands: commands by robot name: forward [m/s], turn [rad/s], left [m/s].
-        readings: readings by ``robot/sensor``; none in files of crowdbot 0.4 and earlier.
+        readings: readings by ``robot/sensor``.
         scans: scans of planar laser scanners, by ``robot/sensor``.
-        joints: position [rad or m] and velocity of joints by robot and name; none in files before.
+        joints: position [rad or m] and velocity of joints by robot and name.
         transforms: parent frame, child frame, position [m] and rotation w, x, y, z.
         forces, collisions, falls: contact forces of this step, and contact events and falls that ended, in the
             physics world.
-        fall_poses: poses of people out of balance by id; none in files before.
+        fall_poses: poses of people out of balance by id.
         contacts: contacts of this step.
         orders: orders from outside in this step, as JSON.
         reactions: ids of the people who react to robots, by kind of reaction; None if nobody can.
-        digest: digest of the episode as if it was interrupted here; empty in files of format 1.
+        digest: digest of the episode as if it was interrupted here.
     """
 
     nanoseconds: int
@@ -212,9 +212,8 @@ def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors:
             values = (shift.x, shift.y, shift.z, turn.w, turn.x, turn.y, turn.z)
             moment.transforms.append((row.header.frame_id, row.child_frame_id, values))
     elif kind == "nav_msgs/msg/Odometry" and topic not in sensors:
-        if message.header.frame_id == MAP:  # otherwise it is not the true pose
-            ending = GROUND_TRUTH if topic.endswith(GROUND_TRUTH) else ODOM
-            moment.robots[topic.removesuffix(ending).strip("/")] = _robot(message)
+        if topic.endswith(GROUND_TRUTH):
+            moment.robots[topic.removesuffix(GROUND_TRUTH).strip("/")] = _robot(message)
     elif kind == "sensor_msgs/msg/JointState":
         moment.joints[robot] = dict(
             zip(message.name, zip(message.position.tolist(), message.velocity.tolist(), strict=True), strict=True)

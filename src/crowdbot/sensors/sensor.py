@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -119,15 +118,6 @@ class Sensor(ABC):
     spatial: ClassVar[bool] = False
     renders: ClassVar[bool] = False
     encoders: ClassVar[bool] = False
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        names = list(inspect.signature(cls.measure).parameters)
-        if names[1:3] == ["scene", "pose"]:
-            raise InputError(
-                f"sensor {cls.__name__}: measure(scene, pose, rng) is an older contract; write measure(self, view,"
-                " state, rng=None) with view.scene and view.pose, and return (reading, state)"
-            )
 
     def __post_init__(self) -> None:
         check_number(type(self).__name__, "rate", self.rate, "Hz", min=1e-6)

@@ -74,7 +74,6 @@ if TYPE_CHECKING:
     from .validation.trial_checks import robot_place_problem
     from .variants import apply_values, expand_sweeps
     from .xml.element_edit import add_element, needs_trust, remove_element
-    from .xml.old_names import OldNameWarning, restore_old_names, update_names
     from .xml.reader import XmlReader
     from .xml.trial_text import parse_trial_xml, read_trial_bytes
     from .xml.writer import element_from, trial_xml
@@ -147,7 +146,6 @@ __getattr__, __dir__ = lazy_exports(
         "validation.trial_checks": ["robot_place_problem"],
         "variants": ["apply_values", "expand_sweeps"],
         "xml.element_edit": ["add_element", "needs_trust", "remove_element"],
-        "xml.old_names": ["OldNameWarning", "restore_old_names", "update_names"],
         "xml.reader": ["XmlReader"],
         "xml.trial_text": ["parse_trial_xml", "read_trial_bytes"],
         "xml.writer": ["element_from", "trial_xml"],
@@ -197,7 +195,6 @@ __all__ = [
     "ModelRange",
     "Mount",
     "Obstacle",
-    "OldNameWarning",
     "PeopleAppearance",
     "PeopleBatch",
     "PlacementPlan",
@@ -290,7 +287,6 @@ __all__ = [
     "remove_element",
     "replace_robot",
     "resolve_file",
-    "restore_old_names",
     "robot_lines",
     "robot_place_problem",
     "robot_reactions",
@@ -302,5 +298,4 @@ __all__ = [
     "trial_titles",
     "trial_xml",
     "trials_of",
-    "update_names",
 ]

@@ -16,7 +16,6 @@ from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
-from .xml.old_names import update_names
 from .xml.reader import ROOT, XmlReader
 from .xml.reader_result import ReaderResult
 from .xml.trial_text import parse_trial_xml
@@ -31,7 +30,6 @@ def parse_trial(
     place: str = "trial",
     folder: Path | None = None,
     trust: bool | Collection[str] = False,
-    quiet: bool = False,
 ) -> Trial:
     """Read a trial from XML and check it.
 
@@ -41,7 +39,6 @@ def parse_trial(
         folder: folder of the trial and of the code that it names (default: the working folder).
         trust: whether code and files from outside the folder may be named, or the only values of ``type`` that may
             name them.
-        quiet: whether to omit warnings about names of earlier versions.
 
     Raises:
         TrialError: the trial has errors; one sentence per error, in the order of the lines.
@@ -59,7 +56,6 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, reciprocal, name
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
-    update_names(root, place, quiet=quiet)
     reader = XmlReader(place, folder or Path.cwd(), trust)
     result = _read(reader, root, None)
     for sweep, sentence in sweep_problems(root, Trial, result.value.sweeps, _variant_problems(reader, result, None)):

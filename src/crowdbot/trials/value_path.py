@@ -12,7 +12,6 @@ from crowdbot.core import Element, InputError, did_you_mean
 
 from .fields import FieldSpec, outline, quote_value
 from .robots.robot_parts import replace_robot
-from .xml.old_names import current_name
 
 __all__ = ["element_at", "remove_at", "set_value", "set_values", "text_of"]
 
@@ -58,7 +57,6 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
     """
     *steps, last = _steps(path)
     here, inside = _follow(root, kind, steps)
-    last = current_name(here.tag, last)
     _check_attribute(here, inside, last)
     if (here.tag, last) == ("robot", "type"):
         replace_robot(here, text)

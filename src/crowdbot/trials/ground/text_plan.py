@@ -38,4 +38,4 @@ def floor_plan_of_xml(text: str, place: str = "trial") -> list[Path2D]:
         return []
     stage, crowd = Element("stage", {}, parts), Element("crowd", {"type": "orca"})
     plain = Element("trial", {"name": "plan", "duration": "1", "world": "physics"}, [stage, crowd])
-    return floor_plan(parse_trial(format_xml(plain), place=place, quiet=True).stage)
+    return floor_plan(parse_trial(format_xml(plain), place=place).stage)

@@ -27,7 +27,7 @@ def read_trial(text: str, folder: Path) -> tuple[Trial | None, list[str], list[s
     """Return the trial, or None, with the problems and remarks that ``crowdbot check`` prints; no code is run."""
     try:
         with without_running_code():
-            trial = parse_trial(text, folder=folder, quiet=True)
+            trial = parse_trial(text, folder=folder)
             return trial, [], [*override_remarks(trial.robots), *trial_remarks(trial)]
     except TrialError as error:
         return None, list(error.problems), []

@@ -1,1 +1,0 @@
-"""Load of a bridge: its processor time with many topics at once."""
