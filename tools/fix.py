@@ -28,7 +28,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CODE = ("src", "tests", "tools")
+CODE = ("src", "studies", "tests", "tools")
 LONG = {
     "docs/results/around-robots.md": "python tools/around_robots.py --data RECORDINGS --sets FILE --out FILE",
     "docs/results/calibrated-crowds.md": "python tools/schemes.py SHARED docs/results",

@@ -36,7 +36,6 @@ COMMANDS = {
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
-    "study": "compare GANs on a toy dataset with several modes",
     "degrade": "score predictors on degraded tracks, or write a degraded recording",
     "list": "list built-in names: models, predictors, trials and others",
     "new": "create a trial, robot, crowd model or another extension, with its test",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,13 +12,21 @@ import numpy as np
 import pytest
 import torch
 
-from crowdbot.benchmark.toy_gan.methods import METHODS
-from crowdbot.benchmark.toy_gan.study import MEASURES, GanComparison, GanRun, with_settings
-from crowdbot.benchmark.toy_gan.toy_data import ToyData
-from crowdbot.benchmark.toy_gan.training import ToyTraining, gan_config, sample_futures
 from crowdbot.core import InputError, stream
 from crowdbot.prediction.social_ways.config import SocialWaysConfig
 from crowdbot.prediction.training.torch_backend import torch_threads
+from toy_gan import (
+    MEASURES,
+    METHODS,
+    GanComparison,
+    GanRun,
+    ToyData,
+    ToyTraining,
+    gan_config,
+    main,
+    sample_futures,
+    with_settings,
+)
 
 SMALL = {"hidden": 8, "pooled": 4, "noise": 6, "batch": 32}
 TOY = ToyData(tracks=6)
@@ -164,3 +173,53 @@ def test_a_row_is_the_mean_of_the_last_quarter() -> None:
     assert (row["emd"], row["emd_sd"], row["updates"], row["seeds"]) == (6.5, 0.0, 8, 2)
     short = [dataclasses.replace(runs[0], update=np.array([1]), measures={name: np.ones(1) for name in MEASURES})]
     assert GanComparison.rows(short)[0]["emd"] == 1.0
+
+
+def test_tracks_lie_on_circles_and_turn_off_to_three_sides() -> None:
+    toy = ToyData()
+    paths = toy.paths(stream(0, "toy"), 200)
+    assert paths.shape == (6, 3, 200, 4, 2)
+    np.testing.assert_allclose(np.linalg.norm(paths, axis=-1), np.broadcast_to(toy.radii, (6, 3, 200, 4)))
+    assert np.ptp(paths[:, :, :, :2], axis=(1, 2)).max() == 0.0  # what is seen does not say the mode
+    angle = np.degrees(np.arctan2(paths[0, ..., 1], paths[0, ..., 0]))
+    for row, jitter in ((2, 2.0), (3, 3.0)):
+        off = angle[..., row] - np.array([[-16.0], [0.0], [16.0]])
+        assert np.abs(off).max() <= jitter + 1e-9
+        assert np.abs(off).max() > 0.95 * jitter
+    np.testing.assert_allclose(toy.middles()[0, 1], np.array(toy.radii)[:, None] * [1.0, 0.0], atol=1e-12)
+
+
+def test_it_is_a_set_of_samples_with_one_person_each() -> None:
+    samples = ToyData(tracks=5).samples(stream(0, "toy"))
+    assert (len(samples), samples.people, samples.observe, samples.predict) == (90, 90, 2, 2)
+    assert sum(len(batch) for batch in samples.batches(stream(0, "order"), 64)) == 90
+
+
+def test_wrong_numbers_and_methods_are_said() -> None:
+    with pytest.raises(InputError, match="1 of 4 rows are observed"):
+        ToyData(observe=1)
+    with pytest.raises(InputError, match="must be at least 1"):
+        ToyData(groups=0)
+    with pytest.raises(InputError, match="unknown method 'vanila', did you mean 'vanilla'"):
+        gan_config("vanila", ToyData())
+    assert gan_config("s-gan-v20", ToyData()).variety_draws == 20
+
+
+@pytest.mark.sweep
+def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--methods", "vanilla", "info+unrolled5", "--seeds", "1", "--updates", "2",
+             "--check-every", "1", "--set", "hidden=4", "--out", str(tmp_path)]  # fmt: skip
+    assert main(words) == 0
+    assert "info+unrolled5" in capsys.readouterr().out
+    result = json.loads((tmp_path / "study.json").read_text(encoding="utf-8"))
+    assert [row["method"] for row in result["methods"]] == ["vanilla", "info+unrolled5"]
+    assert result["runs"][0]["update"] == [1, 2]
+    assert 0.45 < result["ideal"]["nearest_neighbor"] < 0.55
+    assert result["ideal"]["emd"] < 0.015
+    assert result["ideal"]["whole"] == 1.0
+    assert all((tmp_path / name).stat().st_size > 1000 for name in ("samples.png", "measures.png"))
+    main(words)
+    assert json.loads((tmp_path / "study.json").read_text(encoding="utf-8")) == result
+    with pytest.raises(SystemExit):
+        main(["--methods", "infoo", "--out", str(tmp_path / "other")])
+    assert "unknown method 'infoo', did you mean 'info'" in capsys.readouterr().err
