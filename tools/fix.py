@@ -33,10 +33,10 @@ LONG = {
     "docs/results/around-robots.md": "python tools/around_robots.py --data RECORDINGS --sets FILE --out FILE",
     "docs/results/calibrated-crowds.md": "python tools/schemes.py SHARED docs/results",
     "docs/results/contacts.md": "crowdbot validate --contacts --starts 20 --out docs/results",
-    "docs/results/energy.md": "python tools/measure_energy.py --data RECORDINGS --out docs/results/energy.md",
+    "docs/results/energy.md": "python studies/measure_energy.py --data RECORDINGS --out docs/results/energy.md",
     "docs/results/measured.md": "python tools/measured.py SHARED > docs/results/measured.md",
-    "docs/results/people.md": "python tools/predict_people.py --data RECORDINGS --out docs/results/people.md",
-    "docs/results/people-values.md": "python tools/fit_people.py --data RECORDINGS --state FILE --profiles FILE",
+    "docs/results/people.md": "python studies/predict_people.py --data RECORDINGS --out docs/results/people.md",
+    "docs/results/people-values.md": "python studies/fit_people.py --data RECORDINGS --state FILE --profiles FILE",
     "docs/results/trial-crowds.md": "python tools/trial_crowds.py --out docs/results/trial-crowds.md",
     "docs/results/validation.md": "crowdbot validate --data RECORDINGS --out docs/results",
 }

@@ -9,8 +9,7 @@ from crowdbot.core import DataError
 from crowdbot.data import Trajectories
 from crowdbot.measurement import fit_interaction_energy
 from crowdbot.models import ORCA, People
-from crowdbot.validation.population import count_energy, find_companions, fit_energy, read_streets, walk_again
-from crowdbot.validation.population.energy_law import EnergyCounts
+from measure_energy import EnergyCounts, count_energy, find_companions, fit_energy, read_streets, walk_again
 
 
 def street(people=12, rows=20):

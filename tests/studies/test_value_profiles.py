@@ -7,8 +7,10 @@ import pytest
 from test_population import write_cart, write_street
 
 from crowdbot.models import People
-from crowdbot.validation.population import CrowdValues, ValueStudy, read_experiments, study_values, write_study
-from crowdbot.validation.population import value_profiles as module
+from people import value_profiles as module
+from people.crowd_values import CrowdValues
+from people.experiments import read_experiments
+from people.value_profiles import ValueStudy, study_values, write_study
 
 GOOD = CrowdValues(0.05, 0.1, 1.9, 0.7, (28.0, 2.0), 40.0, 0.0)
 

@@ -9,19 +9,13 @@ import pytest
 
 from crowdbot.core import DataError, InputError
 from crowdbot.models import ORCA, People
-from crowdbot.validation.population import (
-    BOX,
-    Candidate,
-    CrowdValues,
-    PopulationFit,
-    compare_predictions,
-    crowd_values,
-    fit_report,
-    measure_tracks,
-    read_experiments,
-    set_of,
-)
-from crowdbot.validation.population.report import fold_rows, pareto_set, profile_sets
+from people import crowd_values
+from people.crowd_values import CrowdValues
+from people.experiments import read_experiments
+from people.fit import BOX, Candidate, PopulationFit, set_of
+from people.report import fit_report, fold_rows, pareto_set, profile_sets
+from people.track_errors import measure_tracks
+from predict_people import compare_predictions
 
 CITR_HEAD = "id,frame,label,x_est,y_est,vx_est,vy_est"
 MIDDLE = {name: 0.5 * (low + high) for name, (low, high) in BOX.items()}
