@@ -1,6 +1,6 @@
 """Measures how much a recording of a new place improves the default weights: 0, 3, 10 and 30 minutes of it.
 
-    python tools/adaptation.py DATA OUT
+    python studies/adaptation.py DATA OUT
 
 DATA holds sdd_trajnet/Train/stanford/ and sdd/hyang/. The place is SDD hyang, which no default weight saw: trained on
 the first minutes of all its videos but one, as `crowdbot train anchor-net --from open` does, and scored on every fourth
@@ -73,10 +73,10 @@ def main() -> None:
     files = sorted((options.data / "sdd_trajnet/Train/stanford").glob("hyang_*.txt"))
     test = load(next(path for path in files if path.stem == TEST))
     others = [load(path) for path in files if path.stem != TEST] + pixel_videos(options.data / "sdd/hyang")
-    cut = tuple(windows[::4] for windows in test.windows())
+    past, future = (windows[::4] for windows in test.windows())
 
     def row(name: str, predictor: Predictor, more: str) -> None:
-        one, many = (evaluate(predictor, *cut, samples) for samples in (1, 20))
+        one, many = (evaluate(predictor, past, future, samples) for samples in (1, 20))
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in (one, many) if isinstance(score, Score))
         print(f"| {name} | {one.persons} | {cells} | {more} |", flush=True)
 

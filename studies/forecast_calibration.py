@@ -1,8 +1,8 @@
 """Measures how often people are inside the 95 % ellipse of a forecast, on data sets that no training saw.
 
-    python tools/forecast_calibration.py DATA [--windows 12] [--only CITR HERMES] [--share 0.95]
+    python studies/forecast_calibration.py DATA [--windows 12] [--only CITR HERMES] [--share 0.95]
 
-DATA is that of tools/zero_shot.py. Prints a Markdown table: share of true positions inside the ellipse, mean over all
+DATA is that of studies/zero_shot.py. Prints a Markdown table: share of true positions inside the ellipse, mean over all
 steps, and at 0.4, 2.4 and 4.8 s. A calibrated forecast has the asked share everywhere; less is overconfident.
 """
 
@@ -13,11 +13,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from zero_shot import RECORDINGS, ROWS, TRIALS, read, thinned, trial_tracks
 
 from crowdbot.data import Windows
 from crowdbot.metrics import ellipse_coverage
 from crowdbot.prediction import AnchorNet, Kalman, Predictor
+from zero_shot import RECORDINGS, ROWS, TRIALS, read, thinned, trial_tracks
 
 SHOWN = (1, 6, 12)
 """Steps of the table, of 0.4 s."""

@@ -1,7 +1,7 @@
 """Draws the report's figure 19: Social Ways and a Vanilla GAN on two places of the Stanford Drone Dataset.
 
-    python tools/sdd_modes.py SDD TRAJNET OUT --updates 500
-    python tools/sdd_modes.py SDD TRAJNET OUT --updates 1000 --place gates-2 --method social-ways modes vanilla
+    python studies/sdd_modes.py SDD TRAJNET OUT --updates 500
+    python studies/sdd_modes.py SDD TRAJNET OUT --updates 1000 --place gates-2 --method social-ways modes vanilla
 
 SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of
 the place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth.

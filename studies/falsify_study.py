@@ -1,6 +1,6 @@
 """Measure ``crowdbot falsify`` on trials chosen by seed, against plain Monte Carlo; writes the tables of a page.
 
-    python tools/falsify_study.py --out build/falsify
+    python studies/falsify_study.py --out build/falsify
 
 The trial of seed 0, 1, 2, ... has two people who cross the way of a robot that they do not see. The delay of its sensor
 varies; with ``--family ways`` the sensor is slow instead. The first three seeds with fewer than 3 failures in 1000

@@ -1,9 +1,9 @@
 """Trains Social Ways fold by fold and seed by seed, and scores it; what was stopped goes on.
 
-    python tools/train_social_ways.py fold DATA OUT --fold eth hotel univ zara1 zara2 --seed 0 1 2
-    python tools/train_social_ways.py split DATA OUT --fold eth hotel univ zara1 zara2
-    python tools/train_social_ways.py table OUT OUT
-    python tools/train_social_ways.py ship OUT ASSETS
+    python studies/train_social_ways.py fold DATA OUT --fold eth hotel univ zara1 zara2 --seed 0 1 2
+    python studies/train_social_ways.py split DATA OUT --fold eth hotel univ zara1 zara2
+    python studies/train_social_ways.py table OUT OUT
+    python studies/train_social_ways.py ship OUT ASSETS
 
 ``fold``: leave-one-out. DATA holds train/, val/ and all_data/ as SGAN published them; only train/ of the other places
 is learned from, val/ of the other places chooses the checkpoint. ``split``: the report's own protocol. DATA holds

@@ -1,6 +1,6 @@
 """Table of docs/results/learned-navigator.md: navigators in unseen cases of the crossings of CrowdNav.
 
-    python tools/learned_navigator.py crowdnav-circle-5 crowdnav-circle-10 --cases 2000
+    python studies/learned_navigator.py crowdnav-circle-5 crowdnav-circle-10 --cases 2000
 
 Every row is a navigator in a trial with the seeds 0 to N - 1, all in one simulation: share of successes, of collisions
 and of timeouts with Wilson intervals of 95 %, mean time of the successes, and the mean impact speed over all cases,
@@ -31,7 +31,7 @@ def straight_weights(folder: Path) -> Path:
     """Write weights of a network that always moves straight to the goal."""
     arrays = {name: np.zeros(shape, np.float32) for name, shape in PolicyWeights.shapes().items()}
     arrays["action3_bias"][0] = 1.0
-    PolicyWeights(**arrays).save(folder / "straight.npz", {"command": "tools/learned_navigator.py"})
+    PolicyWeights(**arrays).save(folder / "straight.npz", {"command": "studies/learned_navigator.py"})
     return folder / "straight.npz"
 
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from citr_runs import cart_windows, citr_runs
 from scipy import stats
 
 import crowdbot as cb
+from citr_runs import cart_windows, citr_runs
 from crowdbot.core import InputError
 from crowdbot.data import Windows
 from crowdbot.prediction import AnchorNet, Predictor, Simulated
@@ -37,17 +38,32 @@ TRIALS = (
 SEEDS = range(100, 104)
 
 
+def cart_rows(data: Path, predictor: Predictor) -> Row:
+    """Return the row of a predictor in CITR."""
+    return paired_rows(citr(data), predictor)
+
+
+def left_out_cart_rows(data: Path, net: AnchorNet, work: Path) -> Row:
+    """Return the row of AnchorNet in CITR with a reaction learned from the other runs."""
+    return left_out_rows([*citr(data)], net, work)
+
+
+def built_in_rows(name: str, predictor: Predictor) -> Row:
+    """Return the row of a predictor in a built-in trial."""
+    return paired_rows(trial_runs(name), predictor)
+
+
 def jobs(data: Path, work: Path) -> Iterator[Job]:
     """Yield the jobs: predictors in CITR, AnchorNet in built-in trials; ``work`` is a folder for fits."""
     net = AnchorNet("open")
     for name, predictor in {"AnchorNet": net, "AnchorNet, all": AnchorNet("all")}.items():
-        yield f"CITR: {name}", lambda p=predictor: paired_rows(citr(data), p)
-    yield "CITR: AnchorNet, reaction learned from the other runs", lambda: left_out_rows([*citr(data)], net, work)
+        yield f"CITR: {name}", partial(cart_rows, data, predictor)
+    yield "CITR: AnchorNet, reaction learned from the other runs", partial(left_out_cart_rows, data, net, work)
     for model in ("orca", "social-force", "power-law"):
         crowd = Simulated(model, substep=0.05)
-        yield f"CITR: {model}", lambda p=crowd: paired_rows(citr(data), p)
+        yield f"CITR: {model}", partial(cart_rows, data, crowd)
     for trial in TRIALS:
-        yield f"trial {trial}: AnchorNet", lambda t=trial: paired_rows(trial_runs(t), net)
+        yield f"trial {trial}: AnchorNet", partial(built_in_rows, trial, net)
 
 
 def citr(data: Path) -> Iterator[Case]:
@@ -88,7 +104,9 @@ def variants(predictor: Predictor) -> dict[str, tuple[Predictor, bool, bool]]:
     }  # fmt: skip
 
 
-def person_errors(case: Case, predictor: Predictor, plan: bool, radii: bool, near: bool = True) -> Row:
+def person_errors(
+    case: Case, predictor: Predictor, plan: bool, radii: bool, near: bool = True
+) -> dict[tuple[str, int], list[float]]:
     """Return the errors [m] of the single trajectory by run and person, one for each window.
 
     Args:
@@ -140,7 +158,8 @@ def left_out_rows(cases: list[Case], net: AnchorNet, work: Path) -> Row:
         found = []
         for number, case in enumerate(cases):
             file = work / f"plan-reaction-{number}.npz"
-            np.savez(file, **fit_reaction(samples[:number] + samples[number + 1 :], ROOM).numbers())
+            numbers: dict[str, Any] = fit_reaction(samples[:number] + samples[number + 1 :], ROOM).numbers()
+            np.savez(file, **numbers)
             own = dataclasses.replace(net, reaction=str(file))
             found.append([_mean_errors([case], how, near) for how in ((net, False, False), (own, True, True))])
             file.unlink()

@@ -1,4 +1,4 @@
-"""Tables of prediction in Markdown, from the stored results of tools/prediction_tables.py."""
+"""Tables of prediction in Markdown, from the stored results of studies/prediction_tables.py."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from types import ModuleType
 
 import pytest
 
-TOOL = Path(__file__).parents[2] / "tools" / "navigators.py"
+TOOL = Path(__file__).parents[2] / "studies" / "navigators.py"
 
 
 @pytest.fixture

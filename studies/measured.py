@@ -1,4 +1,4 @@
-"""Write docs/results/measured.md: ``python tools/measured.py SHARED > docs/results/measured.md``.
+"""Write docs/results/measured.md: ``python studies/measured.py SHARED > docs/results/measured.md``.
 
 SHARED holds ``data/`` (recordings, see CONTRIBUTING.md) and ``reference/`` (steps of other engines).
 """
@@ -21,6 +21,7 @@ from crowdbot import navigation
 from crowdbot.benchmark import evaluate, measure
 from crowdbot.metrics import Score
 from crowdbot.recording import run
+from crowdbot.trials import RobotSpec
 from crowdbot.web import app_measurements
 
 FOLDS = {
@@ -36,7 +37,7 @@ HEAD = """# Measured
 This page holds the numbers that crowdbot claims, each with its protocol and the command that makes it. It is generated:
 
 ```
-python tools/measured.py SHARED > docs/results/measured.md
+python studies/measured.py SHARED > docs/results/measured.md
 ```
 
 SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see
@@ -284,7 +285,7 @@ def _navigation() -> None:
     _table(["navigator", "visible", *head], rows)
 
 
-def _rates(trial: cb.Trial, robot: object) -> list[str]:
+def _rates(trial: cb.Trial, robot: RobotSpec) -> list[str]:
     runs = [run(dataclasses.replace(trial, robots=(robot,)), seed=seed) for seed in SEEDS]
     ends = Counter(run.outcome for run in runs)
     gap = np.median([run.metrics["min_clearance"] for run in runs])

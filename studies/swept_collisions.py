@@ -1,6 +1,6 @@
 """Counts collisions of forecasts between rows, beside those of the truth, on the leave-one-out files of ETH/UCY.
 
-    python tools/swept_collisions.py DATA [--every 20]
+    python studies/swept_collisions.py DATA [--every 20]
 
 DATA holds all_data/. Prints a Markdown table: share of people who come closer than 0.2 m, and than 0.4 m (the sum of
 two radii of 0.2 m), to another one in the same future; people move straight between rows.

@@ -1,4 +1,4 @@
-"""Print impacts of robots and people against the two-body model: ``python tools/impacts.py [regions|robots|people]``.
+"""Print impacts of robots and people against the two-body model: ``python studies/impacts.py [regions|robots|people]``.
 
 ``regions``: a beam of 60 kg at the height of each body region of a standing person. ``robots``: driven and mirrored
 robots against a standing person, at three time steps of the engine. ``people``: walking people against a robot at rest.

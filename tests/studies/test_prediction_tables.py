@@ -1,4 +1,4 @@
-"""tools/prediction_tables.py on a few synthetic people: every part runs, resumes, and its numbers are right."""
+"""studies/prediction_tables.py on a few synthetic people: every part runs, resumes, and its numbers are right."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def tiny(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def tool(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
     """The tool, with few trials and seeds, and one place without training."""
-    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    monkeypatch.syspath_prepend(str(ROOT / "studies"))
     names = ("prediction_tables", "prediction_page", "robot_plans", "citr_runs", "zero_shot", "train_plan_reaction")
     for name in names:
         sys.modules.pop(name, None)

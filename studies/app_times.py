@@ -1,4 +1,4 @@
-"""Measure how fast the app is, from the real program: python tools/app_times.py [--json FILE] [ROW ...].
+"""Measure how fast the app is, from the real program: python studies/app_times.py [--json FILE] [ROW ...].
 
 Each row starts ``crowdbot app`` as a process of its own, with an empty folder. A page in headless Chromium looks at it,
 without a graphics card; the row ``server`` reads the states over the WebSocket, because a browser without a graphics
@@ -27,13 +27,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import aiohttp
-from page_cost import measure
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.recording import record
 from crowdbot.trials import load_trial
 from crowdbot.web import StateFrame
 from crowdbot.web.simulator.kernel_preparation import PROGRAM
+from page_cost import measure
 
 FLAGS = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 300_000

@@ -1,4 +1,4 @@
-"""Print how people recover and fall: ``python tools/balance.py [leans|pulls|hits|falls|row|films FOLDER [KIND ...]]``.
+"""Print how people recover and fall: ``python studies/balance.py leans|pulls|hits|falls|row|films FOLDER [KIND ...]``.
 
 ``leans``: largest lean from which a person recovers without a step, with one, and with several, against published
 means, and the same for impulses. ``pulls``: the same for forces at the waist for a time [N]. ``hits``: speeds at which
@@ -15,13 +15,13 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
-from impacts import ram
 
 from crowdbot.core import Scene, Twist
 from crowdbot.humans import Gait, People
 from crowdbot.models import ORCA
 from crowdbot.world import Balance, PhysicsWorld, SceneCamera, balance_ability, push_person
 from crowdbot.world.physics.balance.fall import FallMotion, impact_speeds
+from impacts import ram
 
 STEP, FALLING = 0.005, 2
 WAYS = {"forward": 0.0, "backward": math.pi, "sideways": 0.5 * math.pi}
@@ -220,6 +220,7 @@ def films(folder: Path, kinds: Sequence[str] = (), name: str = "woman-72") -> No
             for row, (dx, y, z) in enumerate((SIDE, ABOVE)):
                 camera = SceneCamera((x + dx, y, z), (x, 0.0, 0.5), width=size, height=size)
                 picture = world.render(camera).rgb
+                assert picture is not None
                 sheet.paste(Image.fromarray(picture), (k * size, row * size))
         half = sheet.width // 2
         stacked = Image.new("RGB", (half, 2 * sheet.height))

@@ -1,4 +1,4 @@
-"""Count the people that the HOG detector of OpenCV finds in rendered images: ``python tools/hog.py [--seed N]``.
+"""Count the people that the HOG detector of OpenCV finds in rendered images: ``python studies/hog.py [--seed N]``.
 
 Each of the 45 bodies is drawn alone by the renderer ``software``, upright, at heights of 128 to 320 pixels, from five
 sides, under each sky, on changing floors and before changing walls. The seed changes outfits, bags, gaits, and which
@@ -14,10 +14,12 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.humans import People, names
@@ -40,6 +42,7 @@ SIDES = (0.0, 0.6, 1.57, 2.6, 3.14)
 OVERLAP, ASPECT, MARGIN = 0.5, 0.41, 0.75
 """Smallest overlap, width of a box as a share of its height, and the share of a window that a person fills."""
 ROOM = 6.0
+Pixels = NDArray[np.uint8]
 
 
 def main() -> None:
@@ -49,7 +52,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of outfits, gaits and surroundings (default: 0)")
     given = parser.parse_args()
     detector = cv2.HOGDescriptor()
-    detector.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
+    detector.setSVMDetector(np.asarray(cv2.HOGDescriptor.getDefaultPeopleDetector()))
     found: dict[str, list[bool]] = {}
     false = images = 0
     for k, name in enumerate(names()):
@@ -72,10 +75,10 @@ def main() -> None:
     print(f"\n{false} false windows in {images} images")
 
 
-def pictures(name: str, k: int, seed: int = 0) -> list[tuple[np.ndarray, np.ndarray, tuple[str, ...]]]:
+def pictures(name: str, k: int, seed: int = 0) -> list[tuple[Pixels, Sequence[int], tuple[str, ...]]]:
     """The pictures of a person: image, box of its pixels, and words that describe it."""
     people = People.of([name], variation=k + 50 * seed)
-    made = []
+    made: list[tuple[Pixels, Sequence[int], tuple[str, ...]]] = []
     still, k = k % 2 == 0, k + 3 * seed
     for n, side in enumerate(SIDES):
         tall = TALL[(n + k) % len(TALL)]
@@ -94,13 +97,15 @@ def pictures(name: str, k: int, seed: int = 0) -> list[tuple[np.ndarray, np.ndar
             shadows=True, detail=0, renderer="software", antialiasing=4,
         )  # fmt: skip
         seen = Renderer(scene, {}, PhysicsStage(appearance=looks), motion).images(camera, segmentation=True)
+        assert seen.rgb is not None
+        assert seen.segmentation is not None
         rows, columns = np.nonzero(seen.segmentation == 0)
-        box = np.array([columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1])
+        box = [int(n) for n in (columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1)]
         made.append((seen.rgb, box, (f"{tall} pixels", f"sky {looks.sky}", name.split("-", maxsplit=1)[0])))
     return made
 
 
-def overlap(window: np.ndarray, box: np.ndarray) -> float:
+def overlap(window: Sequence[int], box: Sequence[int]) -> float:
     """Intersection over union of a window without its margin and a box, both with a width of 0.41 of their height."""
     a, b = standard(window, MARGIN), standard(box, 1.0)
     left, top, right, low = max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
@@ -109,7 +114,7 @@ def overlap(window: np.ndarray, box: np.ndarray) -> float:
     return both / (sum(sizes) - both)
 
 
-def standard(box: np.ndarray, share: float) -> tuple[float, float, float, float]:
+def standard(box: Sequence[int], share: float) -> tuple[float, float, float, float]:
     """Left, top, right and lower edge of a box with the same centre, and the standard width."""
     x, y, wide, high = (float(value) for value in box)
     tall = share * high

@@ -1,8 +1,8 @@
 """Fits how people react to the plan of a robot, and scores the fit on encounters that it did not see.
 
-    python tools/train_plan_reaction.py train DATA OUT
-    python tools/train_plan_reaction.py train DATA OUT --citr
-    python tools/train_plan_reaction.py score DATA OUT
+    python studies/train_plan_reaction.py train DATA OUT
+    python studies/train_plan_reaction.py train DATA OUT --citr
+    python studies/train_plan_reaction.py score DATA OUT
 
 DATA holds eth_ucy_splits/ and citr/ in the formats of their authors. `train` writes OUT/plan-reaction-open.npz, the
 coefficients that ship: simulated encounters of four crowd models and encounters of people in the UCY recordings, whose
@@ -17,10 +17,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from citr_runs import cart_windows, citr_runs
 
+from citr_runs import cart_windows, citr_runs
 from crowdbot.core import InputError
 from crowdbot.data import Windows, load
 from crowdbot.prediction import AnchorNet, Kalman
@@ -93,7 +94,8 @@ def train(options: argparse.Namespace) -> None:
         simulated = samples_of(robot_encounters(SCENES), ROOM, net=True)
         real = samples_of(real_encounters(options.data), ROOM, net=False)
         reaction, name = shipped_fit([*simulated.values()], [*real.values()], ROOM), "plan-reaction-open.npz"
-    np.savez(options.out / name, **reaction.numbers())
+    numbers: dict[str, Any] = reaction.numbers()
+    np.savez(options.out / name, **numbers)
     said = ", ".join(f"{field} {np.round(values, 2).tolist()}" for field, values in reaction._asdict().items())
     print(f"{options.out / name}: {said}")
 

@@ -1,6 +1,6 @@
 """Write docs/results/navigators.md: navigators in the trials of CrowdNav and in the other built-in trials.
 
-    python tools/navigators.py --seeds 500 --slow-seeds 100 --severity-seeds 500 --others 10 --parts parts
+    python studies/navigators.py --seeds 500 --slow-seeds 100 --severity-seeds 500 --others 10 --parts parts
 
 ``--parts`` is a folder of finished parts, with which the same command continues after an interruption (Ctrl-C, or a
 kill). Everything runs in one process. Each line on the terminal is a finished row, with the share of the rows that are
@@ -60,7 +60,7 @@ the trial, and the defaults of each navigator. The column `runs` says how many s
 seeds are wide. `policy` was trained in the crossings of CrowdNav only. Missing rows have not been run.
 
 ```
-python tools/navigators.py --only-others --others 10 --parts parts
+python studies/navigators.py --only-others --others 10 --parts parts
 ```"""
 CROWDNAV = ("crowdnav-circle-5", "crowdnav-circle-10", "crowdnav-circle-20", "crowdnav-square-5", "crowdnav-square-10")
 

@@ -1,10 +1,10 @@
 """Trains the shipped weights of AnchorNet and Anchors on the leave-one-out files of ETH/UCY, and scores them.
 
-    python tools/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
-    python tools/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
-    python tools/train_anchor_net.py describe DATA OUT --fold all
-    python tools/train_anchor_net.py score DATA OUT --seed 0
-    python tools/train_anchor_net.py reliability DATA OUT --seed 0
+    python studies/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
+    python studies/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
+    python studies/train_anchor_net.py describe DATA OUT --fold all
+    python studies/train_anchor_net.py score DATA OUT --seed 0
+    python studies/train_anchor_net.py reliability DATA OUT --seed 0
 
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
@@ -22,6 +22,7 @@ import json
 import shutil
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -79,6 +80,8 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     used = recordings(options.data / "train", fold)
     if seed == 0:
         anchors = Anchors.fit(*(tracks.windows() for tracks in used))
+        assert anchors.share is not None
+        assert anchors.shapes is not None
         np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
     how = _recipe(options.set, fold, seed)
     watched = training_set(recordings(options.data / "val", fold), reverse=False)
@@ -103,7 +106,8 @@ def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str,
     """Calibrate on val/ of the places that were learned from, and write the numbers in as few bytes as they need."""
     kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
     kept = calibrate_confidence(kept, training_set(recordings(options.data / "val", fold), reverse=False))
-    np.savez(file, **{k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()})
+    arrays: dict[str, Any] = {k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()}
+    np.savez(file, **arrays)
     size = sum(values.size for values in kept.values())
     said = {name: kept[name].round(2).tolist() for name in ("temperature", "widening")}
     print(f"{file.name}: {size} numbers, {file.stat().st_size / 1e6:.2f} MB, {said}", flush=True)
@@ -134,7 +138,7 @@ def _recipe(words: list[str], fold: str, seed: int) -> AnchorTraining:
     fields = {f.name for f in dataclasses.fields(Augmentation)}
     preset = PRESETS["general" if fold == OPEN else "shipped"]
     varied = dataclasses.replace(preset.variation, **{k: v for k, v in pairs.items() if k in fields})
-    others = {k: v for k, v in pairs.items() if k not in fields}
+    others: dict[str, Any] = {k: v for k, v in pairs.items() if k not in fields}
     return dataclasses.replace(preset, **others, seed=seed, variation=varied)
 
 

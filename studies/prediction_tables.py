@@ -1,10 +1,10 @@
 """Measures all tables of prediction, and writes them as OUT/tables.md.
 
-    python tools/prediction_tables.py DATA OUT [--weights DIR] [--part leave-one-out ...]
+    python studies/prediction_tables.py DATA OUT [--weights DIR] [--part leave-one-out ...]
 
 DATA holds eth_ucy_splits/, eth_biwi/, sdd_trajnet/, citr/, hermes/, juelich/ and trajnetpp/ in the formats of their
 authors. Every result is a file in OUT/parts: the same command continues after an interruption. --weights DIR has the
-weights of other seeds, anchor-net-FOLD-seedN.npz of tools/train_anchor_net.py.
+weights of other seeds, anchor-net-FOLD-seedN.npz of studies/train_anchor_net.py.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import json
 import os
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import robot_plans
-import zero_shot as places
-from prediction_page import page
 
 import crowdbot as cb
+import robot_plans
+import zero_shot as places
 from crowdbot.core import InputError, source_digest, stream
 from crowdbot.data import TRAJNET_CATEGORIES, Forecast, Trajectories, Windows, load, primary_windows, scenes_of_category
 from crowdbot.metrics import (
@@ -47,6 +47,7 @@ from crowdbot.prediction import (
     SampledConstantVelocity,
 )
 from crowdbot.trials import PRESETS
+from prediction_page import page
 
 FOLDS = {
     "eth": ("biwi_eth",), "hotel": ("biwi_hotel",), "univ": ("students001", "students003"),
@@ -136,12 +137,23 @@ def leave_one_out(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[
         for name, (predictor, samples) in asked.items():
             for protocol in ("all", "sgan"):
                 if protocol == "all" or "seed 0" in name:
-                    yield (
-                        f"{protocol}|{fold}|{name}",
-                        lambda f=fold, p=predictor, k=samples, how=protocol: measure(
-                            p, k, [one.windows(protocol=how) for one in tracks_of(options, f)], how == "all"
-                        ),
-                    )
+                    yield f"{protocol}|{fold}|{name}", partial(fold_row, options, fold, protocol, predictor, samples)
+
+
+def fold_row(options: argparse.Namespace, fold: str, protocol: str, predictor: Predictor, samples: int) -> Row:
+    """Return the errors on the place that a fold leaves out."""
+    pairs = [tracks.windows(protocol=protocol) for tracks in tracks_of(options, fold)]
+    return measure(predictor, samples, pairs, protocol == "all")
+
+
+def lazy_row(predictor: Predictor, samples: int, cut: Callable[[], list[tuple[Windows, Windows]]]) -> Row:
+    """Return the errors on windows that are cut when they are needed."""
+    return measure(predictor, samples, cut(), False)
+
+
+def degraded_row(options: argparse.Namespace, cost: str, predictor: Predictor, samples: int) -> Row:
+    """Return the errors on degraded tracks."""
+    return measure(predictor, samples, [worse(options, cost)], False)
 
 
 def zero_shot(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row]]]:
@@ -159,7 +171,7 @@ def zero_shot(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], R
         for seed, net in nets(options, "open").items():
             asked |= {f"AnchorNet, 1, seed {seed}": (net, 1), f"AnchorNet, 20, seed {seed}": (net, 20)}
         for name, (predictor, samples) in asked.items():
-            yield f"{place}|{name}", lambda p=predictor, k=samples, c=cut: measure(p, k, c(), False)
+            yield f"{place}|{name}", partial(lazy_row, predictor, samples, cut)
 
 
 def trajnet(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row]]]:
@@ -170,7 +182,7 @@ def trajnet(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row
             ("constant velocity", ConstantVelocity(), 1), ("Kalman", Kalman(), 1), ("AnchorNet, 1", net, 1),
             ("AnchorNet, 3", net, 3),
         ):  # fmt: skip
-            yield f"{file}|{name}", lambda f=file, p=predictor, k=samples: trajnet_row(options, f, p, k)
+            yield f"{file}|{name}", partial(trajnet_row, options, file, predictor, samples)
 
 
 def trajnet_row(options: argparse.Namespace, file: str, predictor: Predictor, samples: int) -> Row:
@@ -218,7 +230,7 @@ def degraded(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Ro
             ("anchors, 20", Anchors("zara1"), 20), ("AnchorNet, 1", AnchorNet("zara1"), 1),
             ("AnchorNet, 20", AnchorNet("zara1"), 20),
         ):  # fmt: skip
-            yield f"{cost}|{name}", lambda c=cost, p=predictor, k=samples: measure(p, k, [worse(options, c)], False)
+            yield f"{cost}|{name}", partial(degraded_row, options, cost, predictor, samples)
 
 
 def worse(options: argparse.Namespace, cost: str) -> tuple[Windows, Windows]:
@@ -248,7 +260,7 @@ def robot_plan(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], 
 def trials(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row]]]:
     """Yield the jobs of the built-in trials with people."""
     for name in options.trial or PRESETS:
-        yield name, lambda n=name: trial_row(n, options.windows)
+        yield name, partial(trial_row, name, options.windows)
 
 
 def trial_row(name: str, windows: int) -> Row:

@@ -1,4 +1,4 @@
-"""Time a colour camera of 640 x 480 that sees 30 people: ``python tools/camera_speed.py``.
+"""Time a colour camera of 640 x 480 that sees 30 people: ``python studies/camera_speed.py``.
 
 The renderer ``software`` with shadows and 4 samples per pixel, level of detail 1, 30 walking people and a robot within
 10 m, without depth and labels; the same without antialiasing and without shadows. Wall time needs a machine without
@@ -30,7 +30,7 @@ def main() -> None:
     motion = PeopleMotion(scene, np.arange(1, PEOPLE + 1), seed=1)
     renderer = Renderer(scene, {0: Robot.load("pepper")}, None, motion)
     camera = SceneCamera((0.3, 0.0, 1.2), (5.0, 0.0, 1.0), shadows=True, renderer="software", antialiasing=4)
-    most = numba.config.NUMBA_NUM_THREADS
+    most = numba.get_num_threads()
     print("| image | threads | ms, wall | ms of processor time | images/s |\n|---|---:|---:|---:|---:|")
     for words, options in (("as asked", {}), ("1 sample", {"antialiasing": 1}), ("no shadows", {"shadows": False})):
         for threads in sorted({1, most}):

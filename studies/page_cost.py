@@ -1,4 +1,4 @@
-"""Measure the JavaScript of a picture of the app: python tools/page_cost.py [--people 200] [--beams 1080].
+"""Measure the JavaScript of a picture of the app: python studies/page_cost.py [--people 200] [--beams 1080].
 
 States of a walking crowd with a robot and its scan are decoded, blended, applied and drawn in headless Chromium, one
 state for each picture. WebGL calls that draw or upload do nothing, so what is left is the work of the page itself.

@@ -1,6 +1,6 @@
 """Scores predictors on whole data sets that the default weights did not learn from, and prints the table of the site.
 
-    python tools/zero_shot.py DATA --weights NEW.npz OLD.npz
+    python studies/zero_shot.py DATA --weights NEW.npz OLD.npz
 
 DATA holds eth_biwi/, sdd_trajnet/, citr/, hermes/ and juelich/ in the formats of their authors. 8 + 12 rows of 0.4 s,
 at most --windows windows per recording, evenly spaced. K = 1 and the best of 20 per person.
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ RECORDINGS = {
 """Data set -> patterns of its files."""
 TRIALS = ("one-way-with", "crossing-flows")
 """Built-in trials."""
-OPTIONS = {
+OPTIONS: dict[str, dict[str, Any]] = {
     "citr": {"fps": 29.97, "columns": {"x": "x_est", "y": "y_est"}},
     "hermes": {"fps": 16.0, "units": "cm"},
     "juelich": {"units": "cm"},

@@ -1,6 +1,6 @@
 """Measures the processor time of live forecasts of 30 people whose tracker sends 10 rows a second, and prints a table.
 
-    OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python tools/prediction_latency.py --frames 150
+    OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python studies/prediction_latency.py --frames 150
 
 The people are those of the built-in trial crossing-flows, 30 in each row. AnchorNet predicts 20 futures of 4.8 s, in 12
 rows of 0.4 s and in 48 rows of 0.1 s. ORCA with learned destinations is calibrated in each frame, from the fit of
