@@ -70,9 +70,9 @@ soak: $(VENV)/installed-dev
 	$(BIN)/python tools/fuzz_readers.py --count 2000
 
 lint: $(VENV)/installed-dev
-	$(BIN)/ruff check src tests tools
-	$(BIN)/ruff check --preview --select PLW1514 src tests tools # files of text without an encoding
-	$(BIN)/ruff format --check src tests tools
+	$(BIN)/ruff check src studies tests tools
+	$(BIN)/ruff check --preview --select PLW1514 src studies tests tools # files of text without an encoding
+	$(BIN)/ruff format --check src studies tests tools
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/house.py

@@ -27,16 +27,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CODE = ("src", "tests", "tools")
+CODE = ("src", "studies", "tests", "tools")
 LONG = {
-    "docs/results/around-robots.md": "python tools/around_robots.py --data RECORDINGS --sets FILE --out FILE",
-    "docs/results/calibrated-crowds.md": "python tools/schemes.py SHARED docs/results",
+    "docs/results/around-robots.md": "python studies/around_robots.py --data RECORDINGS --sets FILE --out FILE",
+    "docs/results/calibrated-crowds.md": "python studies/schemes.py SHARED docs/results",
     "docs/results/contacts.md": "crowdbot validate --contacts --starts 20 --out docs/results",
-    "docs/results/energy.md": "python tools/measure_energy.py --data RECORDINGS --out docs/results/energy.md",
-    "docs/results/measured.md": "python tools/measured.py SHARED > docs/results/measured.md",
-    "docs/results/people.md": "python tools/predict_people.py --data RECORDINGS --out docs/results/people.md",
-    "docs/results/people-values.md": "python tools/fit_people.py --data RECORDINGS --state FILE --profiles FILE",
-    "docs/results/trial-crowds.md": "python tools/trial_crowds.py --out docs/results/trial-crowds.md",
+    "docs/results/energy.md": "python studies/measure_energy.py --data RECORDINGS --out docs/results/energy.md",
+    "docs/results/measured.md": "python studies/measured.py SHARED > docs/results/measured.md",
+    "docs/results/people.md": "python studies/predict_people.py --data RECORDINGS --out docs/results/people.md",
+    "docs/results/people-values.md": "python studies/fit_people.py --data RECORDINGS --state FILE --profiles FILE",
+    "docs/results/trial-crowds.md": "python studies/trial_crowds.py --out docs/results/trial-crowds.md",
     "docs/results/validation.md": "crowdbot validate --data RECORDINGS --out docs/results",
 }
 """Generated pages that no step writes, with their commands."""
@@ -212,7 +212,7 @@ STEPS = (
     Step("metrics", "reference of metrics", (METRICS,),
          functools.partial(command, "-m", "crowdbot.metrics.social.page", METRICS)),
     Step("navigators", "page of navigators, from the rows that it has", ("docs/results/navigators.md",),
-         functools.partial(command, "tools/navigators.py", "--layout")),
+         functools.partial(command, "studies/navigators.py", "--layout")),
     Step("gallery", "page of built-in trials, and pictures that it lacks",
          ("docs/gallery/trials.md", "docs/gallery/trials/*.png"),
          functools.partial(command, "tools/trial_pictures.py", "docs/gallery/trials", "--missing")),

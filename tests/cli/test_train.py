@@ -1,4 +1,4 @@
-"""``crowdbot train`` and ``crowdbot study gan``: from recordings to weights to scores, and wrong words."""
+"""``crowdbot train``: from recordings to weights to scores, and wrong words."""
 
 from __future__ import annotations
 
@@ -126,25 +126,6 @@ def test_wrong_words_are_one_sentence(
     assert (status, out) == (2, "")
     assert why in err
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.sweep
-def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["study", "gan", "--methods", "vanilla", "info+unrolled5", "--seeds", "1", "--updates", "2",
-             "--check-every", "1", "--set", "hidden=4", "--out", str(tmp_path), "--json"]  # fmt: skip
-    status, out, _ = said(words, capsys)
-    found = json.loads(out)
-    assert status == 0
-    assert [row["method"] for row in found["methods"]] == ["vanilla", "info+unrolled5"]
-    assert found["runs"][0]["update"] == [1, 2]
-    assert 0.45 < found["ideal"]["nearest_neighbor"] < 0.55
-    assert found["ideal"]["emd"] < 0.015
-    assert found["ideal"]["whole"] == 1.0
-    assert all((tmp_path / name).stat().st_size > 1000 for name in ("samples.png", "measures.png", "study.json"))
-    again = json.loads(said(words, capsys)[1])
-    assert again == found
-    status, _, err = said(["study", "gan", "--methods", "infoo", "--out", str(tmp_path)], capsys)
-    assert (status, "unknown method 'infoo', did you mean 'info'" in err) == (2, True)
 
 
 def test_without_torch_it_says_what_to_install(capsys, tmp_path, monkeypatch, recordings):

@@ -27,9 +27,9 @@ from crowdbot.evaluation import (
 from crowdbot.trials import Trial, load_trial, parse_trial
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "studies"))
 
-COMMAND = "python tools/around_robots.py --data RECORDINGS --sets FILE --out docs/results/around-robots.md"
+COMMAND = "python studies/around_robots.py --data RECORDINGS --sets FILE --out docs/results/around-robots.md"
 UNKNOWN = "whether contacts are likelier or rarer here than with real people is unknown"
 PERSON = 'zone="2,-1 4,-1 4,1 2,1" goal="-4,-1 -3,-1 -3,1 -4,1"'
 ROBOT = '<robot x="-3" y="0"><goal x="3" y="0"/><drive type="differential-drive"/><navigator type="straight"/></robot>'

@@ -140,4 +140,4 @@ def test_the_folder_of_the_weights_says_what_they_learned_from() -> None:
     text = (folder / "README.md").read_text(encoding="utf-8")
     assert "`anchor-net-open.npz`" in text
     assert "train DATA OUT --fold open" in text
-    assert (Path(__file__).parents[2] / "tools" / "train_anchor_net.py").is_file()
+    assert (Path(__file__).parents[2] / "studies" / "train_anchor_net.py").is_file()

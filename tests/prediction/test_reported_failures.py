@@ -73,7 +73,7 @@ def test_simulated_people_are_predicted_as_well_as_with_constant_velocity(trial:
 
 def test_the_plan_of_a_cart_lowers_the_error_of_people_beside_it(recordings: Path, monkeypatch: object) -> None:
     assert isinstance(monkeypatch, pytest.MonkeyPatch)
-    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "tools"))
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "studies"))
     import robot_plans
 
     if_known = robot_plans.paired_rows(robot_plans.citr(recordings), AnchorNet("open"))

@@ -1,4 +1,4 @@
-"""Evaluation of predictors, demo and report, speed measurements, and a GAN comparison on toy data.
+"""Evaluation of predictors, demo and report, and speed measurements.
 
 Names are loaded on first use.
 """
@@ -49,7 +49,6 @@ _MODULES = {
         "sweep_degradations",
     ),
     "speed": ("Gauge", "Measurement", "SpeedRow", "measure", "measurements"),
-    "toy_gan": ("METHODS", "GanRun", "GanComparison", "plot_measures", "plot_samples", "with_settings"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
@@ -120,9 +119,3 @@ if TYPE_CHECKING:
     from .speed import SpeedRow as SpeedRow
     from .speed import measure as measure
     from .speed import measurements as measurements
-    from .toy_gan import METHODS as METHODS
-    from .toy_gan import GanComparison as GanComparison
-    from .toy_gan import GanRun as GanRun
-    from .toy_gan import plot_measures as plot_measures
-    from .toy_gan import plot_samples as plot_samples
-    from .toy_gan import with_settings as with_settings

@@ -47,7 +47,6 @@ COMMAND_GROUPS = {
         "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
         "degrade": "score predictors on degraded tracks, or write a degraded recording",
         "track": "find and track people in laser scans, and score the tracks",
-        "study": "compare GANs on a toy dataset with several modes",
     },
     "crowds": {
         "measure": "measure density, speed and flow in recordings, episodes and trials",

@@ -1,6 +1,6 @@
 """Realism of a crowd around a robot: how near its people come, beside recorded people, and what follows for a verdict.
 
-The numbers are measured by ``tools/around_robots.py`` in recordings of people around a golf cart.
+The numbers are measured by ``studies/around_robots.py`` in recordings of people around a golf cart.
 """
 
 from __future__ import annotations

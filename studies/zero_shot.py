@@ -1,0 +1,101 @@
+"""Scores predictors on whole data sets that the default weights did not learn from, and prints the table of the site.
+
+    python studies/zero_shot.py DATA --weights NEW.npz OLD.npz
+
+DATA holds eth_biwi/, sdd_trajnet/, citr/, hermes/ and juelich/ in the formats of their authors. 8 + 12 rows of 0.4 s,
+at most --windows windows per recording, evenly spaced. K = 1 and the best of 20 per person.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import crowdbot as cb
+from crowdbot.benchmark import evaluate
+from crowdbot.data import Trajectories, Windows, load
+from crowdbot.metrics import Score
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Kalman, LeastSquares, Predictor
+
+STEP = 0.4
+ROWS = 20
+RECORDINGS = {
+    "ETH": ("eth_biwi/seq_eth/obsmat.txt", "eth_biwi/seq_hotel/obsmat.txt"),
+    "SDD gates": ("sdd_trajnet/Train/stanford/gates_*.txt",),
+    "SDD hyang": ("sdd_trajnet/Train/stanford/hyang_*.txt",),
+    "CITR": ("citr/*/*ped_filtered.csv",),
+    "HERMES": ("hermes/Corridor-1D/uo-[01]*0-180-*.txt", "hermes/Corridor-2D/bo*.txt"),
+    "Jülich": ("juelich/bidirectional/bi_corr_400_b_03.txt",),
+}
+"""Data set -> patterns of its files."""
+TRIALS = ("one-way-with", "crossing-flows")
+"""Built-in trials."""
+OPTIONS: dict[str, dict[str, Any]] = {
+    "citr": {"fps": 29.97, "columns": {"x": "x_est", "y": "y_est"}},
+    "hermes": {"fps": 16.0, "units": "cm"},
+    "juelich": {"units": "cm"},
+}
+"""Folder -> options of :func:`crowdbot.data.load`."""
+
+
+def read(folder: Path, patterns: tuple[str, ...]) -> list[Trajectories]:
+    """Return the recordings at 0.4 s."""
+    found = []
+    for pattern in patterns:
+        for path in sorted(folder.glob(pattern)):
+            tracks = load(path, **OPTIONS.get(pattern.partition("/")[0], {}))
+            found.append(tracks if abs(tracks.dt - STEP) < 1e-6 else tracks.resample(STEP))
+    return found
+
+
+def trial_tracks(name: str) -> list[Trajectories]:
+    """Return the tracks of a built-in trial at 0.4 s."""
+    return [cb.run(cb.load_trial(name)).tracks(STEP)]
+
+
+def thinned(tracks: list[Trajectories], windows: int) -> list[tuple[Windows, Windows]]:
+    """Return past and future of at most so many windows of each recording, evenly spaced."""
+    cut = [one.windows() for one in tracks]
+    every = [max(1, len(past) // windows) for past, _ in cut]
+    return [(past[::n], future[::n]) for (past, future), n in zip(cut, every, strict=True)]
+
+
+def predictors(weights: list[Path]) -> dict[str, tuple[Predictor, int]]:
+    """Return the columns of the table: name -> predictor and number of samples."""
+    asked: dict[str, tuple[Predictor, int]] = {
+        "constant velocity": (ConstantVelocity(), 1), "Kalman": (Kalman(), 1), "least squares": (LeastSquares(), 1),
+    }  # fmt: skip
+    nets = {path.parent.name: AnchorNet(file=str(path)) for path in weights} or {"AnchorNet": AnchorNet("open")}
+    asked |= {f"{name}, K = 1": (net, 1) for name, net in nets.items()}
+    asked |= {"anchors, 20": (Anchors("open"), 20)}
+    return asked | {f"{name}, 20": (net, 20) for name, net in nets.items()}
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("data", type=Path)
+    parser.add_argument("--weights", type=Path, nargs="+", default=[], help="files, named after their folders")
+    parser.add_argument("--windows", type=int, default=60)
+    parser.add_argument("--only", nargs="+", default=[*RECORDINGS, *TRIALS])
+    options = parser.parse_args()
+    asked = predictors(options.weights)
+    print("| data set | persons | " + " | ".join(asked) + " |")
+    print("|---" * (len(asked) + 2) + "|")
+    for name in options.only:
+        tracks = read(options.data, RECORDINGS[name]) if name in RECORDINGS else trial_tracks(name)
+        short = [one.name for one in tracks if np.unique(one.frame).size < ROWS]
+        if short:
+            print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
+        cut = thinned([one for one in tracks if one.name not in short], options.windows)
+        scores = [Score.total([evaluate(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
+        cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in scores)
+        print(f"| {name} | {scores[0].persons} | {cells} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
