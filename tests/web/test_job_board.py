@@ -12,7 +12,7 @@ from job_functions import burn, count, die, fail, fill_disk, fill_memory, fill_m
 
 from crowdbot.core import InputError
 from crowdbot.web import JobBoard, SessionLimits, Workspace, call_command
-from crowdbot.web.jobs import JobWork, process_memory
+from crowdbot.web.jobs import JobWork, job_process
 from crowdbot.web.jobs.job_desk import JobDesk
 from crowdbot.web.prediction import PredictionDesk
 
@@ -247,7 +247,7 @@ class TestDesk:
 
 
 def test_without_linux_the_memory_of_a_job_is_that_of_its_own_process(monkeypatch):
-    monkeypatch.setattr(process_memory, "peak_memory", lambda: 5e6)
-    assert process_memory.process_memory() != 5e6
+    monkeypatch.setattr(job_process, "peak_memory", lambda: 5e6)
+    assert job_process.process_memory() != 5e6
     monkeypatch.setattr(sys, "platform", "darwin")
-    assert process_memory.process_memory() == 5e6
+    assert job_process.process_memory() == 5e6

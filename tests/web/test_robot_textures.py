@@ -9,9 +9,9 @@ from PIL import Image
 
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
-from crowdbot.web.scene import mesh_textures as limits
+from crowdbot.web.scene import meshes as limits
 from crowdbot.web.scene import scene_description, scene_frame, scene_resource
-from crowdbot.web.scene.mesh_textures import texture_arrays
+from crowdbot.web.scene.meshes import texture_arrays
 from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import Robot, link_surface
 from crowdbot.world.urdf.shapes import Texture

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import dataclasses
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, trial_titles, trial_xml
+from crowdbot.core import InputError, TrialError, without_running_code
+from crowdbot.navigation import PathPlanner
+from crowdbot.trials import (
+    Avatar,
+    Points,
+    Trial,
+    builtin_trials,
+    expand_spawners,
+    expand_sweeps,
+    load_builtin_trial,
+    override_remarks,
+    parse_trial,
+    place,
+    trial_remarks,
+    trial_titles,
+    trial_xml,
+)
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows
 from crowdbot.web.draft_file import DraftFile
 
-from .agents_of_spawner import agents_of_spawner, spawner_of_agents
 from .edit_history import EditHistory
 from .element_table import element_table
-from .floor_picture import map_of_picture
-from .trial_preview import problems_at_elements, read_trial, start_and_ways
 from .xml_document import XmlDocument, XmlNode
 
 __all__ = ["EditorDesk"]
@@ -30,6 +46,15 @@ EMPTY = """<?xml version="1.0" encoding="UTF-8"?>
 """
 MOST_TEXT = 2_000_000
 """Longest XML text [characters]."""
+ROOM = 0.3
+"""Distance between the people and the border of their zone [m]."""
+SAME = ("journey", "speed", "radius", "arrival", "crowd", "body", "activity")
+"""Attributes that a spawner takes over if all its people have the same value."""
+MOST_CELLS = 16_000_000
+MESSAGE = re.compile(r":(\d+): (?:<([^>\s]+)>)?")
+MOST_WAYS = 60
+BODY = 0.25
+"""Radius of the bodies whose ways are shown [m]."""
 
 
 class EditorDesk(Desk):
@@ -253,3 +278,169 @@ def _tree(node: XmlNode) -> dict[str, Any]:
         "attributes": node.attributes,
         "children": [_tree(one) for one in node.children],
     }
+
+
+def agents_of_spawner(document: XmlDocument, path: Sequence[int], trial: Trial, seed: int) -> XmlDocument:
+    """Return a document with the people of a spawner as single agents, at the places drawn with a seed.
+
+    Args:
+        document: the text of the trial.
+        path: the spawner.
+        trial: the trial in the text.
+        seed: seed of the placement.
+
+    Raises:
+        InputError: the element is not a spawner, or people do not fit with this seed.
+    """
+    node = document.node(path)
+    if node.tag != "spawner" or len(path) != 1:
+        raise InputError(f"<{node.tag}> is not a spawner")
+    if trial.sweeps:
+        raise TrialError("the trial has sweeps; take one of its variants")
+    number = [one for one in document.root.children if one.tag == "spawner"].index(node)
+    spawner = trial.spawners[number]
+    people, _ = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, avatars=trial.avatars)
+    owners = [people.owners[int(one)] for one in people.owner]
+    walking = [owner for owner in owners if not isinstance(owner, Avatar)]
+    agents = expand_spawners(trial, seed).agents
+    mine = tuple(agent for agent, owner in zip(agents, walking, strict=True) if owner is spawner)
+    text = trial_xml(dataclasses.replace(trial, agents=mine, spawners=()))
+    source = XmlDocument(text)
+    for one in source.root.children:
+        if one.tag == "agent":
+            document = document.insert((), source.text[one.begin : one.end])
+    return document.remove(path)
+
+
+def spawner_of_agents(document: XmlDocument, paths: Sequence[Sequence[int]]) -> XmlDocument:
+    """Return a document with a spawner in the place of single agents.
+
+    Its zone is the rectangle around the agents and its goal the rectangle around their goals; attributes that all of
+    them have are kept.
+
+    Raises:
+        InputError: an element is not an agent, or there is none.
+    """
+    nodes = [document.node(path) for path in paths]
+    if not nodes or any(one.tag != "agent" for one in nodes):
+        raise InputError("choose one or more agents")
+    rows = [one.attributes for one in nodes]
+    try:
+        starts = np.array([[float(row["x"]), float(row["y"])] for row in rows])
+        goals = [point for row in rows for point in Points.parse(row.get("goal") or row.get("goal-zone") or "")]
+    except (KeyError, ValueError):
+        raise InputError("an agent has no readable place or goal; correct it first") from None
+    words = {"count": str(len(rows)), "zone": _rectangle(starts)}
+    if goals:
+        words["goal"] = _rectangle(np.array(goals))
+    for name in SAME:
+        if len(values := {row.get(name) for row in rows}) == 1 and (value := values.pop()) is not None:
+            words[name] = value
+    for path in sorted((tuple(one) for one in paths), reverse=True):
+        document = document.remove(path)
+    document = document.insert((), "<spawner/>")
+    last = (len(document.root.children) - 1,)
+    for name, value in words.items():
+        document = document.set(last, name, value)
+    return document
+
+
+def _rectangle(points: NDArray[np.float64]) -> str:
+    (left, low), (right, high) = points.min(axis=0) - ROOM, points.max(axis=0) + ROOM
+    return str(Points.of(np.round([(left, low), (right, low), (right, high), (left, high)], 3)))
+
+
+def map_of_picture(picture: Path, resolution: float) -> Path:
+    """Write a picture as the map of a stage and return its ``.yaml`` file.
+
+    Pixels darker than 35 % are walls, the others are free; the lower left corner is the origin. The grey picture is
+    written beside it as ``.pgm``.
+
+    Args:
+        picture: PNG or JPEG.
+        resolution: size of a pixel [m].
+
+    Raises:
+        InputError: the file is not a picture or too large, or the resolution is not between 1 mm and 10 m.
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    if not 0.001 <= resolution <= 10.0:
+        raise InputError(f"size of a pixel = {resolution:g} m: expected 0.001 to 10 m")
+    try:
+        with Image.open(picture, formats=("PNG", "JPEG")) as image:
+            if image.width * image.height > MOST_CELLS:
+                raise InputError(
+                    f"{picture.name} has {image.width} x {image.height} pixels, at most {MOST_CELLS} in all"
+                )
+            paper = Image.new("RGBA", image.size, "white")
+            grey = Image.alpha_composite(paper, image.convert("RGBA")).convert("L")
+    except (UnidentifiedImageError, OSError, Image.DecompressionBombError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{picture.name} is not a PNG or JPEG picture") from None
+    grey.save(picture.with_suffix(".pgm"))
+    path = picture.with_suffix(".yaml")
+    rows = {
+        "image": picture.with_suffix(".pgm").name,
+        "resolution": f"{resolution:g}",
+        "origin": "[0.0, 0.0, 0.0]",
+        "negate": "0",
+        "occupied_thresh": "0.65",
+        "free_thresh": "0.65",
+    }
+    path.write_text("".join(f"{name}: {value}\n" for name, value in rows.items()), encoding="utf-8")
+    return path
+
+
+def read_trial(text: str, folder: Path) -> tuple[Trial | None, list[str], list[str]]:
+    """Return the trial, or None, with the problems and remarks that ``crowdbot check`` prints; no code is run."""
+    try:
+        with without_running_code():
+            trial = parse_trial(text, folder=folder)
+            return trial, [], [*override_remarks(trial.robots), *trial_remarks(trial)]
+    except TrialError as error:
+        return None, list(error.problems), []
+    except InputError as error:
+        return None, [str(error)], []
+
+
+def problems_at_elements(document: XmlDocument | None, problems: list[str]) -> list[dict[str, Any]]:
+    """Return each problem with its line and the path of its element, None if it has none."""
+    rows = []
+    for sentence in problems:
+        found = MESSAGE.search(sentence)
+        line = int(found[1]) if found else None
+        path = document.path_at(line, found[2] or "") if document and found and line else None
+        rows.append({"message": sentence, "line": line, "path": None if path is None else list(path)})
+    return rows
+
+
+def start_and_ways(trial: Trial, seed: int) -> dict[str, Any]:
+    """Return the start of people and robots with a seed, and the way of some people around walls to their goals.
+
+    Raises:
+        InputError: people do not fit with this seed.
+    """
+    first = expand_sweeps(trial)[0] if trial.sweeps else trial
+    people, problems = place(first.stage, first.spawners, first.robots, seed, first.agents, avatars=first.avatars)
+    if problems:
+        raise InputError(problems[0][1])
+    planner = PathPlanner.of(first.stage.walking_walls(), BODY, 0.0) if len(people) else None
+    ends = zip(people.position[:MOST_WAYS], people.goal[:MOST_WAYS], strict=True)
+    return {
+        "seed": seed,
+        "people": np.round(people.position, 3).tolist(),
+        "radii": np.round(people.radius, 3).tolist(),
+        "ways": [_way(planner, *one) for one in ends] if planner else [],
+    }
+
+
+def _way(planner: PathPlanner, start: NDArray[np.float64], goal: NDArray[np.float64]) -> list[list[float]]:
+    """Return the corners of the shortest path, only the start where there is none."""
+    try:
+        corners = planner.waypoints(start, goal)
+    except InputError:
+        corners = start[None, :0].reshape(0, 2)
+    way: list[list[float]] = np.round([start, *corners], 3).tolist()
+    return way

@@ -30,15 +30,16 @@ from crowdbot.experiments import (
     load_experiment,
     summary,
 )
-from crowdbot.simulation import Episode, OrderSource
+from crowdbot.simulation import Episode, OrderSource, StepRecord
 from crowdbot.trials import Trial
 from crowdbot.web.app_session import AppSession
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
+from crowdbot.web.scene import scene_resource
+from crowdbot.web.simulator import StageView
 
 from .question_form import question_form
 from .session_streams import SessionStreams, StreamChoice, chosen_streams
-from .trial_view import TrialView
 
 __all__ = ["ExperimentDesk"]
 
@@ -371,3 +372,51 @@ def _failure(error: InputError) -> Callable[[], Episode]:
         raise error
 
     return result
+
+
+class TrialView:
+    """A sink of step records that shows the simulation to the windows of a session, on the channel ``trial``.
+
+    Frames and description are made in the thread of the run.
+
+    Args:
+        session: the windows.
+
+    Attributes:
+        run: the run that is shown; set after its start.
+        description: what stands still; empty before the first step.
+    """
+
+    def __init__(self, session: DeskWindows) -> None:
+        self._view = StageView(session, channel="trial")
+        self._always = True
+        self._shown: Any = None
+        self.run: BackgroundRun | None = None
+        self.description: dict[str, Any] = {}
+
+    def take(self, frame: StepRecord) -> None:
+        """Show a step."""
+        simulation = self.run.simulation if self.run is not None else None
+        if simulation is None:
+            return
+        if simulation is not self._shown:
+            self._shown = simulation
+            self._view.open(simulation)
+        if not self.description or self._always:
+            self.description = self._view.description()
+        self._view.show(self._always)
+        self._always = False
+
+    def refresh(self) -> None:
+        """Show the next step and describe it anew, for a window that has just been opened."""
+        self._always = True
+
+    def resource(self, path: str, query: dict[str, str]) -> Resource:
+        """Return meshes of bodies and robots.
+
+        Raises:
+            KeyError: there is no such file, or nothing is shown.
+        """
+        if self._shown is None:
+            raise KeyError(path)
+        return scene_resource(self._shown, path, query)

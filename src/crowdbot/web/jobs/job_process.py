@@ -1,7 +1,8 @@
-"""The worker process of a job."""
+"""The worker process of a job, and its memory."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 import multiprocessing
 import multiprocessing.connection
@@ -11,11 +12,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-from crowdbot.core import CrowdbotError
-
-from .process_memory import end_descendants, process_memory
+from crowdbot.core import CrowdbotError, peak_memory
 
 __all__ = ["CPU", "END", "LINE", "SHARE", "JobPipe", "run_work"]
 
@@ -23,6 +23,7 @@ SHARE, LINE, CPU, END = "job.share", "job.line", "job.cpu", "job.end"
 """Kinds of messages that every job sends: completed share, line of the log, processor time [s], end with a problem."""
 BEAT, LOOK = 1.0, 0.2
 """Time between two reports of the processor time, and between two looks at the memory [s]."""
+PROC = Path("/proc")
 
 
 class JobPipe:
@@ -111,3 +112,44 @@ def _watch(pipe: JobPipe, memory: float) -> None:
 def _used(memory: float, limit: float) -> str:
     limited = "" if math.isinf(limit) else f"; the limit of a job is {limit / 1e6:.0f} MB (--memory)"
     return f"the job uses {memory / 1e6:.0f} MB of memory{limited}"
+
+
+def process_memory() -> float:
+    """Return the resident memory of this process and of those that it has started [B].
+
+    On macOS and Windows, it is the peak of this process alone.
+
+    >>> process_memory() > 1e6
+    True
+    """
+    if sys.platform == "linux" and PROC.joinpath("self", "statm").exists():
+        page = os.sysconf("SC_PAGE_SIZE")
+        return float(page * sum(_pages(pid) for pid in (os.getpid(), *_descendants(os.getpid()))))
+    return peak_memory()
+
+
+def end_descendants() -> None:
+    """End the processes that this process has started, on Linux; elsewhere they end by themselves, or go on."""
+    for pid in _descendants(os.getpid()):
+        with contextlib.suppress(OSError):
+            os.kill(pid, signal.SIGTERM)
+
+
+def _pages(pid: int) -> int:
+    try:
+        return int(PROC.joinpath(str(pid), "statm").read_text(encoding="ascii").split()[1])
+    except (OSError, ValueError, IndexError):  # it has ended
+        return 0
+
+
+def _descendants(pid: int) -> list[int]:
+    """Return the processes that a process has started, and theirs."""
+    found, front = list[int](), [pid]
+    while front:
+        with contextlib.suppress(OSError):
+            for task in PROC.joinpath(str(front.pop()), "task").iterdir():
+                with contextlib.suppress(OSError):
+                    children = [int(one) for one in task.joinpath("children").read_text(encoding="ascii").split()]
+                    found += children
+                    front += children
+    return found

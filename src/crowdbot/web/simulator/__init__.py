@@ -2,8 +2,7 @@
 
 from .first_trial import FIRST
 from .live_run import LiveRun
-from .simulator_desk import SimulatorDesk
+from .simulator_desk import SimulatorDesk, navigator_orders
 from .stage_view import StageView
-from .steering_desk import navigator_orders
 
 __all__ = ["FIRST", "LiveRun", "SimulatorDesk", "StageView", "navigator_orders"]

@@ -1,18 +1,41 @@
-"""SimulatorDesk: opens trials and episodes, plays them, and saves what was recorded."""
+"""SimulatorDesk: opens trials and episodes, plays and steers them, and saves what was recorded."""
 
 from __future__ import annotations
 
+import dataclasses
 import functools
+import json
+import math
+import shlex
 import threading
+import time
 from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
+from xml.sax.saxutils import quoteattr
 
+import numpy as np
+
+from crowdbot import prediction
 from crowdbot.benchmark import builtin_names
-from crowdbot.core import CrowdbotError, InputError, builtin_name
-from crowdbot.prediction import Predictor
+from crowdbot.core import CrowdbotError, InputError, builtin_classes, builtin_name, did_you_mean
+from crowdbot.metrics import wall_clearance
+from crowdbot.navigation import ExternalNavigator, Navigator
+from crowdbot.prediction import ConstantVelocity, Predictor
 from crowdbot.recording import branch
+from crowdbot.simulation import (
+    AddElementOrder,
+    AvatarOrder,
+    Order,
+    ParameterOrder,
+    Simulation,
+    VelocityOrder,
+    read_order,
+)
 from crowdbot.trials import (
+    RobotSpec,
     Trial,
     add_element,
     expand_sweeps,
@@ -21,23 +44,24 @@ from crowdbot.trials import (
     trial_titles,
 )  # fmt: skip
 from crowdbot.web.command import command
-from crowdbot.web.desk import DeskWindows, Resource
+from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.scene import LAYERS, scene_resource
 from crowdbot.web.workspace import shown_path
+from crowdbot.world import worlds_of
 
+from .beginning_player import BeginningPlayer
+from .camera_feed import CameraFeed
 from .first_trial import FIRST
+from .inspection import inspect_agent, people_rows
 from .live_run import LiveRun
 from .live_values import LIVE_VALUES
-from .picture_desk import PictureDesk
 from .playback import Playback
 from .recorded_beginning import RecordedBeginning, shipped_beginning
-from .run_source import run_command, run_python
-from .steering_desk import Player
-from .thumbnail import thumbnail
-from .trial_parameters import parameter_rows
-from .trial_preview import trial_preview
+from .stage_view import StageView
+from .trial_preview import thumbnail, trial_preview
+from .value_rows import parameter_rows, value_rows
 
-__all__ = ["SimulatorDesk"]
+__all__ = ["SimulatorDesk", "navigator_orders"]
 
 HISTORY = 1500
 """Instants of the live values that a new window gets."""
@@ -45,10 +69,24 @@ AVATAR = "you"
 """Name of the person that the user moves."""
 WAIT = 8.0
 """Longest time [s] that closing waits for a run, which may be compiling and then ends by itself."""
+MOST_IMAGES = 16
+"""Largest number of camera images that are sent."""
+Player = LiveRun | Playback
+EXTERNAL = "external"
+SOURCE = "app"
+"""Source of the orders of the page."""
+REPEAT = 0.2
+"""Simulated time [s] after which a velocity is ordered again."""
+LET_GO = 1.0
+"""Real time [s] after which a control counts as let go if the page does not repeat it."""
+WALK, RUN = 1.4, 3.0
+"""Speed [m/s] of an avatar, and its highest speed."""
 
 
-class SimulatorDesk(PictureDesk):
+class SimulatorDesk(Desk):
     """The simulator tab of a session: at most one trial runs, or one episode plays."""
+
+    _player: Player | None = None
 
     name = "simulator"
     first: ClassVar[str | None] = None
@@ -56,6 +94,9 @@ class SimulatorDesk(PictureDesk):
 
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
+        self._layers: frozenset[str] = frozenset()
+        self._predictor: Predictor = ConstantVelocity()
+        self._cameras = CameraFeed(session)
         self._opening = threading.RLock()
         self._number = 0
         self._source: dict[str, Any] = {}
@@ -365,7 +406,350 @@ class SimulatorDesk(PictureDesk):
             tell = {"name": target, "error": str(error)}
         self.session.tell("simulator.branch", tell)
 
+    @command
+    def description(self) -> dict[str, Any]:
+        """Return what stands still in the picture; nothing while the simulation is being prepared."""
+        player, recorded = self._any(), self._beginning()
+        if recorded is not None:
+            return recorded.description()
+        found: dict[str, Any] = {} if player.state == "preparing" else player.do(player.view.description)
+        return found
+
+    @command
+    def show_frame(self) -> None:
+        """Send the current state again, for a new window."""
+        player = self._any()
+        self._cameras.renew()
+        if (recorded := self._beginning()) is not None:
+            recorded.show()
+        elif player.state != "preparing":  # its first frame comes by itself
+            player.do(lambda: player.view.show(always=True))
+
+    @command
+    def layers(self, names: list[str]) -> None:
+        """Choose the layers that the frames contain."""
+        self._layers = frozenset(name for name in names if name in LAYERS)
+        if self._player is not None:
+            self._player.view.layers = self._layers
+            self.show_frame()
+        self.session.tell("simulator.layers", sorted(self._layers))
+
+    @command
+    def cameras(self, names: list[str]) -> None:
+        """Choose the camera images that are sent, by their names in the description."""
+        self._cameras.choose(frozenset(names[:MOST_IMAGES]))
+        if self._player is not None:
+            self.show_frame()
+        self.session.tell("simulator.cameras", sorted(self._cameras.chosen))
+
+    @command
+    def predictor(self, name: str) -> None:
+        """Choose the built-in predictor of the layer ``paths``."""
+        kinds = builtin_classes(prediction, Predictor)
+        if name not in kinds:
+            raise InputError(f"there is no predictor {name!r}{did_you_mean(name, kinds)}; known are {', '.join(kinds)}")
+        chosen: Predictor = kinds[name]()
+        self._predictor = chosen
+        if self._player is not None:
+            self._player.view.predictor = chosen
+            self.show_frame()
+        self.session.tell("simulator.predictor", name)
+
+    def _view(self) -> StageView:
+        return StageView(self.session, self._layers, predictor=self._predictor, cameras=self._cameras)
+
+    @property
+    def run(self) -> LiveRun:
+        """The running trial; raises InputError if there is none."""
+        return self._live()
+
+    @command
+    def order(self, order: dict[str, Any]) -> None:
+        """Give an order, in the JSON form of an order in an episode file."""
+        self._live().order(read_order(json.dumps({**order, "source": SOURCE})))
+
+    @command
+    def inspect(self, id: int) -> dict[str, Any]:
+        """Return the state of a person or robot."""
+        player = self._any()
+        found: dict[str, Any] = self._asked(lambda: inspect_agent(player.simulation, id))
+        return found
+
+    @command
+    def people(self) -> list[dict[str, Any]]:
+        """Return everybody who is present; nobody while the simulation is being prepared, which may take long."""
+        player = self._any()
+        if player.state == "preparing":
+            return []
+        rows: list[dict[str, Any]] = player.do(
+            lambda: people_rows(player.view.simulation, player.view.recording_instant)
+        )
+        return rows
+
+    @command
+    def values(self) -> list[dict[str, Any]]:
+        """Return the values of the trial by their paths."""
+        player = self._any()
+        rows: list[dict[str, Any]] = self._asked(lambda: value_rows(player.view.simulation.trial))
+        return rows
+
+    @command
+    def set_value(self, path: str, text: str) -> None:
+        """Change a value of the running trial, as ``--set`` does before a run."""
+        self._live().order(ParameterOrder(path=path, value=text, source=SOURCE))
+
+    @command
+    def add_robot(
+        self, type: str, x: float, y: float, goal_x: float, goal_y: float, navigator: str = "orca"
+    ) -> str:  # fmt: skip
+        """Add a robot of a built-in type, and return its name.
+
+        It has the sensors of its type if the people of the trial have limbs for them, otherwise a planar laser scanner.
+        """
+        run = self._live()
+        free: tuple[str, bool] = run.do(lambda: _free_name(run.simulation))
+        name, limbs = free
+        scan = "" if limbs else '<sensor type="lidar2d"/>'
+        xml = (
+            f'<robot name="{name}" type={quoteattr(type)} x="{x:g}" y="{y:g}" default-sensors="{str(limbs).lower()}">'
+            f'<goal x="{goal_x:g}" y="{goal_y:g}"/><navigator type={quoteattr(navigator)}/>{scan}</robot>'
+        )
+        run.order(AddElementOrder(xml=xml, source=SOURCE))
+        return name
+
+    @command
+    def take_over(self, robot: str) -> None:
+        """Let the user drive a robot: its navigator becomes ``external``."""
+        run = self._live()
+        if robot in run.controls:
+            return
+        spec = run.do(lambda: _robot(run.simulation, robot))
+        if spec.mirror is not None or bool(getattr(spec.navigator, "source", "")):
+            raise InputError(f"robot {robot!r} is moved over its own connection; the app cannot drive it")
+        if not isinstance(spec.navigator, ExternalNavigator):
+            run.order(ParameterOrder(path=f"robot[{robot}]/navigator/type", value=EXTERNAL, source=SOURCE))
+            run.taken[robot] = spec.navigator
+        run.controls[robot] = HeldVelocity(robot)
+
+    @command
+    def release(self, robot: str) -> None:
+        """Give a robot back to its navigator, with the parameters that it had."""
+        run = self._live()
+        run.controls.pop(robot, None)
+        navigator = run.taken.pop(robot, None)
+        if navigator is not None:
+            run.order_in_turn(navigator_orders(robot, navigator))
+
+    @command
+    def drive(self, robot: str, forward: float, turn: float, left: float = 0.0) -> None:
+        """Hold the velocity of a robot that was taken over; to be repeated at least every second."""
+        control = self._live().controls.get(robot)
+        if not isinstance(control, HeldVelocity):
+            raise InputError(f"robot {robot!r} is not driven by the user; take it over first")
+        control.hold(float(forward), float(turn), float(left))
+
+    @command
+    def walk(self, avatar: str, forward: float, left: float = 0.0, turn: float = 0.0) -> None:
+        """Hold the velocity of an avatar; to be repeated at least every second."""
+        run = self._live()
+        control = run.controls.get(avatar)
+        if control is None:
+            control = run.do(lambda: _held_avatar(run.simulation, avatar))
+            run.controls[avatar] = control
+        if not isinstance(control, HeldAvatar):
+            raise InputError(f"{avatar!r} is a robot, not an avatar")
+        control.hold(float(forward), float(left), float(turn))
+
+    def _asked(self, action: Any) -> Any:
+        player = self._any()
+        if player.state == "preparing":
+            raise InputError("the simulation is being prepared; values come as soon as it runs")
+        return player.do(action)
+
+    def _beginning(self) -> BeginningPlayer | None:
+        """Return what shows a recording while the run is prepared."""
+        found = self._player.beginning if isinstance(self._player, LiveRun) else None
+        return found if found is not None and found.active else None
+
+    def _any(self) -> Player:
+        if self._player is None:
+            raise InputError("nothing is open: open a trial or an episode")
+        return self._player
+
+    def _live(self) -> LiveRun:
+        player = self._any()
+        if not isinstance(player, LiveRun):
+            raise InputError("a recorded episode cannot be steered; branch it, or open its trial")
+        return player
+
 
 def _recorded_instant(player: Playback, at: float) -> float:
     times = player.episode.times
     return float(times[int(abs(times - at).argmin())])
+
+
+def _free_name(simulation: Simulation) -> tuple[str, bool]:
+    """Return a new name of a robot, and whether people have limbs."""
+    names = {robot.name for robot in simulation.trial.robots} | {one.robot.name for one in simulation.former_robots}
+    name = next(name for k in range(1, 1000) if (name := f"added{k}") not in names)
+    return name, worlds_of(simulation.world)[0].people is not None
+
+
+def _robot(simulation: Simulation, name: str) -> RobotSpec:
+    robots = {robot.name: robot for robot in simulation.trial.robots}
+    if name not in robots:
+        raise InputError(f"there is no robot {name!r}{did_you_mean(name, robots)}; the trial has {', '.join(robots)}")
+    return robots[name]
+
+
+def navigator_orders(robot: str, navigator: Navigator) -> list[Order]:
+    """Return orders that give a robot a navigator: its type, then each parameter that is not the default."""
+    path = f"robot[{robot}]/navigator"
+    values = {"type": builtin_name(type(navigator), Navigator)}
+    for field in dataclasses.fields(navigator) if dataclasses.is_dataclass(navigator) else ():
+        value = getattr(navigator, field.name)
+        if field.init and isinstance(value, bool | int | float | str) and value != field.default:
+            text = str(value).lower() if isinstance(value, bool) else str(value)
+            values[field.name.replace("_", "-")] = text
+    return [ParameterOrder(path=f"{path}/{name}", value=text, source=SOURCE) for name, text in values.items()]
+
+
+def _held_avatar(simulation: Simulation, name: str) -> HeldAvatar:
+    trial = simulation.trial
+    known = [one.name for one in trial.avatars]
+    if name not in known:
+        raise InputError(f"there is no avatar {name!r}{did_you_mean(name, known)}; the trial has {known or 'none'}")
+    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    slot = trial.people - recorded - len(known) + known.index(name)
+    scene = simulation.world.environment_scene(0)
+    x, y = scene.position[0, slot].tolist()
+    return HeldAvatar(name, x, y, float(scene.heading[0, slot]), float(scene.radius[0, slot]))
+
+
+def run_command(source: Mapping[str, Any], place: str, steered: str = "") -> str:
+    """Return the command that gives the same run, or that replays the episode.
+
+    Args:
+        source: what is open: ``kind``, ``name``, and for a run ``settings``, ``variant`` and ``seed``.
+        place: path of the file, or name of the built-in trial.
+        steered: what the user did to the run, which only its recording has; empty for nothing.
+
+    >>> source = {"kind": "run", "name": "frontal", "settings": {"duration": "5"}, "variant": 1, "seed": 3}
+    >>> run_command(source, "frontal")
+    'crowdbot run frontal --seed 3 --set duration=5'
+    """
+    if source["kind"] == "episode":
+        return f"crowdbot replay {shlex.quote(place)}"
+    words = ["crowdbot run", shlex.quote(place), f"--seed {source['seed']}"]
+    words += [f"--set {shlex.quote(f'{name}={value}')}" for name, value in source["settings"].items()]
+    words += [f"--variant {source['variant']}"] if source["variant"] != 1 else []
+    lines = [f"# without {steered}: save the run and use crowdbot replay for the same run"] if steered else []
+    return "\n".join([*lines, " ".join(words)])
+
+
+def run_python(source: Mapping[str, Any], place: str, steered: str = "") -> str:
+    """Return a program that gives the same run, or that reads the episode; arguments as of :func:`run_command`."""
+    if source["kind"] == "episode":
+        return f"""from crowdbot.recording import replay
+
+found = replay({place!r})
+print(found.outcomes[1], found.replayed, found.replayed == found.recorded)
+"""
+    values = f", **{dict(source['settings'])!r}" if source["settings"] else ""
+    note = f"# without {steered}: save the run and replay it for the same run\n" if steered else ""
+    variant = f"trial = expand_sweeps(trial)[{source['variant'] - 1}]\n" if source["variant"] != 1 else ""
+    names = "expand_sweeps, load_trial" if variant else "load_trial"
+    return f"""{note}from crowdbot.recording import record
+from crowdbot.trials import {names}
+
+trial = load_trial({place!r}{values})
+{variant}run = record(trial, {source["seed"]}, "episode.mcap")
+print(run.outcome, run.digest)
+"""
+
+
+@dataclass
+class HeldVelocity:
+    """The velocity at which a user drives a robot.
+
+    Fields:
+        robot: name of the robot.
+        forward, turn, left: [m/s], [rad/s], [m/s].
+    """
+
+    robot: str
+    forward: float = 0.0
+    turn: float = 0.0
+    left: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._held = time.monotonic()
+        self._sent: tuple[float, float, float] | None = None
+        self._tick = 0
+
+    def hold(self, forward: float, turn: float, left: float) -> None:
+        """Set the velocity."""
+        self.forward, self.turn, self.left = forward, turn, left
+        self._held = time.monotonic()
+
+    def orders(self, simulation: Simulation) -> list[Order]:
+        """Return the order for this step: if the velocity has changed, and often enough for the timeout."""
+        if time.monotonic() - self._held > LET_GO:
+            self.forward = self.turn = self.left = 0.0
+        now, step = (self.forward, self.turn, self.left), simulation.world.clock.dt
+        if now == self._sent and (simulation.tick - self._tick) * step < REPEAT:
+            return []
+        self._sent, self._tick = now, simulation.tick
+        return [VelocityOrder(robot=self.robot, forward=now[0], turn=now[1], left=now[2], source=SOURCE)]
+
+
+@dataclass
+class HeldAvatar:
+    """The velocity at which a user walks an avatar, and its pose.
+
+    Fields:
+        avatar: name of the avatar.
+        x, y, heading: pose [m], [rad].
+        forward, left, turn: velocity in the frame of the avatar [m/s], [m/s], [rad/s].
+    """
+
+    avatar: str
+    x: float
+    y: float
+    heading: float
+    radius: float = 0.25
+    forward: float = 0.0
+    left: float = 0.0
+    turn: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._held = time.monotonic()
+
+    def hold(self, forward: float, left: float, turn: float) -> None:
+        """Set the velocity; its length is limited."""
+        speed = math.hypot(forward, left)
+        share = min(1.0, RUN / speed) if speed > 0.0 else 1.0
+        self.forward, self.left, self.turn = forward * share, left * share, turn
+        self._held = time.monotonic()
+
+    def orders(self, simulation: Simulation) -> list[Order]:
+        """Return the pose at the end of the next step; walls are not passed."""
+        if time.monotonic() - self._held > LET_GO:
+            self.forward = self.left = self.turn = 0.0
+        step = simulation.world.clock.dt
+        self.heading += self.turn * step
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        x = self.x + (self.forward * cos - self.left * sin) * step
+        y = self.y + (self.forward * sin + self.left * cos) * step
+        for place in ((x, y), (x, self.y), (self.x, y)):
+            if self._is_free(place, simulation.world.environment_scene(0)):
+                self.x, self.y = place
+                break
+        now = float(simulation.world.times[0]) + step
+        values: dict[str, Any] = {"x": self.x, "y": self.y, "heading": self.heading}
+        return [AvatarOrder(avatar=self.avatar, time=round(now, 9), source=SOURCE, **values)]
+
+    def _is_free(self, place: tuple[float, float], scene: Any) -> bool:
+        path = np.array([(self.x, self.y), place])
+        before, after = wall_clearance(path, self.radius, scene.walls.segments())
+        return bool(after >= 0.0 or after > before)

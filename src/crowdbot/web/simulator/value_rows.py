@@ -1,4 +1,4 @@
-"""Values of a trial by their paths, as rows of a form."""
+"""Values of a trial by their paths, and parameters of built-in trials, as rows of a form."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from crowdbot.core import builtin_classes, builtin_name
-from crowdbot.trials import Trial, outline
+from crowdbot.trials import PRESETS, Trial, outline
 
-__all__ = ["value_rows"]
+__all__ = ["parameter_rows", "value_rows"]
 
 AT_START = (
     "name", "about", "seed", "world", "physics-step", "bodies", "step", "capacity", "spawner", "agent", "recorded",
@@ -113,3 +113,23 @@ def _text(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+def parameter_rows(name: str) -> list[dict[str, Any]]:
+    """Return the parameters of a built-in trial as rows of a form."""
+    preset = PRESETS.get(name)
+    rows: list[dict[str, Any]] = []
+    for key, one in preset.options.items() if preset is not None else ():
+        kinds = {bool: "switch", int: "whole", float: "number", str: "text"}
+        row = {
+            "name": key,
+            "label": one.about,
+            "unit": one.unit,
+            "value": one.default,
+            "kind": kinds[type(one.default)],
+        }
+        low, high = one.low, one.high
+        row |= {} if abs(low) == float("inf") else {"low": low}
+        row |= {} if abs(high) == float("inf") else {"high": high}
+        rows.append(row | ({"kind": "choice", "choices": list(one.choices)} if one.choices else {}))
+    return rows

@@ -1,1 +1,0 @@
-"""Readings of sensors in a running simulation: names of people, and late or old readings."""

@@ -1,1 +1,0 @@
-"""Tracking of people by the sensors of robots in a simulation."""
