@@ -1,5 +1,7 @@
 """Full disks, places that cannot be written, closed or narrow standard streams, Ctrl-C: one sentence, no trace."""
 
+import contextlib
+import io
 import os
 import signal
 import stat
@@ -49,6 +51,33 @@ def run_limited(folder, limit, *words):
     return run(folder, "-B", "-c", LIMITED, str(limit), *words)
 
 
+@pytest.fixture
+def run_here(tmp_path, monkeypatch, capsys):
+    """Return a function that runs a command in this process, where no file may be larger than ``limit`` bytes."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("CROWDBOT_DEBUG", "")
+
+    def call(limit, *words):
+        with file_limit(limit):
+            status = main(list(map(str, words)))
+        return subprocess.CompletedProcess(words, status, *capsys.readouterr())
+
+    return call
+
+
+@contextlib.contextmanager
+def file_limit(limit):
+    """Let no file be larger inside the block; Python ignores the signal, so that a write fails as on a full disk."""
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
 def last_line(done):
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr + done.stdout
@@ -59,22 +88,31 @@ def written(folder):
     return {path.name for path in folder.rglob("*") if path.is_file()} - {"walk.txt"}
 
 
-@pytest.mark.program
-@pytest.mark.parametrize("words", [["trial", "t.xml"], ["navigator", "t.py"], ["schema", "t.xsd"], ["robot", "t"]])
-def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
-    done = run_limited(tmp_path, 200, "new", *words)
+NEW = [["trial", "t.xml"], ["navigator", "t.py"], ["schema", "t.xsd"], ["robot", "t"]]
+
+
+def assert_new_failed(done, folder):
     assert done.returncode == 2
     assert done.stderr.startswith("crowdbot: cannot write ")
     assert done.stderr.endswith(": File too large\n")
     assert done.stderr.count("\n") == 1
-    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    assert [path for path in folder.rglob("*") if path.is_file()] == []
 
 
 @pytest.mark.program
-def test_a_device_is_not_replaced(tmp_path):
+def test_the_program_on_a_full_disk_prints_one_sentence_and_leaves_no_file(tmp_path):
+    assert_new_failed(run_limited(tmp_path, 200, "new", *NEW[0]), tmp_path)
+
+
+@pytest.mark.parametrize("words", NEW)
+def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, run_here, tmp_path):
+    assert_new_failed(run_here(200, "new", *words), tmp_path)
+
+
+def test_a_device_is_not_replaced(run_here, tmp_path):
     device = tmp_path / "device"
     os.mkfifo(device)
-    done = run_limited(tmp_path, 3000, "new", "trial", str(device), "--force")
+    done = run_here(3000, "new", "trial", device, "--force")
     assert last_line(done) == f"crowdbot: {device} is a device; give the path of a file"
     with pytest.raises(InputError, match="is a device; give the path of a file"), lock_output(device, force=True):
         pass
@@ -82,10 +120,9 @@ def test_a_device_is_not_replaced(tmp_path):
     assert stat.S_ISFIFO(device.stat().st_mode)
 
 
-@pytest.mark.program
-def test_a_copy_of_a_recording_on_a_full_disk_is_one_sentence_and_leaves_no_file(folder):
+def test_a_copy_of_a_recording_on_a_full_disk_is_one_sentence_and_leaves_no_file(folder, run_here):
     (folder / "trials").mkdir()
-    done = run_limited(folder, 200, "new", "trial", "trials/t.xml", "--recorded", "walk.txt")
+    done = run_here(200, "new", "trial", "trials/t.xml", "--recorded", "walk.txt")
     assert last_line(done) == f"crowdbot: cannot write {Path('trials/walk.txt')}: File too large"
     assert written(folder) == set()
     assert not (folder / "trials" / "walk.txt").exists()
@@ -99,11 +136,10 @@ FULL = {
 }
 
 
-@pytest.mark.program
 @pytest.mark.parametrize("command", sample(FULL, 2))
-def test_a_full_disk_is_one_sentence_that_names_the_file(folder, command):
+def test_a_full_disk_is_one_sentence_that_names_the_file(folder, run_here, command):
     limit, words, what = FULL[command]
-    done = run_limited(folder, limit, *words, "--out", "out")
+    done = run_here(limit, *words, "--out", "out")
     line = last_line(done)
     assert line.startswith(f"crowdbot: cannot write {what}")
     assert line.endswith(": File too large")
@@ -168,13 +204,13 @@ def test_commands_end_well_with_closed_streams(folder, words, closed):
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.program
-def test_questions_are_printed_to_an_output_of_ascii(folder):
-    words = ("experiment", "run", "robot-speed", "--participant", "1", "--out", "out")
-    done = run(folder, "-m", "crowdbot", *words, text="30\n", PYTHONIOENCODING="ascii")
-    assert last_line(done).startswith("crowdbot: the input ended before ")
-    assert done.stdout.isascii()
-    assert "How often do you meet robots?" in done.stdout
+def test_questions_are_printed_to_an_output_of_ascii(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(sys, "stdin", io.StringIO("30\n"))
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
+    assert main(["experiment", "run", "robot-speed", "--participant", "1", "--out", "out"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("crowdbot: the input ended before ")
+    assert b"How often do you meet robots?" in sys.stdout.buffer.getvalue()
 
 
 @pytest.mark.sweep
