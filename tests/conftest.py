@@ -8,7 +8,7 @@ are a reason to leave tests out; every other missing input is a failure.
 The same holds for packages that only the extra ``dev`` installs, see ``missing_packages.py``.
 
 A test that needs a real clock, a browser, another program, a port or a kill has the marker ``live``: it runs in
-``make live``. Who asks for a browser, ROS 1, RViz or a network namespace as a fixture gets the marker by that.
+``make live``. Who asks for a browser, ROS 1 or RViz as a fixture gets the marker by that.
 
 Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
 """
@@ -21,7 +21,6 @@ import importlib.util
 import json
 import os
 import shutil
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -96,15 +95,6 @@ def _drawing() -> str | None:
 
 
 @functools.cache
-def _namespaces() -> str | None:
-    """Return the command that begins a network of its own; only root may, and some containers forbid it."""
-    command = shutil.which("unshare")
-    if command is None or shutil.which("ip") is None:
-        return None
-    return command if subprocess.run([command, "--net", "true"], stderr=subprocess.DEVNULL).returncode == 0 else None
-
-
-@functools.cache
 def _digests() -> str | None:
     """Return the level of the processor if digests of runs must be those of the files."""
     from builtin_digests import FILE, differences, level
@@ -120,7 +110,6 @@ INPUTS = {
     "chromium": Input("Chromium", PACKAGES, lambda: shutil.which("chromium") or shutil.which("chromium-browser")),
     "digests": Input("the system and libraries of the recorded digests", "constraints.txt", _digests),
     "drawing": Input("OpenGL without a screen", PACKAGES, _drawing),
-    "namespaces": Input("network namespaces", "unshare --net true", _namespaces, right=True),
     "ros1": Input("ROS 1", PACKAGES, lambda: shutil.which("rosmaster") and shutil.which("rosbag")),
     "roslaunch": Input("roslaunch of ROS 1", PACKAGES, lambda: shutil.which("roslaunch")),
     "rviz": Input("RViz 1 and Xvfb", PACKAGES, lambda: shutil.which("Xvfb") and shutil.which("rviz")),
@@ -167,12 +156,6 @@ def digests() -> str:
 def drawing() -> str:
     """Name of the OpenGL backend that draws without a screen."""
     return INPUTS["drawing"].get()  # type: ignore[return-value]
-
-
-@pytest.fixture(scope="session")
-def namespaces() -> str:
-    """Command that begins a network of its own."""
-    return INPUTS["namespaces"].get()  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="session")

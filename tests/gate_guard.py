@@ -26,7 +26,7 @@ ADDRESSES = ("socket.bind", "socket.connect", "socket.sendto")
 INNER = ("uname -p", "fc-list", "import mujoco.egl", "import compile_kernels", str(PACKAGE / "data"))
 """Processes that a library or the product starts for itself, some of them once, in whichever test comes first."""
 OUTSIDE = ("live", "sweep", "soak")
-LIVE_FIXTURES = {"browser", "chromium", "domain", "modules", "namespaces", "ros1", "roslaunch", "rviz"}
+LIVE_FIXTURES = {"browser", "chromium", "domain", "modules", "ros1", "roslaunch", "rviz"}
 """Fixtures that make a test a live one: another program, or packages of the npm registry."""
 
 

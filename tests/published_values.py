@@ -1,6 +1,6 @@
 """Published values: defaults, ranges and presets on which results of users depend, kept in a file for each room.
 
-A change of one of them is a change of results: it needs a line in `news/`. Write the files again with::
+A change of one of them is a change of results: it needs a line in CHANGELOG.md. Write the files again with::
 
     python tests/published_values.py
 """

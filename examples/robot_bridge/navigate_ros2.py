@@ -7,8 +7,7 @@ As the navigator of a trial, scored by crowdbot evaluate:
 
     <navigator type="ros2" command="python examples/robot_bridge/navigate_ros2.py"/>
 
-It needs rclpy only, of your own ROS 2 or of the wheels: pip install 'crowdbot[ros2-wheels]'. It drives a robot of
---bridge rosless, too.
+It needs rclpy only, of your own ROS 2 or of the wheels: pip install 'crowdbot[ros2-wheels]'.
 """
 
 from __future__ import annotations

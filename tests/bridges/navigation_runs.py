@@ -1,13 +1,6 @@
-"""Runs in which a navigation node of the examples drives a robot to its goal, over each transport.
+"""Runs in which a navigation node of the examples drives a robot to its goal, over each transport."""
 
-    python navigation_runs.py TRANSPORT PROGRAM FOLDER
-
-It prints one line of JSON; so a run can be in a network of its own.
-"""
-
-import json
 import subprocess
-import sys
 from pathlib import Path
 
 from bridge_runs import Running
@@ -41,13 +34,3 @@ def navigate(transport, program, folder):
     assert process.returncode == 0, errors
     chosen = {name: done.metrics[name] for name in ("path_length", "collision")}
     return {"outcome": done.outcome, "digest": done.digest, "printed": printed, **chosen}
-
-
-def main():
-    """Run one of them."""
-    transport, program, folder = sys.argv[1:]
-    print(json.dumps(navigate(transport, program, Path(folder))))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,9 +1,4 @@
-"""Types what the page of a transport says into two terminals, with addresses that are free.
-
-    python page_runs.py TRANSPORT FOLDER
-
-So a run can be in a network of its own.
-"""
+"""Types what the page of a transport says into two terminals, with addresses that are free."""
 
 import re
 import shlex
@@ -19,7 +14,7 @@ from crowdbot.recording import read_episode, replay
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to"
 PAGES = {
     "rosbridge": "rosbridge", "rosbridge-client": "rosbridge-client", "ros1": "ros1", "ros2": "ros2",
-    "rosless": "rosless", "naoqi": "naoqi", "foxglove": "foxglove", "tcp": "challenge-tcp",
+    "naoqi": "naoqi", "foxglove": "foxglove", "tcp": "challenge-tcp",
 }  # fmt: skip
 """Page of each transport."""
 FENCE = re.compile(r"^```(?P<language>\w*)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<text>.*?)^```", flags=re.S | re.M)
@@ -92,7 +87,3 @@ def count_commands(path):
     assert episode.complete
     assert replay(path).equal
     return len(episode.orders)
-
-
-if __name__ == "__main__":
-    drive(sys.argv[1], Path(sys.argv[2]))

@@ -295,26 +295,7 @@ def view_ros2(address, take):
     threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 
 
-def view_rosless(address, take):
-    """Subscribe all topics with rosless."""
-    import threading
-
-    import rosless
-
-    node = rosless.Node(int(address))
-
-    def read(subscription):
-        while True:
-            message = subscription.read(0.1)
-            if message is not None:
-                take(len(message if isinstance(message, bytes) else rosless.encode(message.ros_type, message)))
-
-    for topic, (package, name) in KINDS.items():
-        found = node.subscribe(topic, f"{package}/msg/{name}", reliability="best_effort", depth=5)
-        threading.Thread(target=read, args=(found,), daemon=True).start()
-
-
-VIEWS = {"ros1": view_ros1, "ros2": view_ros2, "rosless": view_rosless}
+VIEWS = {"ros1": view_ros1, "ros2": view_ros2}
 
 
 def view(start, address, seconds):
@@ -336,7 +317,7 @@ def view(start, address, seconds):
 
 LINKS = {
     "rosbridge": RosbridgeLink, "rosbridge-client": RosbridgeLink, "foxglove": FoxgloveLink, "tcp": TcpLink,
-    "ros1": Ros1Link, "ros2": Ros2Link, "rosless": Ros2Link,
+    "ros1": Ros1Link, "ros2": Ros2Link,
 }  # fmt: skip
 
 

@@ -31,20 +31,10 @@ from crowdbot.trials import load_trial
 
 HERE = Path(__file__).parent
 VIEWER = bridge_viewer.__file__
-NETWORK = """
-ip link set lo up
-ip link add v0 type veth peer name v1
-ip addr add 10.77.0.1/24 dev v0
-ip link set v0 up
-ip link set v1 up
-ip route add 224.0.0.0/4 dev v0
-"""
-"""DDS of rosless needs a network interface that is not the loopback interface."""
 ENDLESS = ("--set", "duration=3600", "--set", "end/collision=false", "--set", "end/goal=false")
 OWN = {name: os.environ[name] for name in ("PYTHONPATH",) if name in os.environ}
 """Variables that programs of ROS 1 must not have, and the simulation may need."""
 LOCAL = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-MESH = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
 
 
 def free_port():
@@ -99,7 +89,7 @@ class Meeting(contextlib.ExitStack):
         super().__init__()
         self.port = 0 if served else free_port()
         self.transport, self.words = transport, [sys.executable]
-        self.environment = {**os.environ, "ROS_LOG_DIR": str(folder), **(MESH if transport == "rosless" else LOCAL)}
+        self.environment = {**os.environ, "ROS_LOG_DIR": str(folder), **LOCAL}
         self.master = self.server = None
         if transport == "ros1":
             self.master = self.enter_context(RosMaster(folder))
@@ -116,13 +106,13 @@ class Meeting(contextlib.ExitStack):
         address = {
             "ros1": self.master and self.master.url,
             "rosbridge-client": f"ws://127.0.0.1:{self.server.port}" if self.server else "",
-        }.get(self.transport) or str(self.domain if self.transport in ("ros2", "rosless") else self.port)
+        }.get(self.transport) or str(self.domain if self.transport == "ros2" else self.port)
         return f"{self.transport}:{address}"
 
     @property
     def address(self):
         """Where programs find it."""
-        if self.transport in ("ros1", "ros2", "rosless"):
+        if self.transport in ("ros1", "ros2"):
             return str(self.domain)
         return f"127.0.0.1:{self.server.port if self.server else self.port or self.node.port}"
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from page_runs import HOW_TO, PAGES, begin, count_commands, drive, end, follow_page, simulation_words
-from partner_runs import MESH, NETWORK, number_of_orders, wait
+from partner_runs import number_of_orders, wait
 from test_join import start_robot
 from test_naoqi import FakeRobot
 
@@ -46,14 +44,6 @@ def test_the_commands_of_the_page_drive_a_robot_at_a_server_of_others(tmp_path):
 
 def test_the_commands_of_the_page_of_ros1_drive_a_robot(ros1, tmp_path):
     assert drive("ros1", tmp_path) > 10
-
-
-def test_the_commands_of_the_page_of_rosless_drive_a_robot(namespaces, tmp_path):
-    words = [sys.executable, str(Path(__file__).with_name("page_runs.py")), "rosless", str(tmp_path)]
-    command = [namespaces, "--net", "bash", "-eu", "-c", f"{NETWORK}\nexec {' '.join(words)}"]
-    done = subprocess.run(command, env={**os.environ, **MESH}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    assert len(read_episode(tmp_path / "driven" / "episode.mcap").orders) > 10
 
 
 @pytest.mark.sweep

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import functools
-import json
 import math
-import os
 import re
 import subprocess
 import sys
@@ -15,7 +13,6 @@ import numpy as np
 import pytest
 from bridge_runs import MemoryTransport, Running
 from navigation_runs import EXAMPLES, navigate
-from partner_runs import MESH, NETWORK
 from test_naoqi import FakeRobot
 
 from crowdbot.bridges import BridgeClock, run_bridge
@@ -178,19 +175,6 @@ def test_a_node_drives_a_robot_around_a_pillar_to_its_goal(transport, program, t
 @pytest.mark.usefixtures("ros1")
 def test_a_node_of_ros1_drives_a_robot_around_a_pillar_to_its_goal(tmp_path):
     check(navigate("ros1", "navigate_ros1.py", tmp_path))
-
-
-@pytest.mark.sweep
-@pytest.mark.parametrize(
-    ("transport", "program"),
-    [("rosless", "navigate_ros2.py"), ("rosless", "navigate_rosless.py"), ("ros2", "navigate_rosless.py")],
-)
-def test_a_node_without_ros_and_one_of_rclpy_drive_to_the_goal(transport, program, namespaces, tmp_path):
-    words = [sys.executable, str(HERE / "navigation_runs.py"), transport, program, str(tmp_path)]
-    command = [namespaces, "--net", "bash", "-eu", "-c", f"{NETWORK}\nexec {' '.join(words)}"]
-    done = subprocess.run(command, env={**os.environ, **MESH}, capture_output=True, text=True, timeout=200)
-    assert done.returncode == 0, done.stderr
-    check(json.loads(done.stdout.splitlines()[-1]))
 
 
 @pytest.mark.soak  # on a busy computer, half of the reads see the values of the real robot, and the program is slow

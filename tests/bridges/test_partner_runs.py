@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from partner_runs import MESH, NETWORK, deaths, kills, load, loop, odd, server_deaths
+from partner_runs import deaths, kills, load, loop, odd, server_deaths
 
 HERE = Path(__file__).parent
 HERE_ALONE = ("rosbridge", "foxglove", "tcp", "ros2")
 """Transports that need nothing but packages of Python."""
-OTHERS = ("rosbridge-client", "ros1", "rosless")
 THIRTY, TEN_MINUTES = pytest.param(30, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)
 LOOP = pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
 LONG_LOOP = pytest.mark.parametrize("seconds", [THIRTY, TEN_MINUTES])
@@ -27,17 +22,6 @@ KILLS = pytest.mark.parametrize(
 def local(monkeypatch, tmp_path):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-
-
-def alone(namespaces, work, transport, number, folder):
-    """Run a function of ``partner_runs`` in a network of its own."""
-    words = [sys.executable, str(HERE / "partner_runs.py"), work, transport, str(number), str(folder)]
-    script = f"{NETWORK}\nexec {' '.join(words)}"
-    environment = {**os.environ, **MESH}
-    command = [namespaces, "--net", "bash", "-eu", "-c", script]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300 + 2 * number)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout.splitlines()[-1])
 
 
 def check_odd(seen):
@@ -72,11 +56,6 @@ def test_time_in_odd_portions_over_ros1(ros1, tmp_path):
 
 
 @pytest.mark.sweep
-def test_time_in_odd_portions_over_rosless(namespaces, tmp_path):
-    check_odd(alone(namespaces, "odd", "rosless", 2, tmp_path))
-
-
-@pytest.mark.sweep
 def test_time_in_odd_portions_over_a_server_of_others(tmp_path):
     check_odd(odd("rosbridge-client", 2, tmp_path))
 
@@ -91,11 +70,6 @@ def test_a_control_loop_of_20_hz_loses_no_command(transport, seconds, tmp_path):
 @LOOP
 def test_a_control_loop_over_ros1_loses_no_command(ros1, seconds, tmp_path):
     check_loop("ros1", seconds, loop("ros1", seconds, tmp_path))
-
-
-@LONG_LOOP
-def test_a_control_loop_over_rosless_loses_no_command(namespaces, seconds, tmp_path):
-    check_loop("rosless", seconds, alone(namespaces, "loop", "rosless", seconds, tmp_path))
 
 
 @LONG_LOOP
@@ -115,11 +89,6 @@ def test_a_program_of_ros1_that_is_killed_leaves_a_robot_that_stops(ros1, count,
     check_kills(count, kills("ros1", count, tmp_path))
 
 
-@KILLS
-def test_a_killed_program_over_rosless_leaves_a_robot_that_stops(namespaces, count, tmp_path):
-    check_kills(count, alone(namespaces, "kills", "rosless", count, tmp_path))
-
-
 def check_deaths(count, seen):
     assert len(seen["orders"]) == count
     assert min(seen["orders"]) > 5  # the program drives each time
@@ -136,11 +105,6 @@ def test_a_killed_simulation_is_noticed_and_leaves_a_recording_that_can_be_read(
 @KILLS
 def test_a_killed_simulation_of_ros1_is_noticed(ros1, count, tmp_path):
     check_deaths(count, deaths("ros1", count, tmp_path))
-
-
-@KILLS
-def test_a_killed_simulation_over_rosless_is_noticed(namespaces, count, tmp_path):
-    check_deaths(count, alone(namespaces, "deaths", "rosless", count, tmp_path))
 
 
 @KILLS
@@ -175,8 +139,3 @@ def test_a_bridge_sends_scan_image_odometry_and_transforms_on_a_quarter_of_a_cor
 @pytest.mark.sweep
 def test_the_ros1_node_sends_scan_image_odometry_and_transforms_on_a_quarter_of_a_core(ros1, tmp_path):
     check_load("ros1", load("ros1", 5, tmp_path))
-
-
-@pytest.mark.sweep
-def test_rosless_sends_scan_image_odometry_and_transforms_on_a_quarter_of_a_core(namespaces, tmp_path):
-    check_load("rosless", alone(namespaces, "load", "rosless", 5, tmp_path))

@@ -18,7 +18,6 @@ TRANSPORTS: dict[str, tuple[str, str]] = {
     "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),
     "ros1": ("ros1.node:Ros1Node.of", "ros1[:http://HOST:PORT], a ROS 1 node at a master"),
     "ros2": ("ros2.node:Ros2Node.of", "ros2[:DOMAIN], a ROS 2 node (rclpy)"),
-    "rosless": ("rosless.node:RoslessNode.of", "rosless[:DOMAIN], topics of ROS 2 without ROS, experimental"),
     "naoqi": ("naoqi.bridge:NaoqiBridge.of", "naoqi:HOST[:PORT], virtual sensors in the memory of a Pepper (qi)"),
     "simulated": ("join.simulated_robot:SimulatedRobot.of", "simulated, a base in place of a real robot (join)"),
     "foxglove": ("foxglove.server:FoxgloveServer.of", "foxglove[:PORT], a live server for the Foxglove app"),

@@ -27,8 +27,7 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="NAME[:ADDRESS]",
         help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT,"
-        " ros1[:http://HOST:PORT], ros2[:DOMAIN], rosless[:DOMAIN], naoqi:HOST, foxglove[:PORT], tcp[:PORT]; several"
-        " are possible",
+        " ros1[:http://HOST:PORT], ros2[:DOMAIN], naoqi:HOST, foxglove[:PORT], tcp[:PORT]; several are possible",
     )
     group.add_argument(
         "--clock",
