@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.evaluation import bootstrap_interval, proportion_interval
+from crowdbot.evaluation import bootstrap_estimate, proportion_interval
 from crowdbot.navigation import Navigator, ORCANavigator, PolicyNavigator, PolicyWeights, Straight
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
@@ -73,8 +73,8 @@ def run_cases(trial: Any, navigator: Navigator, cases: int) -> dict[str, Any]:
         name: list(proportion_interval(int((outcomes == name).sum()), cases, method="wilson")[:3])
         for name in ("success", "collision", "timeout")
     }
-    row["time"] = list(bootstrap_interval(times[won])[:3]) if won.any() else None
-    row["impact"] = list(bootstrap_interval(impact)[:3])
+    row["time"] = list(bootstrap_estimate(times[won])[:3]) if won.any() else None
+    row["impact"] = list(bootstrap_estimate(impact)[:3])
     return row
 
 

@@ -12,7 +12,7 @@ from scipy import stats
 
 from crowdbot.core import InputError
 from crowdbot.evaluation import (
-    bootstrap_interval,
+    bootstrap_estimate,
     paired_comparison,
     parse_requirement,
     parse_statistic,
@@ -39,18 +39,18 @@ def test_the_bootstrap_covers_the_mean_as_often_as_it_says() -> None:
     rng = np.random.default_rng(5)
     inside = 0
     for k in range(300):
-        estimate = bootstrap_interval(rng.exponential(2.0, 60), seed=k)
+        estimate = bootstrap_estimate(rng.exponential(2.0, 60), seed=k)
         inside += estimate.low <= 2.0 <= estimate.high
     assert 0.90 <= inside / 300 <= 0.985
 
 
 def test_the_bootstrap_leaves_out_what_is_not_finite_and_repeats() -> None:
     values = np.array([1.0, 2.0, math.nan, 4.0, math.inf, 3.0])
-    found = bootstrap_interval(values)
+    found = bootstrap_estimate(values)
     assert (found.value, found.runs) == (2.5, 4)
-    assert found == bootstrap_interval(np.array([1.0, 2.0, 4.0, 3.0]))
-    assert math.isnan(bootstrap_interval(np.array([math.nan])).value)
-    assert bootstrap_interval(np.full(9, 3.0))[:3] == (3.0, 3.0, 3.0)
+    assert found == bootstrap_estimate(np.array([1.0, 2.0, 4.0, 3.0]))
+    assert math.isnan(bootstrap_estimate(np.array([math.nan])).value)
+    assert bootstrap_estimate(np.full(9, 3.0))[:3] == (3.0, 3.0, 3.0)
 
 
 def test_an_infinite_severity_counts_and_an_infinite_time_to_collision_does_not() -> None:
@@ -111,7 +111,7 @@ def test_a_confidence_out_of_range_is_refused(level: float) -> None:
     with pytest.raises(InputError, match="must be between 0 and 1"):
         proportion_interval(1, 2, level, "wilson")
     with pytest.raises(InputError, match="must be between 0 and 1"):
-        bootstrap_interval(np.ones(3), confidence=level)
+        bootstrap_estimate(np.ones(3), confidence=level)
 
 
 def test_more_successes_than_runs_are_refused() -> None:

@@ -51,39 +51,30 @@ def test_uniform_flow_has_density_times_speed():
     assert slope / LINE.length == pytest.approx(4.0, rel=0.02)
 
 
-def test_a_lattice_has_square_cells_and_eight_neighbours():
+def test_a_lattice_has_square_cells():
     tracks = lattice(seconds=0.0)
     cells = measure.compute_individual_voronoi_polygons(tracks, HALL)
     assert cells.density.to_numpy() == pytest.approx(4.0)
-    neighbors = measure.compute_neighbors(cells).groupby("id").size()
-    inner = tracks.id[(tracks.x > 1.0) & (tracks.x < 19.0) & (tracks.y > 1.0) & (tracks.y < 3.0)]
-    assert set(neighbors[inner]) == {8}
-    grid = measure.Grid.over(HALL, 1.0)
-    assert measure.compute_density_profile(tracks, grid, cells) == pytest.approx(np.full((4, 20), 4.0))
-    assert measure.compute_density_profile(tracks, grid, method="classic") == pytest.approx(np.full((4, 20), 4.0))
-
-
-def test_a_gaussian_profile_keeps_the_number_of_people():
-    tracks = made([(1, 0, 10.0, 2.0), (2, 0, 11.0, 2.2)])
-    grid = measure.Grid.over(HALL, 0.1)
-    density = measure.compute_density_profile(tracks, grid, method="gaussian", width=0.6)
-    assert density.sum() * 0.01 == pytest.approx(2.0, rel=1e-6)
+    walk = cells[["id", "frame"]].assign(speed=0.7)
+    profiles = measure.compute_profiles(measure.Grid.over(HALL, 1.0), cells, walk)
+    assert profiles.density.to_numpy() == pytest.approx(np.full(80, 4.0))
+    assert profiles.flow.to_numpy() == pytest.approx(np.full(80, 2.8))
 
 
 def test_a_cut_off_cell_is_the_polygon_in_the_circle():
     alone = made([(1, 0, 10.0, 2.0)])
-    cells = measure.compute_individual_voronoi_polygons(alone, HALL, measure.CutOff(1.0, 3))
+    cells = measure.compute_individual_voronoi_polygons(alone, HALL, 1.0)
     assert 1.0 / cells.density[0] == pytest.approx(6.0 * np.sin(np.pi / 6.0))
     assert measure.compute_individual_voronoi_polygons(alone, HALL).density[0] == pytest.approx(1.0 / 80.0)
 
 
 def test_profiles_of_speed_have_no_value_where_nobody_is():
-    tracks = made([(1, 0, 1.0, 1.0), (1, 1, 2.0, 1.0)])
+    tracks = made([(1, 0, 1.5, 1.5), (1, 1, 2.5, 1.5)])
     speed = measure.compute_individual_speed(tracks, 1, border="single-sided")
-    grid = measure.Grid.over(HALL, 1.0)
-    mean = measure.compute_speed_profile(tracks, grid, speed, method="mean")
+    cells = measure.compute_individual_voronoi_polygons(tracks, HALL, 0.4)
+    mean = measure.compute_profiles(measure.Grid.over(HALL, 1.0), cells, speed).speed.to_numpy()
     assert np.sum(~np.isnan(mean)) == 2
-    assert np.nanmax(mean) == 1.0
+    assert np.nanmax(mean) == pytest.approx(1.0)
 
 
 def test_gaps_in_tracks_have_no_speed_across():
@@ -242,7 +233,8 @@ def test_robots_and_people_outside_are_named():
             lambda: measure.WalkableArea([(0, 0), (1, 0), (1, 1)], [[(-1, -1), (3, -1), (3, 3), (-1, 3)]]),
             "nothing is left",
         ),
-        (lambda: measure.CutOff(0.0), "radius must be above 0"),
+        (lambda: measure.compute_individual_voronoi_polygons(lattice(), HALL, 0.0), "radius must be above 0"),
+        (lambda: measure.MeasurementPlan(cut_off=-1.0), "radius must be above 0"),
         (lambda: measure.Grid.over(HALL, 0.0), "larger than 0.0 m"),
         (lambda: measure.Grid.over(HALL, 1e-3), "more than the limit"),
         (lambda: measure.MeasurementPlan(("voronoi",)), "unknown method 'voronoi'"),
@@ -259,8 +251,7 @@ def test_robots_and_people_outside_are_named():
         (lambda: measure.detect_steady_state([0, 1, 3], [1, 2, 1], (0, 2)), "equal steps"),
         (lambda: measure.mean_over_starts([]), "one finite value"),
         (lambda: measure.steady_threshold(0.5, alpha=1.0), "between 0.5 and 1"),
-        (lambda: measure.compute_density_profile(lattice(), measure.Grid.over(HALL, 1.0)), "needs the Voronoi cells"),
-        (lambda: measure.compute_frame_range_in_area(lattice(), LINE, 0.0), "apart from the first"),
+        (lambda: measure.MeasurementPlan(line=LINE, passage=0.0), "apart from the first"),
     ],
 )
 def test_wrong_settings_are_refused(call, message):
@@ -279,10 +270,6 @@ def test_wrong_recordings_are_refused():
     pixels = Trajectories([1], [0], [3.0], [2.0], row_rate=1.0, units="px")
     with pytest.raises(DataError, match="in pixels"):
         measure.measure(pixels)
-    tracks = lattice()
-    speed = measure.compute_individual_speed(tracks, 2)
-    with pytest.raises(InputError, match="a position but no speed"):
-        measure.compute_mean_speed_per_frame(tracks, speed, MIDDLE)
 
 
 def test_walls_of_a_recording_are_its_walkable_area():

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from crowdbot.core import InputError, stream
-from crowdbot.metrics import bootstrap_interval, interval
+from crowdbot.metrics import bootstrap_interval, corrected_interval, draw_counts, interval, percentile_interval
 
 
 def slow_interval(values: np.ndarray, person: np.ndarray, resamples: int, level: float, seed: int) -> list[float]:
@@ -60,6 +61,37 @@ def test_it_holds_the_truth_as_often_as_it_says_where_windows_overlap() -> None:
             held[name] += low <= 0.0 <= high
     assert 0.88 <= held["person"] / 200 <= 0.98
     assert held["window"] / 200 < 0.6
+
+
+def test_intervals_of_resamples_are_those_of_scipy() -> None:
+    values = stream(4, "values").exponential(2.0, 50)
+    wanted = {
+        method: stats.bootstrap(
+            (values,), np.mean, n_resamples=2000, method=method, rng=np.random.default_rng(3), confidence_level=0.9
+        )
+        for method in ("percentile", "BCa")
+    }
+    samples = wanted["BCa"].bootstrap_distribution
+    assert np.ravel(percentile_interval(samples, 0.9)) == pytest.approx(tuple(wanted["percentile"].confidence_interval))
+    left_out = (values.sum() - values) / 49
+    away = left_out.mean() - left_out
+    acceleration = float(np.sum(away**3) / (6.0 * np.sum(away**2) ** 1.5))
+    found = corrected_interval(samples, float(values.mean()), 0.9, acceleration)
+    assert found == pytest.approx(tuple(wanted["BCa"].confidence_interval), rel=1e-9)
+    plain = corrected_interval(samples, float(values.mean()), 0.9)
+    assert plain != pytest.approx(found, rel=1e-3)
+
+
+def test_an_infinite_end_is_not_interpolated() -> None:
+    samples = np.array([0.0] * 45 + [1.0] * 45 + [math.inf] * 10)
+    assert corrected_interval(samples, 0.5) == (0.0, math.inf)
+    assert corrected_interval(samples[:90], 0.5) == (0.0, 1.0)
+
+
+def test_draws_are_those_of_the_generator_one_by_one() -> None:
+    counts = draw_counts(stream(5, "draws"), 7, 40)
+    rng = stream(5, "draws")
+    assert counts.tolist() == [np.bincount(rng.integers(0, 7, 7), minlength=7).tolist() for _ in range(40)]
 
 
 def test_without_two_people_there_is_none() -> None:

@@ -4,7 +4,7 @@ from .comparison import PairedComparison, paired_comparison
 from .decision_metrics import DECISION_METRICS
 from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
 from .factor_sweep import FactorSweep, parse_factors, sweep_trials
-from .intervals import Estimate, bootstrap_interval, proportion_interval
+from .intervals import Estimate, bootstrap_estimate, proportion_interval
 from .job import RunRow, row_of, row_values
 from .junit import junit_xml
 from .method import Method, own_method, parse_methods, with_safety
@@ -118,7 +118,7 @@ __all__ = [
     "VideoForecast",
     "VideoRun",
     "WorstRun",
-    "bootstrap_interval",
+    "bootstrap_estimate",
     "check_metrics",
     "episode_log",
     "episode_metrics",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import stream
 
-from .intervals import Estimate, bootstrap_interval
+from .intervals import Estimate, bootstrap_estimate
 
 __all__ = ["PairedComparison", "paired_comparison"]
 
@@ -60,7 +60,7 @@ def paired_comparison(first: Floats, second: Floats, seed: int = 0) -> tuple[Est
     """
     both = np.isfinite(first) & np.isfinite(second)
     gap = np.asarray(second[both] - first[both], dtype=np.float64)
-    estimate = bootstrap_interval(gap, seed=seed)
+    estimate = bootstrap_estimate(gap, seed=seed)
     if not len(gap):
         return estimate, math.nan
     if np.isin(np.concatenate([first[both], second[both]]), (0.0, 1.0)).all():

@@ -8,11 +8,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special, stats
+from scipy import stats
 
 from crowdbot.core import InputError, stream
+from crowdbot.metrics import corrected_interval
 
-__all__ = ["Estimate", "bootstrap_interval", "proportion_interval"]
+__all__ = ["Estimate", "bootstrap_estimate", "proportion_interval"]
 
 Floats = NDArray[np.float64]
 RESAMPLES = 2000
@@ -71,7 +72,7 @@ def proportion_interval(
     return Estimate(successes / count, float(low), float(high), count)
 
 
-def bootstrap_interval(
+def bootstrap_estimate(
     values: Floats,
     statistic: Callable[[Floats], Floats] | None = None,
     confidence: float = 0.95,
@@ -80,21 +81,20 @@ def bootstrap_interval(
 ) -> Estimate:
     """Return a statistic with its bias-corrected bootstrap interval.
 
-    Values that are not finite are left out, unless infinite ones count. Efron 1987, Better bootstrap confidence
-    intervals, https://doi.org/10.1080/01621459.1987.10478410, without the acceleration.
+    Values that are not finite are left out, unless infinite ones count. The interval is that of
+    :func:`crowdbot.metrics.corrected_interval`, without the acceleration.
 
     Args:
         values: ``[N]`` one value for each run.
         statistic: function of ``[R, N]`` that returns ``[R]`` (default: the mean).
         confidence: level, between 0 and 1.
         seed: seed of the resamples.
-        infinite: whether infinite values count; an end of the interval is then one of the resampled statistics, without
-            interpolation.
+        infinite: whether infinite values count.
 
     Raises:
         InputError: the level is out of range.
 
-    >>> estimate = bootstrap_interval(np.arange(100.0))
+    >>> estimate = bootstrap_estimate(np.arange(100.0))
     >>> estimate.value, 40 < estimate.low < 49.5 < estimate.high < 60
     (49.5, True)
     """
@@ -109,15 +109,8 @@ def bootstrap_interval(
         spread = 0.0 if len(kept) > 1 else math.nan
         return Estimate(value, value - spread, value + spread, len(kept))
     rng = stream(seed, "bootstrap", len(kept))
-    found = np.sort(find(kept[rng.integers(0, len(kept), (RESAMPLES, len(kept)))]))
-    below = (np.sum(found < value) + 0.5 * np.sum(found == value)) / len(found)
-    shift = float(special.ndtri(np.clip(below, 1.0 / len(found), 1.0 - 1.0 / len(found))))
-    edges = special.ndtr(2.0 * shift + special.ndtri(np.array([0.5 - confidence / 2.0, 0.5 + confidence / 2.0])))
-    if np.isfinite(kept).all():
-        low, high = np.quantile(found, edges)
-    else:
-        low, high = np.quantile(found, edges[0], method="lower"), np.quantile(found, edges[1], method="higher")
-    return Estimate(value, float(low), float(high), len(kept))
+    samples = find(kept[rng.integers(0, len(kept), (RESAMPLES, len(kept)))])
+    return Estimate(value, *corrected_interval(samples, value, confidence), len(kept))
 
 
 def _mean(rows: Floats) -> Floats:

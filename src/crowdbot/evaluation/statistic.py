@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import Metric, metric_table
 
-from .intervals import Estimate, bootstrap_interval, proportion_interval
+from .intervals import Estimate, bootstrap_estimate, proportion_interval
 from .own_metric import metric_name
 
 __all__ = ["RATES", "Statistic", "check_metrics", "metric_unit", "parse_statistic"]
@@ -77,9 +77,9 @@ class Statistic:
         if self.kind == "rate":
             return proportion_interval(int(np.sum(kept > 0.5)), len(kept), confidence)
         if not len(kept):
-            return bootstrap_interval(kept, confidence=confidence)
+            return bootstrap_estimate(kept, confidence=confidence)
         function = _FUNCTIONS.get(self.kind) or _of_percentile(self.kind)
-        return bootstrap_interval(kept, function, confidence, infinite=_is_better_lower(self.metric))
+        return bootstrap_estimate(kept, function, confidence, infinite=_is_better_lower(self.metric))
 
 
 def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> Statistic:

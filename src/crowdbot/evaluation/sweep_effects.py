@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
+from crowdbot.metrics import draw_counts, percentile_interval
 
 from .intervals import Estimate
 from .result import CellResult, EvaluationResult
@@ -89,8 +90,7 @@ def _cell_means(cells: Sequence[CellResult], metric: str, seed: int) -> Floats:
             values[c, place[row.seed]] = row.metrics.get(metric, math.nan)
     values[~np.isfinite(values)] = math.nan
     rng = stream(seed, "factor effects", len(seeds))
-    drawn = rng.integers(0, len(seeds), (RESAMPLES, len(seeds)))
-    weight = np.stack([np.bincount(row, minlength=len(seeds)) for row in (np.arange(len(seeds)), *drawn)])
+    weight = np.concatenate([np.ones((1, len(seeds))), draw_counts(rng, len(seeds), RESAMPLES)])
     known = np.isfinite(values)
     count = weight @ known.T
     total = weight @ np.where(known, values, 0.0).T
@@ -125,5 +125,5 @@ def _estimate(values: Floats, confidence: float) -> Estimate:
     known = values[1:][np.isfinite(values[1:])]
     if not math.isfinite(values[0]) or not len(known):
         return Estimate(math.nan, math.nan, math.nan, 0)
-    low, high = np.quantile(known, [0.5 - confidence / 2.0, 0.5 + confidence / 2.0])
+    low, high = percentile_interval(known, confidence)
     return Estimate(float(values[0]), float(low), float(high), len(known))

@@ -10,6 +10,7 @@ from scipy import special
 
 from crowdbot.core import stream
 from crowdbot.evaluation import Estimate
+from crowdbot.metrics import corrected_interval
 
 __all__ = ["mixture_estimate", "replicate_estimate"]
 
@@ -64,7 +65,7 @@ def mixture_estimate(
     mean = float(values.sum())
     low, high = _gamma_interval(values, float(values.max()) if hits >= FEW else largest / count, confidence)
     if hits >= FEW:
-        least, most = _bootstrap_interval(values, groups[fails], np.bincount(groups), confidence)
+        least, most = _stratified_interval(values, groups[fails], np.bincount(groups), confidence)
         low, high = min(low, least), max(high, most)
     return Estimate(mean, min(low, mean), min(1.0, max(high, mean)), count)
 
@@ -78,7 +79,7 @@ def _gamma_interval(values: Floats, extra: float, confidence: float) -> tuple[fl
     return float(low), float(square / mean * special.gammaincinv(mean**2 / square, 1.0 - tail))
 
 
-def _bootstrap_interval(
+def _stratified_interval(
     values: Floats, groups: NDArray[np.int64], sizes: NDArray[np.int64], confidence: float
 ) -> tuple[float, float]:
     """Return the bootstrap interval of the sum of values of failures ``[F]`` in groups of runs of given sizes."""
@@ -93,12 +94,7 @@ def _bootstrap_interval(
         times = np.append(np.ones(len(own)), size - len(own))
         cube, square = cube + float(times @ away**3), square + float(times @ away**2)
     slope = cube / (6.0 * square**1.5) if square > 0.0 else 0.0
-    below = float(np.mean(sums < mean) + 0.5 * np.mean(sums == mean))
-    shift = float(special.ndtri(np.clip(below, 1.0 / REPLICATES, 1.0 - 1.0 / REPLICATES)))
-    bend = float(special.ndtri(0.5 + confidence / 2.0))
-    ends = [special.ndtr(shift + (shift + z) / (1.0 - slope * (shift + z))) for z in (-bend, bend)]
-    low, high = np.quantile(sums, ends)
-    return float(low), float(high)
+    return corrected_interval(sums, mean, confidence, slope)
 
 
 def replicate_estimate(values: Floats, runs: int, confidence: float = 0.95) -> Estimate:

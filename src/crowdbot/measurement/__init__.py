@@ -1,11 +1,12 @@
 """Measurements of pedestrian dynamics in recordings and simulations alike.
 
-Functions have the names and definitions of PedPy; each takes :class:`crowdbot.data.Trajectories` and returns a pandas
-table. ``episode.tracks()`` of a simulation is a recording too.
+Speeds, accelerations, Voronoi cells, densities and passages come from PedPy; :func:`pedpy_tracks` gives a recording to
+its other functions. What PedPy lacks is here: each function takes :class:`crowdbot.data.Trajectories` and returns a
+pandas table. ``episode.tracks()`` of a simulation is a recording too.
 """
 
-from .density import CutOff, compute_classic_density, compute_individual_voronoi_polygons, compute_voronoi_density
 from .diagram import StartsMean, compute_fundamental_diagram, mean_over_starts
+from .distances import compute_headways, compute_pair_distribution_function
 from .encounters import (
     compute_encounters,
     compute_time_to_collision_distribution,
@@ -18,7 +19,6 @@ from .flow import (
     compute_flow,
     compute_line_flow,
     compute_n_t,
-    compute_species,
     crossing_times,
     mean_flow,
 )
@@ -31,23 +31,16 @@ from .interaction_energy import (
     pool_interaction_energy,
 )
 from .lanes import LANE_BAND, compute_lane_order, lane_order, walking_direction
-from .movement import (
+from .people import (
     BORDERS,
     compute_individual_acceleration,
     compute_individual_speed,
-    compute_mean_speed_per_frame,
-    compute_voronoi_speed,
+    compute_individual_voronoi_polygons,
+    pedpy_tracks,
 )
-from .neighbors import (
-    compute_headways,
-    compute_neighbor_distance,
-    compute_neighbors,
-    compute_pair_distribution_function,
-)
-from .passing import compute_frame_range_in_area, compute_passing_density, compute_passing_speed
 from .plan import FIGURES, METHODS, MeasurementPlan
 from .plots import plot_measurements
-from .profiles import DENSITY_PROFILES, SPEED_PROFILES, Grid, compute_density_profile, compute_speed_profile
+from .profiles import Grid, compute_profiles
 from .rows import select_rows
 from .steady import SteadyState, combine_steady_states, detect_steady_state, steady_threshold
 from .survey import Measurements, measure, pool_diagrams
@@ -55,13 +48,10 @@ from .waves import StopAndGo, compute_stop_and_go, compute_stops, wave_speed
 
 __all__ = [
     "BORDERS",
-    "DENSITY_PROFILES",
     "FIGURES",
     "FIT_RANGE",
     "LANE_BAND",
     "METHODS",
-    "SPEED_PROFILES",
-    "CutOff",
     "Grid",
     "InteractionEnergy",
     "MeasurementArea",
@@ -73,12 +63,9 @@ __all__ = [
     "StopAndGo",
     "WalkableArea",
     "combine_steady_states",
-    "compute_classic_density",
     "compute_crossing_frames",
-    "compute_density_profile",
     "compute_encounters",
     "compute_flow",
-    "compute_frame_range_in_area",
     "compute_fundamental_diagram",
     "compute_headways",
     "compute_individual_acceleration",
@@ -87,20 +74,12 @@ __all__ = [
     "compute_interaction_energy",
     "compute_lane_order",
     "compute_line_flow",
-    "compute_mean_speed_per_frame",
     "compute_n_t",
-    "compute_neighbor_distance",
-    "compute_neighbors",
     "compute_pair_distribution_function",
-    "compute_passing_density",
-    "compute_passing_speed",
-    "compute_species",
-    "compute_speed_profile",
+    "compute_profiles",
     "compute_stop_and_go",
     "compute_stops",
     "compute_time_to_collision_distribution",
-    "compute_voronoi_density",
-    "compute_voronoi_speed",
     "crossing_times",
     "detect_steady_state",
     "distribution",
@@ -110,6 +89,7 @@ __all__ = [
     "mean_flow",
     "mean_over_starts",
     "measure",
+    "pedpy_tracks",
     "plot_measurements",
     "pool_diagrams",
     "pool_interaction_energy",

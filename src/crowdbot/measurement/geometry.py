@@ -105,13 +105,6 @@ class MeasurementLine:
         along = np.subtract(self.end, self.start)
         return np.asarray([along[1], 0.0 - along[0]]) / self.length
 
-    def offset(self, distance: float) -> MeasurementLine:
-        """Return the parallel line ``distance`` [m] to the left of the way from start to end."""
-        away = -distance * self.normal
-        return MeasurementLine(
-            (self.start[0] + away[0], self.start[1] + away[1]), (self.end[0] + away[0], self.end[1] + away[1])
-        )
-
 
 @dataclass(frozen=True, eq=False)
 class WalkableArea:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
+from crowdbot.metrics import draw_counts, percentile_interval
 
 from .encounters import REACH, compute_encounters, expected_times, time_edges
 from .rows import Floats, table
@@ -124,16 +125,17 @@ def pool_interaction_energy(found: Sequence[pd.DataFrame], seed: int = 0) -> Int
 def _energy_of(middle: Floats, found: Floats, expected: Floats, seed: int) -> InteractionEnergy:
     """Return the energy of counts and expected counts ``[B, N]`` of B pieces or recordings, drawn with replacement."""
     B = len(found)
-    drawn = stream(seed, "interaction energy").integers(0, B, (RESAMPLES, B))
+    drawn = draw_counts(stream(seed, "interaction energy"), B, RESAMPLES)
     count, free = found.sum(axis=0), expected.sum(axis=0)
     g = _ratio(count, free)
-    draws = [(_ratio(found[one].sum(axis=0), expected[one].sum(axis=0)), found[one].sum(axis=0)) for one in drawn]
-    low, high = _interval(np.stack([ratio for ratio, _ in draws]))
+    counts, frees = (np.einsum("rb,bn->rn", drawn, values) for values in (found, expected))
+    ratios = _ratio(counts, frees)
+    low, high = percentile_interval(ratios)  # NaN where nothing is expected in a draw
     exponent, strength, offset = fit_interaction_energy(middle, g, count)
-    fits = [fit_interaction_energy(middle, ratio, number)[0] for ratio, number in draws]
+    fits = [fit_interaction_energy(middle, *draw)[0] for draw in zip(ratios, counts, strict=True)]
     known = np.asarray([one for one in fits if not np.isnan(one)])
     sure = not np.isnan(exponent) and len(known) >= 0.9 * RESAMPLES
-    ends = np.percentile(known, (2.5, 97.5)) if sure else (np.nan, np.nan)
+    ends = percentile_interval(known) if sure else (np.nan, np.nan)
     near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1]) & (count >= FEWEST)
     fit = np.where(near, strength * middle ** -(0.0 if np.isnan(exponent) else exponent) + offset, np.nan)
     rows = table(
@@ -197,11 +199,3 @@ def _ratio(found: Floats, expected: Floats) -> Floats:
 def _energy(g: Floats) -> Floats:
     known = g > 0.0
     return np.where(known, -np.log(np.where(known, g, 1.0)), np.nan)
-
-
-def _interval(draws: Floats) -> tuple[Floats, Floats]:
-    """Return the 2.5 and 97.5 percentiles of each column; NaN where nothing is expected."""
-    known = ~np.any(np.isnan(draws), axis=0)
-    ends = np.full((2, draws.shape[1]), np.nan)
-    ends[:, known] = np.percentile(draws[:, known], (2.5, 97.5), axis=0)
-    return ends[0], ends[1]

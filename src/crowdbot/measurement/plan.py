@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from crowdbot.core import InputError, did_you_mean
 
-from .density import CutOff
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
 
 __all__ = ["FIGURES", "METHODS", "MeasurementPlan"]
@@ -95,8 +94,10 @@ class MeasurementPlan:
             raise InputError("flow and passages need a measurement line")
         if self.passage is None and "passing" in self.methods:
             raise InputError("passages need the distance of the second line")
-        if self.cut_off is not None:
-            CutOff(self.cut_off)
+        if self.passage is not None and (self.passage == 0.0 or not math.isfinite(self.passage)):
+            raise InputError(f"the second line of a passage must be apart from the first, not {self.passage} m")
+        if self.cut_off is not None and not 0.0 < self.cut_off < math.inf:
+            raise InputError(f"cut-off of {self.cut_off} m: the radius must be above 0 and finite")
 
     @property
     def selection(self) -> tuple[str, ...]:

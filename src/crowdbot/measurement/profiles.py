@@ -1,29 +1,23 @@
-"""Profiles: density, speed and flow on a grid of square cells.
-
-Definitions are those of PedPy (doi 10.5281/zenodo.7194992).
-"""
+"""Profiles: density and speed on a grid of square cells."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crowdbot.core import InputError, did_you_mean
-from crowdbot.data import Trajectories
+from crowdbot.core import InputError
 
 from .geometry import WalkableArea
-from .rows import Floats, Integers
+from .rows import Floats, table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["DENSITY_PROFILES", "SPEED_PROFILES", "Grid", "compute_density_profile", "compute_speed_profile"]
+__all__ = ["Grid", "compute_profiles"]
 
-DENSITY_PROFILES = ("voronoi", "classic", "gaussian")
-SPEED_PROFILES = ("voronoi", "arithmetic", "mean", "gaussian")
 MOST_CELLS = 250_000
 
 
@@ -67,138 +61,46 @@ class Grid:
         return self.x0, self.x0 + self.columns * self.size, self.y1 - self.rows * self.size, self.y1
 
     def centers(self) -> Floats:
-        """Return the centers ``[rows, columns, 2]`` [m]."""
+        """Return the centers ``[rows * columns, 2]`` [m], row by row."""
         x = self.x0 + (np.arange(self.columns) + 0.5) * self.size
         y = self.y1 - (np.arange(self.rows) + 0.5) * self.size
-        return np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1)
-
-    def cells(self) -> Any:
-        """Return the cells ``[rows * columns]`` as shapely boxes, row by row."""
-        import shapely
-
-        x, y = np.moveaxis(self.centers().reshape(-1, 2), -1, 0)
-        half = 0.5 * self.size
-        return shapely.box(x - half, y - half, x + half, y + half)
-
-    def cell_of(self, position: Floats) -> Integers:
-        """Return the number of the cell ``[N]`` of each point ``[N, 2]`` [m], -1 outside the grid."""
-        column = np.floor((position[:, 0] - self.x0) / self.size).astype(np.int64)
-        row = np.floor((self.y1 - position[:, 1]) / self.size).astype(np.int64)
-        inside = (row >= 0) & (row < self.rows) & (column >= 0) & (column < self.columns)
-        return np.where(inside, row * self.columns + column, -1)
+        return np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
 
 
-def compute_density_profile(
-    tracks: Trajectories, grid: Grid, polygons: pd.DataFrame | None = None, method: str = "voronoi", width: float = 0.5
-) -> Floats:
-    """Return the mean density over time in each cell, ``[rows, columns]`` [1/m2].
+def compute_profiles(grid: Grid, polygons: pd.DataFrame, speed: pd.DataFrame) -> pd.DataFrame:
+    """Return mean density and speed over time in each cell: columns x, y [m], density [1/m2], speed, flow [1/(m s)].
+
+    The density is that of PedPy, the mean over frames of the Voronoi density of the cell. The speed is the mean of the
+    people in all frames, weighted by the area of their Voronoi cells in the cell; NaN where nobody is.
 
     Args:
-        tracks: the recording.
         grid: cells.
-        polygons: Voronoi cells of the people, for ``voronoi``.
-        method: ``voronoi`` (area of the Voronoi cells in a cell over their areas), ``classic`` (people per cell) or
-            ``gaussian`` (a normalised Gaussian around each person).
-        width: full width at half maximum of the Gaussian [m].
-
-    Raises:
-        InputError: the method is unknown, or ``polygons`` is missing.
-    """
-    _check_method(method, DENSITY_PROFILES, polygons)
-    frames = len(np.unique(tracks.frame))
-    total = np.zeros(grid.rows * grid.columns)
-    if method == "classic":
-        cell = grid.cell_of(tracks.position)
-        total += np.bincount(cell[cell >= 0], minlength=len(total)) / grid.size**2
-    elif method == "gaussian":
-        total += _gaussian(grid, tracks.position, np.ones(len(tracks)), width)
-    else:
-        assert polygons is not None
-        cell, person, area = _overlaps(grid, polygons)
-        total += np.bincount(cell, area * polygons.density.to_numpy()[person], minlength=len(total)) / grid.size**2
-    return (total / frames).reshape(grid.rows, grid.columns)
-
-
-def compute_speed_profile(
-    tracks: Trajectories,
-    grid: Grid,
-    speed: pd.DataFrame,
-    polygons: pd.DataFrame | None = None,
-    method: str = "voronoi",
-    width: float = 0.5,
-) -> Floats:
-    """Return the mean speed in each cell, ``[rows, columns]`` [m/s]; NaN where nobody is.
-
-    Args:
-        tracks: the recording.
-        grid: cells.
+        polygons: result of :func:`~crowdbot.measurement.compute_individual_voronoi_polygons`.
         speed: result of :func:`~crowdbot.measurement.compute_individual_speed`.
-        polygons: Voronoi cells of the people, for ``voronoi`` and ``arithmetic``.
-        method: ``voronoi`` (weighted by the area of the Voronoi cells in a cell), ``arithmetic`` (all people whose
-            Voronoi cell meets a cell), ``mean`` (people in a cell) or ``gaussian`` (weights by the distance).
-        width: full width at half maximum of the Gaussian [m].
 
-    Raises:
-        InputError: the method is unknown, or ``polygons`` is missing.
+    >>> hall = WalkableArea([(0, 0), (2, 0), (2, 1), (0, 1)])
+    >>> cells = table(id=[1], frame=[0], polygon=[hall.polygon], density=[0.5])
+    >>> compute_profiles(Grid.over(hall, 1.0), cells, table(id=[1], frame=[0], speed=[1.2]))[["density", "speed"]]
+       density  speed
+    0      0.5    1.2
+    1      0.5    1.2
     """
-    _check_method(method, SPEED_PROFILES, polygons)
-    size = grid.rows * grid.columns
-    if method == "gaussian":
-        joined = tracks.to_frame().merge(speed, on=["id", "frame"])
-        place = joined[["x", "y"]].to_numpy()
-        total = _gaussian(grid, place, joined.speed.to_numpy(), width)
-        count = _gaussian(grid, place, np.ones(len(place)), width)
-    else:
-        cell, value, weight = _cell_speeds(tracks, grid, speed, polygons, method)
-        total = np.asarray(np.bincount(cell, weight * value, minlength=size))
-        count = np.asarray(np.bincount(cell, weight, minlength=size))
-    mean = np.where(count > 0.0, total / np.where(count > 0.0, count, 1.0), np.nan)
-    return mean.reshape(grid.rows, grid.columns)
-
-
-def _cell_speeds(
-    tracks: Trajectories, grid: Grid, speed: pd.DataFrame, polygons: pd.DataFrame | None, method: str
-) -> tuple[Integers, Floats, Floats]:
-    """Return cells, the speeds of people in them and their weights."""
-    if method == "mean":
-        joined = tracks.to_frame().merge(speed, on=["id", "frame"])
-        cell = grid.cell_of(joined[["x", "y"]].to_numpy())
-        inside = cell >= 0
-        return cell[inside], joined.speed.to_numpy()[inside], np.ones(int(inside.sum()))
-    assert polygons is not None
-    joined = polygons.merge(speed, on=["id", "frame"])
-    cell, person, area = _overlaps(grid, joined)
-    return cell, joined.speed.to_numpy()[person], area if method == "voronoi" else np.ones(len(area))
-
-
-def _check_method(method: str, known: tuple[str, ...], polygons: Any) -> None:
-    if method not in known:
-        raise InputError(f"unknown profile {method!r}{did_you_mean(method, known)}; known are {', '.join(known)}")
-    if polygons is None and method in ("voronoi", "arithmetic"):
-        raise InputError(f"a profile by {method} needs the Voronoi cells of the people")
-
-
-def _overlaps(grid: Grid, polygons: pd.DataFrame) -> tuple[Integers, Integers, Floats]:
-    """Return cell, row of ``polygons`` and common area [m2] of all pairs that overlap."""
     import shapely
 
-    cells, people = grid.cells(), polygons.polygon.to_numpy()
-    person, cell = shapely.STRtree(cells).query(people, predicate="intersects")
-    area = shapely.area(shapely.intersection(people[person], cells[cell]))
-    kept = area > 0.0
-    return cell[kept], person[kept], area[kept]
-
-
-def _gaussian(grid: Grid, place: Floats, weight: Floats, width: float) -> Floats:
-    """Return ``sum_i weight_i g(c - x_i)`` at the centers c of cells, with a Gaussian g [1/m2]."""
-    if not width > 0.0:
-        raise InputError(f"the width of a Gaussian must be above 0, not {width}")
-    sigma = width / (2.0 * math.sqrt(2.0 * math.log(2.0)))
-    centers = grid.centers()
-    total = np.zeros((grid.rows, grid.columns))
-    for first in range(0, len(place), 1000):
-        few = place[first : first + 1000]
-        x = np.exp(-0.5 * ((centers[0, :, 0][:, None] - few[:, 0]) / sigma) ** 2)
-        y = np.exp(-0.5 * ((centers[:, 0, 1][:, None] - few[:, 1]) / sigma) ** 2)
-        total += np.einsum("rn,cn,n->rc", y, x, weight[first : first + 1000], optimize=True)
-    return (total / (2.0 * math.pi * sigma**2)).ravel()
+    x, y = grid.centers().T
+    half = 0.5 * grid.size
+    cells = shapely.box(x - half, y - half, x + half, y + half)
+    people = polygons.merge(speed, on=["id", "frame"])
+    # PedPy makes a matrix of all cells by all rows; the tree needs a third of its time and memory for what overlaps
+    shapes = people.polygon.to_numpy()
+    person, cell = shapely.STRtree(cells).query(shapes, predicate="intersects")
+    area = shapely.area(shapely.intersection(shapes[person], cells[cell]))
+    inside = area > 0.0
+    person, cell, area = person[inside], cell[inside], area[inside]
+    people_here, covered, moved = (
+        np.asarray(np.bincount(cell, area * values[person], minlength=len(cells)), dtype=np.float64)
+        for values in (people.density.to_numpy(), np.ones(len(people)), people.speed.to_numpy())
+    )
+    density = people_here / (grid.size**2 * polygons.frame.nunique())
+    mean = np.where(covered > 0.0, moved / np.where(covered > 0.0, covered, 1.0), np.nan)
+    return table(x=x, y=y, density=density, speed=mean, flow=density * mean)

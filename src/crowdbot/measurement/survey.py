@@ -13,24 +13,23 @@ import numpy as np
 from crowdbot.core import DataError, InputError
 from crowdbot.data import Trajectories
 
-from .density import CutOff, compute_classic_density, compute_individual_voronoi_polygons, compute_voronoi_density
 from .diagram import compute_fundamental_diagram
+from .distances import compute_headways, compute_pair_distribution_function
 from .encounters import compute_encounters, distribution
-from .flow import compute_flow, compute_line_flow, compute_n_t, compute_species, crossing_times, mean_flow
+from .flow import compute_flow, compute_line_flow, compute_n_t, crossing_times, mean_flow
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
 from .interaction_energy import compute_interaction_energy
 from .lanes import compute_lane_order
-from .movement import (
+from .people import (
+    ContinuousTracks,
     compute_individual_acceleration,
     compute_individual_speed,
-    compute_mean_speed_per_frame,
-    compute_voronoi_speed,
+    compute_individual_voronoi_polygons,
+    pedpy_tracks,
 )
-from .neighbors import compute_headways, compute_pair_distribution_function
-from .passing import compute_frame_range_in_area, compute_passing_density, compute_passing_speed
 from .plan import MeasurementPlan
-from .profiles import Grid, compute_density_profile, compute_speed_profile
-from .rows import check_metres, select_rows, table
+from .profiles import Grid, compute_profiles
+from .rows import check_metres, every_frame, select_rows, table
 from .steady import combine_steady_states, detect_steady_state
 from .waves import compute_stop_and_go, compute_stops
 
@@ -157,8 +156,7 @@ class _Survey:
     def cells(self) -> Any:
         """Voronoi cells every ``every`` seconds."""
         if self._cells is None:
-            cut_off = None if self.plan.cut_off is None else CutOff(self.plan.cut_off)
-            self._cells = compute_individual_voronoi_polygons(self.sample, self.walkable, cut_off)
+            self._cells = compute_individual_voronoi_polygons(self.sample, self.walkable, self.plan.cut_off)
         return self._cells
 
     @property
@@ -176,16 +174,27 @@ class _Survey:
             self.figures["mean_acceleration"] = found.mean()
 
     def add_area(self) -> None:
-        sample, speed = self.sample, self.speed
-        classic = compute_classic_density(sample, self.area).density.to_numpy()
-        voronoi = compute_voronoi_density(sample, self.cells, self.area)
-        voronoi_speed = compute_voronoi_speed(sample, speed, self.cells, self.area).speed.to_numpy()
-        density = voronoi.density.to_numpy()
-        time = (voronoi.frame.to_numpy() - self.people.frame[0]) / self.people.fps
+        import pedpy
+
+        sample, area = pedpy_tracks(self.sample), pedpy.MeasurementArea(self.area.polygon)
+        of_people: dict[str, Any] = {"traj_data": sample, "individual_speed": self.speed, "measurement_area": area}
+        voronoi, parts = pedpy.compute_voronoi_density(individual_voronoi_data=self.cells, measurement_area=area)
+        frames = every_frame(self.sample)
+        # PedPy fills the frames between two Voronoi diagrams with 0
+        classic, density, mean_speed, voronoi_speed = (
+            found.set_index("frame").iloc[:, 0].loc[frames].to_numpy()
+            for found in (
+                pedpy.compute_classic_density(traj_data=sample, measurement_area=area),
+                voronoi,
+                pedpy.compute_mean_speed_per_frame(**of_people),
+                pedpy.compute_voronoi_speed(**of_people, individual_voronoi_intersection=parts),
+            )
+        )
+        time = (frames - self.people.frame[0]) / self.people.fps
         self.tables["area"] = table(
-            frame=voronoi.frame, time=time, classic_density=classic, voronoi_density=density,
-            mean_speed=compute_mean_speed_per_frame(sample, speed, self.area).speed, voronoi_speed=voronoi_speed,
-            specific_flow=density * voronoi_speed,
+            frame=frames, time=time, classic_density=classic, voronoi_density=density,
+            mean_speed=np.where(classic > 0.0, mean_speed, np.nan),  # PedPy: nobody inside walks at 0 m/s
+            voronoi_speed=voronoi_speed, specific_flow=density * voronoi_speed,
         )  # fmt: skip
         self.figures |= {"classic_density": classic.mean(), "voronoi_density": density.mean()}
         self.figures["voronoi_speed"] = voronoi_speed.mean()
@@ -217,6 +226,8 @@ class _Survey:
             self.notes.append("no bin of the fundamental diagram has 20 values")
 
     def add_line(self) -> None:
+        import pedpy
+
         line, people = self.plan.line, self.people
         assert line is not None
         n_t, first = compute_n_t(people, line)
@@ -226,28 +237,38 @@ class _Survey:
         self.tables["flow"] = compute_flow(people, n_t, first, self.speed, frames)
         flow = mean_flow(times)
         self.figures |= {"crossings": len(times), "flow": flow, "specific_flow": flow / line.length}
-        species = compute_species(self.people, self.cells, line, self.step)
+        species = pedpy.compute_species(
+            individual_voronoi_polygons=self.cells, measurement_line=pedpy.MeasurementLine(line.line),
+            trajectory_data=pedpy_tracks(people), frame_step=self.step // people.frame_step,
+        )  # fmt: skip
         found = compute_line_flow(self.sample, self.cells, line, self.speed, species)
         self.tables["line"] = found.assign(time=(found.frame - people.frame[0]) / people.fps)
         self.figures["line_flow"] = found.flow.mean()
 
     def add_passing(self) -> None:
+        import pedpy
+
         line, width = self.plan.line, self.plan.passage
         assert line is not None
         assert width is not None
-        passages, between = compute_frame_range_in_area(self.people, line, width)
-        density = compute_passing_density(compute_classic_density(self.people, between), passages)
-        speed = compute_passing_speed(self.people, passages, width)
-        self.tables["passages"] = passages.assign(density=density.density, speed=speed.speed)
+        parts = ContinuousTracks.of(self.people)
+        # PedPy puts the second line to the left of the first as well
+        passages, between = pedpy.compute_frame_range_in_area(
+            traj_data=parts.data, measurement_line=pedpy.MeasurementLine(line.line), width=width
+        )
+        inside = pedpy.compute_classic_density(traj_data=parts.data, measurement_area=between)
+        density = pedpy.compute_passing_density(density_per_frame=inside, frames=passages).density
+        speed = pedpy.compute_passing_speed(
+            frames_in_area=passages, frame_rate=parts.data.frame_rate, distance=abs(width)
+        ).speed
+        self.tables["passages"] = parts.restore(
+            passages.assign(density=density, speed=speed), "entering_frame", "leaving_frame"
+        ).sort_values(["id", "entering_frame"], ignore_index=True)
         self.figures["passages"] = len(passages)
 
     def add_profiles(self) -> None:
         assert self.grid is not None
-        density = compute_density_profile(self.sample, self.grid, self.cells)
-        speed = compute_speed_profile(self.sample, self.grid, self.speed, self.cells)
-        x, y = np.moveaxis(self.grid.centers().reshape(-1, 2), -1, 0)
-        flow = density * speed
-        self.tables["profiles"] = table(x=x, y=y, density=density.ravel(), speed=speed.ravel(), flow=flow.ravel())
+        self.tables["profiles"] = compute_profiles(self.grid, self.cells, self.speed)
 
     def add_encounters(self) -> None:
         pairs = compute_encounters(self.sample, _rows_of(self.speed, self.sample), self.plan.radius)

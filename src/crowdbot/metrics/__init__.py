@@ -11,7 +11,7 @@ from .energy import energy_score
 from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .impacts import IMPACT_METRICS, Impact, impact_metrics
 from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
-from .interval import Intervals, bootstrap_interval
+from .interval import Intervals, bootstrap_interval, corrected_interval, draw_counts, percentile_interval
 from .likelihood import kde_nll
 from .mahalanobis import mahalanobis
 from .modes import mode_count, mode_coverage, mode_shares
@@ -130,10 +130,12 @@ __all__ = [
     "contact_events",
     "coordination",
     "correct_p_values",
+    "corrected_interval",
     "count_occlusions",
     "crowd_effect",
     "detect_groups",
     "distances",
+    "draw_counts",
     "earth_mover_distance",
     "ellipse_coverage",
     "empty_scene_ratios",
@@ -175,6 +177,7 @@ __all__ = [
     "path_efficiency",
     "path_length",
     "people_table",
+    "percentile_interval",
     "person_errors",
     "personal_space_compliance",
     "proxemic_shares",

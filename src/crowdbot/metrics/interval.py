@@ -1,9 +1,13 @@
-"""Confidence intervals of means over people by the cluster bootstrap.
+"""The bootstrap: draws of people or runs, intervals of drawn values, and means over people by the cluster bootstrap.
 
 Windows of a person overlap, and their errors are strongly correlated; resampling windows would give intervals that are
 several times too narrow. Therefore, people are resampled with all their windows (cluster bootstrap, Davison, Hinkley
 (1997), Bootstrap Methods and their Application, section 3.8, doi 10.1017/CBO9780511802843). Correlations between people
 who walk together are not included; in dense crowds the intervals are rather too narrow.
+
+``scipy.stats.bootstrap`` is not used: it computes the statistic on copies of all values, which takes 13 to 78 times as
+long for the means of 30 to 3000 people as sums weighted by how often each is drawn, and it has no intervals of values
+that can be infinite, or of sums of weighted runs.
 """
 
 from __future__ import annotations
@@ -17,7 +21,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 
-__all__ = ["Interval", "Intervals", "PersonValues", "bootstrap_interval"]
+__all__ = [
+    "Interval",
+    "Intervals",
+    "PersonValues",
+    "bootstrap_interval",
+    "corrected_interval",
+    "draw_counts",
+    "percentile_interval",
+]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -28,6 +40,62 @@ LEVEL = 0.95
 UNKNOWN: Interval = (math.nan, math.nan)
 DRAWS_AT_ONCE = 2_000_000
 """Number of people drawn at once, which limits memory."""
+
+
+def draw_counts(rng: np.random.Generator, units: int, resamples: int) -> Floats:
+    """Return how often each of N people, runs or pieces is drawn ``[R, N]``; a resample draws N with replacement.
+
+    Args:
+        rng: generator of the draws.
+        units: number N of people, runs or pieces.
+        resamples: number R of resamples.
+
+    >>> draw_counts(np.random.default_rng(1), 4, 2).sum(axis=1).tolist()
+    [4.0, 4.0]
+    """
+    drawn = rng.integers(0, units, (resamples, units)) + units * np.arange(resamples)[:, None]
+    times = np.bincount(drawn.ravel(), minlength=resamples * units)
+    return times.reshape(resamples, units).astype(np.float64)
+
+
+def percentile_interval(samples: Floats, level: float = LEVEL) -> tuple[Floats, Floats]:
+    """Return the ends of the central part of resampled values ``[R, ...]``, over the first axis.
+
+    >>> low, high = percentile_interval(np.arange(101.0), 0.9)
+    >>> round(float(low), 6), round(float(high), 6)
+    (5.0, 95.0)
+    """
+    low, high = np.quantile(samples, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
+    return low, high
+
+
+def corrected_interval(samples: Floats, value: float, level: float = LEVEL, acceleration: float = 0.0) -> Interval:
+    """Return the bias-corrected interval of resampled values ``[R]``, accelerated if an acceleration is given.
+
+    Where a resampled value is infinite, an end is one of the resampled values, without interpolation. Efron 1987,
+    Better bootstrap confidence intervals, https://doi.org/10.1080/01621459.1987.10478410.
+
+    Args:
+        samples: ``[R]`` the statistic of each resample.
+        value: the statistic of all values.
+        level: confidence level.
+        acceleration: a of the paper; 0 gives the bias-corrected interval.
+
+    >>> [round(end, 6) for end in corrected_interval(np.arange(101.0), 50.0, 0.9)]
+    [5.0, 95.0]
+    """
+    from scipy import special  # takes longer to import than the rest of the room
+
+    R = len(samples)
+    below = (np.sum(samples < value) + 0.5 * np.sum(samples == value)) / R
+    shift = float(special.ndtri(np.clip(below, 1.0 / R, 1.0 - 1.0 / R)))
+    z = shift + special.ndtri(np.array([0.5 - level / 2.0, 0.5 + level / 2.0]))
+    edges = special.ndtr(shift + z / (1.0 - acceleration * z))
+    if np.isfinite(samples).all():
+        low, high = np.quantile(samples, edges)
+    else:
+        low, high = np.quantile(samples, edges[0], method="lower"), np.quantile(samples, edges[1], method="higher")
+    return float(low), float(high)
 
 
 @dataclass(frozen=True)
@@ -141,10 +209,8 @@ def _resample(total: Floats, count: Floats, resamples: int, seed: int) -> Floats
     size = max(1, DRAWS_AT_ONCE // max(M, 1))
     for first in range(0, resamples if M > 1 else 0, size):
         few = min(size, resamples - first)
-        drawn = rng.integers(0, M, (few, M)) + M * np.arange(few)[:, None]
-        times = np.bincount(drawn.ravel(), minlength=few * M).reshape(few, M).astype(np.float64)
         # not a matrix product: its last bits depend on the number of threads
-        sums = np.einsum("rm,mc->rc", times, both)
+        sums = np.einsum("rm,mc->rc", draw_counts(rng, M, few), both)
         means[first : first + few] = _ratio(*np.split(sums, 2, axis=1))
     return means
 
@@ -156,10 +222,9 @@ def _ratio(total: Floats, count: Floats) -> Floats:
 def _percentiles(means: Floats, count: Floats, level: float) -> list[Interval]:
     """Return the interval of each column; NaN for fewer than two people with values."""
     found = [UNKNOWN] * means.shape[1]
-    tail = 50.0 * (1.0 - level)
     for column in np.flatnonzero(np.sum(count > 0.0, axis=0) > 1):
         known = means[:, column][~np.isnan(means[:, column])]
         if len(known) > 0:
-            low, high = np.percentile(known, [tail, 100.0 - tail])
+            low, high = percentile_interval(known, level)
             found[column] = float(low), float(high)
     return found

@@ -15,14 +15,13 @@ from crowdbot.calibration.fit import Fit
 from crowdbot.calibration.parameter_space import RADIUS
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
+from crowdbot.metrics import draw_counts, percentile_interval
 from crowdbot.models import CrowdModel
 
 __all__ = ["ParameterProfile", "profile_parameters"]
 
 Floats = NDArray[np.float64]
 RESAMPLES = 500
-ENDS = (2.5, 97.5)
-"""Percentiles of the intervals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,18 +143,17 @@ class _Candidates:
     def of(cls, calibrator: Calibrator, pasts: list[Windows], sets: Floats, seed: int) -> _Candidates:
         cost, person = _person_costs(calibrator, pasts, sets)
         total, count = _sums(cost, person)
-        weights = _draws(len(count), seed)
+        weights = draw_counts(stream(seed, "profile"), len(count), RESAMPLES)
         return cls(sets, cost, (weights @ total.T) / (weights @ count)[:, None])
 
     def above_best(self, chosen: NDArray[np.int64]) -> tuple[Floats, Floats]:
         """Return the interval of the difference of chosen sets to the best one, which a profile may have found."""
         best = int(np.argmin(self.cost.mean(axis=1)))
-        low, high = np.percentile(self.means[:, chosen] - self.means[:, [best]], ENDS, axis=0)
-        return low, high
+        return percentile_interval(self.means[:, chosen] - self.means[:, [best]])
 
     def best_values(self, column: int) -> tuple[float, float]:
         """Return the interval of a parameter of the best set over the bootstrap samples."""
-        low, high = np.percentile(self.sets[np.argmin(self.means, axis=1), column], ENDS)
+        low, high = percentile_interval(self.sets[np.argmin(self.means, axis=1), column])
         return float(low), float(high)
 
 
@@ -207,11 +205,3 @@ def _sums(cost: Floats, person: NDArray[np.int64]) -> tuple[Floats, Floats]:
     """Return the sums of the costs ``[S, M]`` and the number of windows ``[M]`` of each person."""
     count = np.bincount(person).astype(np.float64)
     return np.stack([np.bincount(person, weights=row) for row in cost]), count
-
-
-def _draws(people: int, seed: int) -> Floats:
-    """Return how often each person is drawn ``[R, M]`` in each bootstrap sample."""
-    rng = stream(seed, "profile")
-    return np.stack([np.bincount(rng.integers(0, people, people), minlength=people) for _ in range(RESAMPLES)]).astype(
-        np.float64
-    )

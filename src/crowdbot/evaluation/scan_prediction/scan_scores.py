@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Walls, stream
-from crowdbot.evaluation.intervals import Estimate, bootstrap_interval
+from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.evaluation.tracking import LoggedReading, ReadingLog
 from crowdbot.metrics import (
     occupancy_iou,
@@ -83,7 +83,7 @@ class ScanScores:
     def estimates(self, seed: int = 0) -> dict[str, list[Estimate]]:
         """Return the mean over logs with 95 % intervals by bootstrap, by score and horizon."""
         return {
-            name: [bootstrap_interval(self.values[s, :, h], seed=seed) for h in range(len(self.horizons))]
+            name: [bootstrap_estimate(self.values[s, :, h], seed=seed) for h in range(len(self.horizons))]
             for s, name in enumerate(SCAN_SCORES)
         }
 

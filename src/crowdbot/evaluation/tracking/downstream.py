@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
-from crowdbot.evaluation.intervals import Estimate, bootstrap_interval
+from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.perception import predict_uncertain
 from crowdbot.prediction import Predictor
 
@@ -76,7 +76,7 @@ def estimate_downstream(
         raise InputError(f"{runs[0].log.name}: nobody is tracked and seen on for {least:g} s; take longer runs")
     return {
         name: {
-            score: bootstrap_interval(np.array([one[k] for one in some]), seed=seed)
+            score: bootstrap_estimate(np.array([one[k] for one in some]), seed=seed)
             for k, score in enumerate(DOWNSTREAM_SCORES)
         }
         for name, some in rows.items()

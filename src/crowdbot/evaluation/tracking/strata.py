@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
-from crowdbot.evaluation.intervals import Estimate, bootstrap_interval
+from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.metrics import TRACKING_SCORES, TrackComparison, count_occlusions, tracking_scores
 
 from .tracking_run import TrackingRun
@@ -58,7 +58,7 @@ def estimate_strata(
             parts.setdefault(name, []).append(tracking_scores(table.subset(people, tracks, reach), times, reach))
     return {
         name: {
-            score: bootstrap_interval(np.array([row[score] for row in rows]), seed=seed) for score in TRACKING_SCORES
+            score: bootstrap_estimate(np.array([row[score] for row in rows]), seed=seed) for score in TRACKING_SCORES
         }
         for name, rows in parts.items()
     }

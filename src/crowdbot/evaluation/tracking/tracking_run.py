@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.evaluation.intervals import Estimate, bootstrap_interval
+from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.metrics import TRACKING_SCORES, TrackComparison, tracking_scores
 from crowdbot.perception import Detections, Detector, Tracker, Tracks
 
@@ -70,4 +70,4 @@ def estimate_scores(runs: Sequence[TrackingRun], reach: float = 0.5, seed: int =
         seed: seed of the bootstrap.
     """
     rows = [run.scores(reach) for run in runs]
-    return {name: bootstrap_interval(np.array([row[name] for row in rows]), seed=seed) for name in TRACKING_SCORES}
+    return {name: bootstrap_estimate(np.array([row[name] for row in rows]), seed=seed) for name in TRACKING_SCORES}
