@@ -53,7 +53,7 @@ def _tracks(*formats: str) -> Kind:
 
         for name, one in SYNTHETIC.items():
             if one.format in formats:
-                (folder / name).mkdir()
+                (folder / name).mkdir(parents=True)
                 one.write(folder / name / name)
                 if name.endswith(".mcap"):
                     _flatten(folder / name / name)
@@ -375,6 +375,9 @@ def read_session(folder: Path, name: str, rng: random.Random) -> None:
 
 KINDS = {
     "text": _tracks("petrack", "eth-obsmat", "sgan", "ucy-vsp", "sdd", "trajnetpp", "csv"),
+    "peers": _tracks(
+        "mot", "kitti", "vadere", "viswalk", "edinburgh", "grand-central", "four-rows", "atc", "rosbag1", "rosbag2"
+    ),
     "hdf5": _tracks("juelich-hdf5"),
     "sqlite": _tracks("jupedsim"),
     "parquet": _tracks("parquet"),

@@ -82,17 +82,18 @@ def test_a_trial_from_a_recording_has_the_options_of_predict(tmp_path, capsys, p
     words = [word.format(tmp_path) for word in words]
     assert main(["new", "trial", str(file), "--recorded", str(tmp_path / "export.csv"), *words, "--replace", "1"]) == 0
     said = capsys.readouterr().err
-    assert "t-people.csv: the people of export.csv, as they were read, in m" in said
     assert "warning" not in said
     people = load_trial(file).recorded[0]
     tracks = people.tracks()
-    assert (people.data, tracks.ids.tolist(), tracks.dt) == ("t-people.csv", [1, 2], pytest.approx(0.4))
+    assert (people.data, tracks.ids.tolist(), tracks.dt) == ("export.csv", [1, 2], pytest.approx(0.4))
     assert tracks.x.max() == pytest.approx(9.5)
     assert main(["check", str(file)]) == 0
-    (tmp_path / "v-people.csv").write_text("of somebody else")
     capsys.readouterr()
-    again = ["new", "trial", tmp_path / "v.xml", "--recorded", tmp_path / "export.csv", *words]
-    assert "v-people.csv already exists" in refused(capsys, tmp_path, *again)
+    (tmp_path / "else").mkdir()
+    again = ["new", "trial", tmp_path / "else" / "v.xml", "--recorded", tmp_path / "export.csv", *words]
+    assert main([str(word) for word in again]) == 0
+    assert "copied export.csv to the folder of the trial" in capsys.readouterr().err
+    assert load_trial(tmp_path / "else" / "v.xml").recorded[0].tracks().x.max() == pytest.approx(9.5)
     wrong = ["new", "trial", tmp_path / "u.xml", "--recorded", tmp_path / "export.csv", *words, "--replace", "77"]
     assert main([str(word) for word in wrong]) == 2
     assert not list(tmp_path.glob("u*"))
@@ -153,3 +154,16 @@ def test_the_parameters_of_a_builtin_trial_are_listed(capsys):
     assert "people in the side corridor" in capsys.readouterr().out
     assert main(["run", "intersection", "--set", "density=0.5", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] in ("success", "collision", "timeout")
+
+
+def test_a_trial_from_a_bag_and_from_a_table_without_names(tmp_path, capsys):
+    rows = "".join(f"{k / 10:.1f};{who};{0.13 * k:.3f};{2 * who};9\n" for k in range(40) for who in (1, 2))
+    (tmp_path / "plain.csv").write_text(rows)
+    words = ["--recorded", str(tmp_path / "plain.csv"), "--columns", "time=1", "id=2", "x=3", "y=4"]
+    assert main(["new", "trial", str(tmp_path / "t.xml"), *words]) == 0
+    assert 'columns="time=1 id=2 x=3 y=4"' in (tmp_path / "t.xml").read_text()
+    assert load_trial(tmp_path / "t.xml").recorded[0].tracks().ids.tolist() == [1, 2]
+    assert main(["check", str(tmp_path / "t.xml")]) == 0
+    capsys.readouterr()
+    both = ["--scale", "0.02", "--homography", str(tmp_path / "H.txt")]
+    assert "coordinates have one scale" in refused(capsys, tmp_path, "new", "trial", tmp_path / "u.xml", *words, *both)

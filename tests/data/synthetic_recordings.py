@@ -6,8 +6,10 @@ functions of time, so every format holds the same people at its own frame rate, 
 
 from __future__ import annotations
 
+import gzip
 import json
 import math
+import shutil
 import sqlite3
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from mcap_messages import McapRecording
+from ros_bags import BagWriter
 
 WALLS = "POLYGON ((-9 -9, 9 -9, 9 9, -9 9, -9 -9), (4 4, 5 4, 5 5, 4 5, 4 4))"
 PEOPLE = 12
@@ -293,6 +296,118 @@ def parquet(path: Path) -> None:
     pq.write_table(pa.table({name: list(column) for name, column in columns.items()}), path)
 
 
+def mot_boxes(path: Path) -> None:
+    """Write boxes of MOT Challenge at 25 Hz: 20 pixels per metre; the feet are in the middle of the lower edge."""
+    (path.parent / "seqinfo.ini").write_text("[Sequence]\nname=square\nframeRate=25\n")
+    text = "".join(f"{f},{id},{20 * x + 400:.2f},{20 * y + 400:.2f},10,40,1,1,0.9\n" for f, id, x, y in rows(25.0))
+    path.write_text(text + "1,90,5,5,10,40,0,1,0.1\n2,91,5,5,10,40,1,9,1\n", encoding="utf-8")
+
+
+def kitti_labels(path: Path) -> None:
+    """Write KITTI tracking labels at 10 Hz: x to the right, z forward."""
+    text = "".join(
+        f"{f} {id} Pedestrian 0 0 -1.5 100 100 120 160 1.7 0.6 0.6 {-y:.4f} 1.6 {x:.4f} 0.1\n"
+        f"{f} -1 DontCare -1 -1 -10 1 2 3 4 -1 -1 -1 -1000 -1000 -1000 -10\n"
+        for f, id, x, y in rows(10.0)
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+def vadere_footsteps(path: Path) -> None:
+    """Write footsteps of Vadere of 0.2 s, at times that no step of the tracks shares."""
+    text = "#IDXCOL=2,DATACOL=6,SEP=' '\n"
+    text += "pedestrianId simTime endTime-PID1 startX-PID1 startY-PID1 endX-PID1 endY-PID1 targetId-PID2\n"
+    for walker in walkers():
+        count = round((walker.end - walker.begin) / 0.2)
+        for begin, end in ((walker.begin + 0.2 * k, walker.begin + 0.2 * (k + 1)) for k in range(count)):
+            (x0, y0), (x1, y1) = walker.at(begin), walker.at(end)
+            text += f"{walker.id} {begin:.4f} {end:.4f} {x0:.6f} {y0:.6f} {x1:.6f} {y1:.6f} -1\n"
+    path.write_text(text, encoding="utf-8")
+
+
+def viswalk_records(path: Path) -> None:
+    """Write the pedestrian record of Viswalk every 0.2 s."""
+    text = "$VISION\n* File: square.inpx\n$VERSION:VERSNR;FILETYPE\n22.00;Pedestrian Record\n\n"
+    text += "$PEDESTRIAN:SIMSEC;NO;SPEED;COORDCENTX;COORDCENTY\n"
+    text += "".join(f"{f / 5:.2f};{id};4.8;{x:.4f};{y:.4f}\n" for f, id, x, y in rows(5.0))
+    path.write_text(text, encoding="utf-8-sig")
+
+
+def pathfinder_csv(path: Path) -> None:
+    """Write occupants of Pathfinder every 0.5 s, with a line of units."""
+    text = '"t","id","name","active","x","y","z"\n"s","","","","m","m","m"\n'
+    text += "".join(f'{f / 2:.1f},{id},"{id:05d}",1,{x:.4f},{y:.4f},0.0\n' for f, id, x, y in rows(2.0))
+    path.write_text(text, encoding="utf-8")
+
+
+def edinburgh_tracks(path: Path) -> None:
+    """Write tracks of the Edinburgh Informatics Forum at 9 Hz, 24.7 mm per pixel, with a repeated frame."""
+    tracks: dict[int, list[str]] = {}
+    for frame, id, x, y in rows(9.0):
+        place = f"[{round((x + 20) / 0.0247)} {round((y + 20) / 0.0247)} {frame}]"
+        tracks.setdefault(id, []).extend([place] * (2 if frame == 50 else 1))
+    text = f"% Total number of trajectories in file are {len(tracks)}\n\n"
+    for id, places in tracks.items():
+        text += f"Properties.R{id}=[{len(places)} 1 2 3.5 ];\n TRACK.R{id}=[{';'.join(places)}];\n"
+    path.write_text(text, encoding="utf-8")
+
+
+def grand_central(path: Path) -> None:
+    """Write the folder of Grand Central: one file a person with y, x and frame, every 20 frames at 25 Hz."""
+    path.parent.mkdir(exist_ok=True)
+    for walker in walkers():
+        own = [(f, x, y) for f, id, x, y in rows(25.0, 20) if id == walker.id]
+        text = "".join(f"{round(50 * y + 1000)}\n{round(50 * x + 1000)}\n{f}\n" for f, x, y in own)
+        path.with_name(f"{walker.id:06d}.txt").write_text(text, encoding="utf-8")
+
+
+def four_rows(path: Path) -> None:
+    """Write four rows of Social LSTM: frames, persons, y and x."""
+    columns = list(zip(*rows(25.0, 10), strict=True))
+    order = [columns[0], columns[1], columns[3], columns[2]]
+    path.write_text("".join(",".join(f"{value:.7g}" for value in row) + "\n" for row in order), encoding="utf-8")
+
+
+def atc_csv(path: Path) -> None:
+    """Write a day of the ATC shopping center in millimetres, at 25 Hz."""
+    begin = 1_351_039_728.0
+    text = "".join(
+        f"{begin + f / 25:.3f},{id},{1000 * x:.1f},{1000 * y:.1f},1700.5,1200,0.1,0.2\n" for f, id, x, y in rows(25.0)
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+def bag(storage: str) -> Callable[[Path], None]:
+    """Return a writer of a ROS bag: people every 0.1 s, in the frame of a robot that drives at 0.5 m/s."""
+
+    def write(path: Path) -> None:
+        by_frame: dict[int, dict[int, tuple[float, float]]] = {}
+        for frame, id, x, y in rows(10.0):
+            by_frame.setdefault(frame, {})[id] = x - 0.05 * frame, y
+        folder = path.with_name(f"{path.stem}-{storage}")
+        with BagWriter(path if storage == "ros1" else folder, storage) as writer:
+            for frame, persons in by_frame.items():
+                writer.odometry(0.1 * frame, 0.05 * frame, 0.0)
+                writer.people(0.1 * frame, "base_link", persons)
+        if storage != "ros1":
+            writer.file.rename(path)
+            shutil.rmtree(folder)
+
+    return write
+
+
+def packed(write: Callable[[Path], None]) -> Callable[[Path], None]:
+    """Return a writer of a text in gzip."""
+
+    def write_packed(path: Path) -> None:
+        plain = path.with_suffix("")
+        write(plain)
+        path.write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
+        plain.unlink()
+
+    return write_packed
+
+
 def episode(path: Path) -> None:
     """Write a recorded trial: /people every 0.1 s and the odometry of one robot every 0.05 s."""
     with McapRecording(path) as recording:
@@ -354,6 +469,18 @@ SYNTHETIC = {
     "times.csv": Synthetic("csv", csv_times, 1, 2.5),
     "tracks.parquet": Synthetic("parquet", parquet, 10, 25.0),
     "episode.mcap": Synthetic("episode", episode, 1, 10.0, robots=frozenset({ROBOT})),
+    "bag.db3": Synthetic("rosbag2", bag("sqlite3"), 1, 10.0, robots=frozenset({PEOPLE + 1})),
+    "bag.bag": Synthetic("rosbag1", bag("ros1"), 1, 10.0, robots=frozenset({PEOPLE + 1})),
+    "mot.txt": Synthetic("mot", mot_boxes, 1, 25.0, "px", (20.0, 20.0)),
+    "kitti.txt": Synthetic("kitti", kitti_labels, 1, 10.0),
+    "square.traj": Synthetic("vadere", vadere_footsteps, 1, 2.5),
+    "square.pp": Synthetic("viswalk", viswalk_records, 1, 5.0),
+    "occupants.csv": Synthetic("csv", pathfinder_csv, 1, 2.0),
+    "tracks.01Sep.txt": Synthetic("edinburgh", edinburgh_tracks, 1, 9.0),
+    "grand-central/000001.txt": Synthetic("grand-central", grand_central, 20, 25.0, "px", (50.0, 50.0)),
+    "pixel_pos.csv": Synthetic("four-rows", four_rows, 10, 25.0),
+    "atc-20121024.csv": Synthetic("atc", atc_csv, 1, 25.0),
+    "packed.txt.gz": Synthetic("sgan", packed(sgan_text), 10, 25.0),
 }
 
 

@@ -14,8 +14,8 @@ from crowdbot.data import load
 
 ROOT = Path(__file__).parents[2]
 KINDS = (
-    "text", "hdf5", "sqlite", "parquet", "npz", "mcap", "weights", "trials", "originals", "robots", "xacro", "meshes",
-    "maps", "episodes", "experiments", "sessions",
+    "text", "peers", "hdf5", "sqlite", "parquet", "npz", "mcap", "weights", "trials", "originals", "robots", "xacro",
+    "meshes", "maps", "episodes", "experiments", "sessions",
 )  # fmt: skip
 
 

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import argparse
+import dataclasses
+import gzip
+import importlib
+import inspect
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,7 +15,8 @@ from hypothesis import strategies as st
 
 from crowdbot import cli
 from crowdbot.core import DataError, InputError
-from crowdbot.data import Recording, load, read_homography, save
+from crowdbot.data import FILE_OPTIONS, Recording, load, read_homography, save
+from crowdbot.trials import RecordedPeople
 
 
 def walker(times, speed=1.3, id=1):
@@ -132,7 +139,7 @@ def test_predict_says_what_it_understood(tmp_path, capsys):
     begin = lines.index("t.csv: 50 rows of 2 people, 12 s with a step of 0.5 s")
     assert lines[begin + 1] == "t.csv: 15.6 x 1 m; speed 1.3 m/s (5 to 95 %: 1.3 to 1.3 m/s)"
     assert cli.main(["predict", "--data", str(path), "--columns", "ped"]) == 2
-    assert "--columns ped: write NAME=COLUMN, such as id=pedestrian" in capsys.readouterr().err
+    assert "columns ped: write NAME=COLUMN, such as id=pedestrian" in capsys.readouterr().err
     (tmp_path / "H.txt").write_text("1 0 0\n0 1 0\n0 0 1\n")
     assert cli.main([*words, "--homography", str(tmp_path / "H.txt")]) == 2
     assert "--scale and --homography are given" in capsys.readouterr().err
@@ -145,3 +152,113 @@ def test_a_recording_keeps_its_columns_and_its_scale(tmp_path):
     np.testing.assert_allclose(one.tracks.x[:3], [0.0, 1.3, 2.6])
     save(one.tracks, tmp_path / "metres.csv")
     np.testing.assert_allclose(load(tmp_path / "metres.csv").x, one.tracks.x)
+
+
+def test_columns_by_number(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("# no names\n0.0,7,1.0,2.0,9,9\n0.5,7,1.5,2.0,9,9\n")
+    with pytest.raises(DataError, match=r"unknown format.*--columns time=1 id=2 x=3 y=4"):
+        load(path)
+    tracks = load(path, columns={"time": "1", "id": "2", "x": "3", "y": "4"})
+    assert (tracks.ids.tolist(), tracks.dt, tracks.x.tolist()) == ([7], 0.5, [1.0, 1.5])
+    with pytest.raises(DataError, match="has no column '8' for y; it has 1, 2, 3, 4, 5, 6"):
+        load(path, columns={"time": "1", "id": "2", "x": "3", "y": "8"})
+    named = write(tmp_path / "n.csv", [(1, 0, 5, 7), (1, 1, 6, 8)], "who,time,east,north")
+    assert load(named, columns={"id": "1", "x": "3", "y": "north"}).x.tolist() == [5.0, 6.0]
+    path.write_text("0.0,7,1.0,2.0\n0.5,7,1.5\n")
+    with pytest.raises(DataError, match="line 2 has 3 columns, the first line has 4"):
+        load(path, columns={"time": "1", "id": "2", "x": "3", "y": "4"})
+
+
+def test_a_table_without_ids_is_one_person_if_its_times_ascend(tmp_path):
+    rows = [(k, 0.1 * k, 0.13 * k, 2.0) for k in range(3)]
+    tracks = load(write(tmp_path / "t.csv", rows, ",timestamp,x,y"))
+    assert tracks.ids.tolist() == [1]
+    assert "all rows are of one person" in tracks.note
+    with pytest.raises(DataError, match="has no column for id"):
+        load(write(tmp_path / "t.csv", rows + rows, ",timestamp,x,y"))
+
+
+def test_a_folder_of_one_file_a_person(tmp_path, capsys):
+    folder = tmp_path / "people"
+    folder.mkdir()
+    (folder / ".hidden").write_text("no table")
+    for who in (3, 20):
+        rows = [(0.1 * k, 0.13 * k, who) for k in range(who, who + 30)]
+        write(folder / f"person_{who}.csv", rows, "time,x,y")
+    tracks = load(folder)
+    assert (tracks.ids.tolist(), tracks.dt, len(tracks)) == ([3, 20], 0.1, 60)
+    assert tracks.track(20).frame[0] == 17
+    assert "2 files of one person each" in tracks.note
+    assert load(folder, units="cm").x.max() == pytest.approx(tracks.x.max() / 100)
+    assert cli.main(["predict", "--data", str(folder), "--step", "0.1"]) == 0
+    assert "people: 60 rows of 2 people" in capsys.readouterr().err
+    assert cli.main(["measure", str(folder), "--methods", "individual"]) == 0
+    with pytest.raises(InputError, match="is a folder of files, which has no format"):
+        load(folder, format="csv")
+    write(folder / "odd.csv", [(0, 1, 2)], "time,x,z")
+    with pytest.raises(DataError, match=r"person_3.csv has the columns time, x, y, .*odd.csv has time, x, z"):
+        load(folder)
+    write(folder / "odd.csv", [(0, 1, 2)], "id,x,y")
+    with pytest.raises(DataError, match="odd.csv has a column of ids, id; give the files instead of the folder"):
+        load(folder)
+    (tmp_path / "none").mkdir()
+    with pytest.raises(DataError, match="none has no files"):
+        load(tmp_path / "none")
+
+
+def test_gzip_of_a_text_and_of_something_else(tmp_path):
+    plain = write(tmp_path / "t.csv", walker([0, 0.5, 1.0]))
+    path = tmp_path / "t.csv.gz"
+    path.write_bytes(gzip.compress(plain.read_bytes()))
+    assert load(path).x.tolist() == load(plain).x.tolist()
+    path.write_bytes(gzip.compress(plain.read_bytes())[:-12])
+    with pytest.raises(DataError, match="cannot be read as gzip, it is truncated or damaged"):
+        load(path)
+    path.write_bytes(gzip.compress(b"PAR1" + bytes(100)))
+    with pytest.raises(DataError, match="is gzip of parquet; only texts are read from gzip, unpack it first"):
+        load(path)
+
+
+def test_boxes_with_a_homography_and_without(tmp_path):
+    path = tmp_path / "gt.txt"
+    path.write_text("".join(f"{k},1,{100 + 2 * k},50,10,40,1,-1,-1,-1\n" for k in range(1, 4)))
+    with pytest.raises(DataError, match="has no frame rate"):
+        load(path)
+    tracks = load(path, fps=10.0, transform=0.02)
+    np.testing.assert_allclose(tracks.position, [[2.14, 1.8], [2.18, 1.8], [2.22, 1.8]])
+    path.write_text("".join(f"{k},1,100,50,10,40,1,{0.1 * k},7,0\n" for k in range(1, 4)))
+    assert load(path, fps=10.0).position.tolist() == [[0.1, 7.0], [0.2, 7.0], [pytest.approx(0.3), 7.0]]
+    path.write_text("1,-1,100,50,10,40,0.9,-1,-1,-1\n")
+    with pytest.raises(DataError, match="the id of all rows is -1, these are detections without tracks"):
+        load(path, fps=10.0)
+    box = "{} 4 Pedestrian 0 0 -1.5 100 50 120 90 1.7 0.6 0.6 -2.0 1.6 {} 0.1\n"
+    (tmp_path / "0001.txt").write_text("".join(box.format(k, 8 + 0.1 * k) for k in range(4)))
+    relative = load(tmp_path / "0001.txt")
+    assert relative.position[0].tolist() == [8.0, 2.0]
+    assert "positions are relative to the camera, which moves with the car" in relative.warnings[0]
+    assert load(tmp_path / "0001.txt", transform=0.1).position[0].tolist() == [11.0, 9.0]
+
+
+def test_commands_and_trials_have_all_options_of_files():
+    names = set(FILE_OPTIONS)
+    for command in ("predict", "measure", "calibrate", "train", "degrade", "new"):
+        parser = argparse.ArgumentParser()
+        importlib.import_module(f"crowdbot.cli.{command}").arguments(parser)
+        text = parser.format_help()
+        assert [name for name in names if f"--{name.replace('_', '-')} " not in text] == [], command
+    fields = {field.name for field in dataclasses.fields(RecordedPeople)}
+    assert names <= fields
+    given = inspect.signature(load).parameters
+    assert names - {"scale", "homography", "agents"} <= set(given)
+
+
+def test_predict_leaves_out_recordings_without_windows(tmp_path, capsys):
+    long = write(tmp_path / "long.csv", walker(0.4 * np.arange(30)))
+    short = write(tmp_path / "short.csv", walker(0.4 * np.arange(5)))
+    assert cli.main(["predict", "--data", str(long), str(short)]) == 0
+    out = capsys.readouterr()
+    assert "short.csv is left out: it has no window" in out.err
+    assert "long.csv" in out.out
+    assert cli.main(["predict", "--data", str(short), str(short)]) == 2
+    assert "short.csv: no window of 8 observed and 12 predicted rows was found" in capsys.readouterr().err

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, number, print_json, print_table, progress
-from .recordings import add_file_options, columns, transform, value_for
+from .recordings import add_file_options, recording
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
@@ -47,7 +47,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--steady", nargs=2, type=float, metavar=("FIRST", "LAST"), help="reference of the steady state in seconds"
         " (default: none)")  # fmt: skip
     add("--dt", type=float, default=0.1, metavar="SECONDS", help="time step of people of a trial (default: 0.1)")
-    add_file_options(parser)
+    add_file_options(parser, agents="all")
     add("--seed", type=int, default=0, metavar="N", help="seed of shuffles and intervals (default: 0)")
     add("--trust", action="store_true", help="allow code outside the folder of a trial")
     add("--out", type=Path, metavar="DIR", help="folder for tables (CSV), measurements.json and plots (default: none)")
@@ -111,14 +111,9 @@ def _corners(option: str, values: Sequence[float]) -> list[tuple[float, float]]:
 
 def _tracks(source: str, options: argparse.Namespace, report: Progress) -> list[Trajectories]:
     """Return the recording of a file, or one for each run of a trial."""
-    from crowdbot.data import load
-
     path = Path(source)
-    if path.suffix.lower() != ".xml" and path.is_file():
-        fps, units = value_for(path, options.fps), value_for(path, options.units)
-        return [
-            load(path, fps, options.format, units, columns=dict(columns(options)), transform=transform(options, path))
-        ]
+    if path.suffix.lower() != ".xml" and path.exists():
+        return [recording(options, path).original]
     return _run(source, options, report)
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .output import note
-from .recordings import add_agents, add_file_options, add_time_base, check_parts, recording
+from .recordings import add_file_options, check_parts, value_for
 from .settings import add_settings, settings
 from .templates import (
     CLASSES,
@@ -24,12 +24,9 @@ from .templates.maker_file import add_robot_options, convert_robot, is_robot_fil
 from .templates.people_files import add_body_options, write_body_file, write_clip_file
 
 if TYPE_CHECKING:
-    from crowdbot.data import Recording
     from crowdbot.trials import Trial
 
 KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "clip", "body", "schema")
-TRIAL_UNITS = ("m", "cm", "mm", "px")
-"""Units that the recording of a trial can have."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -76,9 +73,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot_options(parser)
     add_body_options(parser)
     group = parser.add_argument_group("trial from a recording")
-    add_file_options(group)
-    add_time_base(group)
-    add_agents(group, default="all")
+    add_file_options(group, agents="all")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
     group.add_argument("--replace", type=int, metavar="ID", help="id of the person that the robot replaces")
 
@@ -165,65 +160,53 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     from crowdbot.trials import recorded_trial
 
     check_parts(options, [options.recorded])
-    read = recording(options, options.recorded)
-    direct = not read.columns and read.transform is None and read.agents == "all" and read.time_base == "true"
-    rest: dict[str, Any] = {
-        "mode": "reactive" if options.reactive else "scripted",
-        "replace": options.replace,
-        "name": options.file.stem,
-    }
-    if direct and read.units in (None, *TRIAL_UNITS):
-        trial = recorded_trial(options.recorded, fps=read.fps, format=read.format or "", units=read.units or "", **rest)
-        _copy_beside(options)
-    else:
-        file = _written_tracks(read, options)
-        try:
-            trial = recorded_trial(file, **rest)
-        except InputError:
-            file.unlink()
-            raise
+    if options.scale is not None and options.homography is not None:
+        raise InputError("--scale and --homography are given; coordinates have one scale")
+    values = {name: value_for(options.recorded, getattr(options, name)) for name in ("fps", "units", "scale")}
+    values |= {name: getattr(options, name) for name in ("format", "topic", "frame", "time_base", "agents")}
+    values |= {"columns": " ".join(options.columns), "homography": options.homography and options.homography.name}
+    files = [file for file in (options.recorded, options.homography) if file is not None]
+    copied = [copy for file in files if (copy := _copy_beside(options, file)) is not None]
+    try:
+        trial = recorded_trial(
+            options.file.parent / options.recorded.name,
+            mode="reactive" if options.reactive else "scripted",
+            replace=options.replace,
+            name=options.file.stem,
+            **{name: value for name, value in values.items() if value is not None},
+        )
+    except InputError:
+        for copy in copied:
+            copy.unlink()
+        raise
+    for copy in copied:
+        note(f"copied {copy.name} to the folder of the trial, since a trial reads only files in its folder")
     for sentence in (sentence for one in trial.recorded for sentence in one.remarks()):
         note(sentence)
     return trial
 
 
-def _written_tracks(read: Recording, options: argparse.Namespace) -> Path:
-    """Write the tracks as they are understood to a file beside the trial, and return it.
-
-    A trial has no attributes for columns, scales and labels: its recording has the usual columns, in metres.
-    """
-    from crowdbot.core import InputError
-    from crowdbot.data import save
-
-    file: Path = options.file.with_name(f"{options.file.stem}-people.csv")
-    if file.exists() and not options.force:
-        raise InputError(f"{file} already exists; use another name of the trial, or --force to replace it")
-    if file.resolve() == options.recorded.resolve():
-        raise InputError(f"{file} is the recording, which is not replaced; use another name of the trial")
-    save(read.tracks, file)
-    note(f"wrote {file}: the people of {options.recorded.name}, as they were read, in {read.tracks.units}")
-    return file
-
-
-def _copy_beside(options: argparse.Namespace) -> None:
-    """Copy the recording to the folder of the trial, unless it is there."""
+def _copy_beside(options: argparse.Namespace, file: Path) -> Path | None:
+    """Copy a file to the folder of the trial and return the copy; None if it is there."""
     from crowdbot.core import InputError, explain_write_errors
 
-    beside = options.file.parent / options.recorded.name
-    if beside.resolve() == options.recorded.resolve():
-        return
+    if not file.is_file():
+        raise InputError(f"there is no file {file.name!r} in {file.parent}")
+    beside: Path = options.file.parent / file.name
+    if beside.resolve() == file.resolve():
+        return None
     if beside.exists():
-        if beside.read_bytes() != options.recorded.read_bytes():
+        if beside.read_bytes() != file.read_bytes():
             raise InputError(f"{beside} exists with a different content; write the trial to another folder")
-        return
-    data = options.recorded.read_bytes()
+        return None
+    data = file.read_bytes()
     try:
         with explain_write_errors(beside):
             beside.write_bytes(data)
     except InputError:
         beside.unlink(missing_ok=True)
         raise
-    note(f"copied {options.recorded.name} to the folder of the trial, since a trial reads only files in its folder")
+    return beside
 
 
 def _import_trials(options: argparse.Namespace) -> None:

@@ -86,7 +86,7 @@ def main(options: argparse.Namespace) -> int:
         return predict_perception(options)
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
-    found = recordings(options)
+    found = _with_windows(recordings(options))
     evaluation = Evaluation(
         found,
         (*predictor_specs(options), *_stored(options, found)),
@@ -121,6 +121,22 @@ def main(options: argparse.Namespace) -> int:
         note(sentence)
     _tables(options, evaluation, results)
     return 0
+
+
+def _with_windows(found: Sequence[Recording]) -> tuple[Recording, ...]:
+    """Return the recordings that have windows; a note names the others.
+
+    Raises:
+        NoWindowError: none has one.
+    """
+    from crowdbot.prediction import recordings_with_windows
+
+    if len(found) == 1:
+        return tuple(found)  # the evaluation says why there is no window
+    kept, left = recordings_with_windows(found)
+    for recording in left:
+        note(f"{recording.name} is left out: it has no window; see --observe, --predict and --step")
+    return tuple(kept)
 
 
 def _stored(options: argparse.Namespace, found: Sequence[Recording]) -> list[PredictorSpec]:

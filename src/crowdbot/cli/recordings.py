@@ -13,12 +13,9 @@ if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
 __all__ = [
-    "add_agents",
     "add_file_options",
     "add_recordings",
-    "add_time_base",
     "check_parts",
-    "columns",
     "horizon",
     "print_notes",
     "recording",
@@ -29,6 +26,10 @@ __all__ = [
 
 WINDOW_OPTIONS = ("step", "observe", "predict", "protocol", "near", "late", "learn", "every")
 """Options that are fields of :class:`crowdbot.data.Recording` of the same name."""
+PER_FILE = (
+    "; 10 frames per row at 25 Hz are 0.4 s. PART=FRAMES is for files with PART in their path; repeatable, the last"
+    " that fits counts"
+)
 
 
 def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
@@ -50,7 +51,6 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         help="maximum distance of scored people from a recorded robot (default: none)",
     )
     add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
-    add_time_base(parser)
     add_file_options(parser)
     _add_stage(parser)
     add(
@@ -63,28 +63,7 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         "--learn", type=float, default=0.0, metavar="SHARE",
         help="initial share of each recording for learning goals; only the rest is predicted (default: 0)",
     )  # fmt: skip
-    add_agents(parser)
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
-
-
-def add_time_base(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
-    """Add the option for the two time bases of the ETH recording."""
-    parser.add_argument(
-        "--time-base",
-        default="true",
-        metavar="NAME",
-        help="time base of the ETH recording: true or published (default: true)",
-    )
-
-
-def add_agents(parser: argparse.ArgumentParser | argparse._ArgumentGroup, default: str = "pedestrians") -> None:
-    """Add the option for the tracks that are read by their labels."""
-    parser.add_argument(
-        "--agents",
-        default=default,
-        metavar="NAME",
-        help=f"who is read where the file has labels: pedestrians, or all with cyclists and cars (default: {default})",
-    )
 
 
 def _add_stage(parser: argparse.ArgumentParser) -> None:
@@ -96,45 +75,29 @@ def _add_stage(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
-    """Add the options for the content of a file: format, frame rate, units, columns, and the scale of pixels.
+def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup, agents: str = "pedestrians") -> None:
+    """Add the options for the content of a file, see :data:`crowdbot.data.FILE_OPTIONS`.
 
     Frame rate, units and scale may differ between the files of a command, see :func:`value_for`.
+
+    Args:
+        parser: parser of the command.
+        agents: default of ``--agents``.
     """
-    add = parser.add_argument
-    add(
-        "--fps",
-        type=_per_file(float),
-        action="append",
-        metavar="FRAMES",
-        help="frame rate of the frame column in Hz (default: from the file); 10 frames per row at 25 Hz are 0.4 s."
-        " PART=FRAMES is for files with PART in their path; repeatable, the last that fits counts",
-    )
-    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
-    add(
-        "--units",
-        type=_per_file(str),
-        action="append",
-        metavar="NAME",
-        help="units of the coordinates: m, cm, mm, ft, px, or deg for longitude and latitude (default: from the file);"
-        " PART=NAME as for --fps",
-    )
-    add(
-        "--columns",
-        nargs="+",
-        default=[],
-        metavar="NAME=COLUMN",
-        help="columns of a CSV or Parquet file: id, frame, time (time_ms, time_us, time_ns), x, y,"
-        " label (default: by their usual names)",
-    )
-    add(
-        "--scale",
-        type=_per_file(float),
-        action="append",
-        metavar="METRES",
-        help="metres per pixel of coordinates in pixels (default: none); PART=METRES as for --fps",
-    )
-    add("--homography", type=Path, metavar="FILE", help="text file with the 3 x 3 matrix from pixels to metres")
+    from crowdbot.data import FILE_OPTIONS
+
+    for name, option in FILE_OPTIONS.items():
+        text = f"{option.about} (default: {option.default or agents})"
+        kind = float if option.number else Path if option.metavar == "FILE" else str
+        given: dict[str, Any] = {"metavar": option.metavar, "type": kind}
+        if option.per_file:
+            given |= {"type": _per_file(kind), "action": "append"}
+            text += PER_FILE if name == "fps" else f"; PART={option.metavar} as for --fps"
+        elif name == "columns":
+            given |= {"nargs": "+", "default": []}
+        elif name in ("time_base", "agents"):
+            given |= {"default": option.default or agents}
+        parser.add_argument(f"--{name.replace('_', '-')}", help=text, **given)
 
 
 def _per_file(kind: Callable[[str], Any]) -> Callable[[str], tuple[str, Any]]:
@@ -169,19 +132,6 @@ def check_parts(options: argparse.Namespace, paths: Sequence[Path]) -> None:
                 raise InputError(f"--{name} {part}={value}: no recording has {part!r} in its path")
 
 
-def columns(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
-    """Return the columns of the options as pairs of a quantity and a name."""
-    from crowdbot.core import InputError
-
-    pairs = []
-    for word in options.columns:
-        quantity, sign, column = word.partition("=")
-        if not sign or not column:
-            raise InputError(f"--columns {word}: write NAME=COLUMN, such as id=pedestrian")
-        pairs.append((quantity, column))
-    return tuple(pairs)
-
-
 def transform(options: argparse.Namespace, path: Path) -> float | tuple[tuple[float, ...], ...] | None:
     """Return metres per pixel or a homography of a file, or None."""
     from crowdbot.core import InputError
@@ -195,10 +145,10 @@ def transform(options: argparse.Namespace, path: Path) -> float | tuple[tuple[fl
 
 
 def recording(options: argparse.Namespace, path: Path, **windows: Any) -> Recording:
-    """Return one file with the options of :func:`add_file_options`, the time base and the agents; ``windows`` are
-    other fields of :class:`crowdbot.data.Recording`.
+    """Return one file with the options of :func:`add_file_options`; ``windows`` are other fields of
+    :class:`crowdbot.data.Recording`.
     """
-    from crowdbot.data import Recording
+    from crowdbot.data import Recording, parse_columns
 
     return Recording(
         str(path),
@@ -206,8 +156,10 @@ def recording(options: argparse.Namespace, path: Path, **windows: Any) -> Record
         format=options.format,
         units=value_for(path, options.units),
         time_base=options.time_base,
-        columns=columns(options),
+        columns=parse_columns(options.columns),
         transform=transform(options, path),
+        topic=options.topic,
+        frame=options.frame,
         agents=options.agents,
         **windows,
     )

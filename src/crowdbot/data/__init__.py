@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .degrade import Degradation, DegradedTracks
     from .example import example_windows
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
+    from .file_options import FILE_OPTIONS, FileOption, parse_columns, split_columns
     from .forecast import Forecast
     from .forecast_files import check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
@@ -36,6 +37,7 @@ __getattr__, __dir__ = lazy_exports(
         "degrade": ["Degradation", "DegradedTracks"],
         "example": ["example_windows"],
         "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
+        "file_options": ["FILE_OPTIONS", "FileOption", "parse_columns", "split_columns"],
         "forecast": ["Forecast"],
         "forecast_files": ["check_forecast_suffix", "read_forecasts", "write_forecasts"],
         "homography": ["read_homography"],
@@ -56,6 +58,7 @@ __getattr__, __dir__ = lazy_exports(
 )
 
 __all__ = [
+    "FILE_OPTIONS",
     "FORMATS",
     "MCAP_MAGIC",
     "PROTOCOLS",
@@ -64,6 +67,7 @@ __all__ = [
     "UCY_TO_METRES",
     "Degradation",
     "DegradedTracks",
+    "FileOption",
     "Forecast",
     "McapError",
     "McapOpcode",
@@ -82,6 +86,7 @@ __all__ = [
     "has_summary",
     "load",
     "observed_velocity",
+    "parse_columns",
     "primary_windows",
     "read_attachment",
     "read_forecasts",
@@ -90,6 +95,7 @@ __all__ = [
     "save",
     "scenes_of_category",
     "slice_rows",
+    "split_columns",
     "steady_velocity",
     "walkable_rings",
     "write_forecasts",

@@ -11,15 +11,16 @@ from numpy.typing import ArrayLike
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from .readers import (
-    episode,
+    boxes,
     eth,
     ind,
     jrdb,
     juelich,
     lcas,
     petrack,
-    sdd,
+    pixel_tracks,
     sgan,
+    simulators,
     socialways,
     tables,
     thor_magni,
@@ -29,8 +30,10 @@ from .readers import (
 )
 from .readers.assemble import check_units
 from .readers.columns import check_quantities
+from .readers.folder import bag_file, read_folder
 from .readers.plausibility import check_walkers
 from .readers.reader import Reader, ReadOptions
+from .readers.ros import episode
 from .readers.time_base import check_fps
 from .source import Source
 from .trajectories import Trajectories
@@ -39,6 +42,8 @@ __all__ = ["FORMATS", "TIME_BASES", "detect_format", "load"]
 
 _READERS: tuple[Reader, ...] = (
     episode.READER,
+    episode.SQLITE,
+    episode.ROS1,
     tables.PARQUET,
     juelich.HDF5,
     juelich.SQLITE,
@@ -49,7 +54,15 @@ _READERS: tuple[Reader, ...] = (
     trajnetpp.READER,
     ucy.READER,
     lcas.READER,
-    sdd.READER,
+    tables.ATC,
+    boxes.SDD,
+    boxes.KITTI,
+    boxes.MOT,
+    simulators.VADERE,
+    simulators.VISWALK,
+    pixel_tracks.EDINBURGH,
+    pixel_tracks.GRAND_CENTRAL,
+    pixel_tracks.FOUR_ROWS,
     petrack.READER,
     eth.READER,
     sgan.READER,
@@ -57,7 +70,8 @@ _READERS: tuple[Reader, ...] = (
     tables.CSV,
 )
 
-TABLES = (tables.CSV, tables.PARQUET)
+BAGS = (episode.READER, episode.SQLITE, episode.ROS1)
+TABLES = (tables.CSV, tables.PARQUET, tables.ATC)
 
 FORMATS = {reader.name: reader.about for reader in _READERS}
 """Supported formats, each with a line of description."""
@@ -76,11 +90,14 @@ def load(
     time_base: str = "true",
     columns: Mapping[str, str] | None = None,
     transform: ArrayLike | None = None,
+    topic: str | None = None,
+    frame: str | None = None,
 ) -> Trajectories:
     """Load a recording of people.
 
     Args:
-        path: the file; the format is detected from its content, not its name.
+        path: the file; the format is detected from its content, not its name. A text may be packed by gzip. A folder is
+            a ROS 2 bag, or tables of one person each.
         fps: frames per second of the frame counter [1/s] (default: from the file or its convention). Rows of a track
             are ``frame_step`` frames apart, so the time step is ``frame_step / fps``: the ETH/UCY text files have a
             step of 10 frames at ``fps=25``, which is 0.4 s. Without a frame column, or where frames number the rows
@@ -90,10 +107,13 @@ def load(
             latitude (default: from the file).
         time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong time step.
         columns: columns of a CSV or Parquet file by quantity (``id``, ``frame``, ``time``, ``x``, ``y``, ``label``),
-            for names that are not found: ``{"id": "who", "x": "east"}``. Times that are not in seconds are
-            ``time_ms``, ``time_us`` or ``time_ns``.
+            for names that are not found: ``{"id": "who", "x": "east"}``; numbers count columns from 1, for tables
+            without names. Times that are not in seconds are ``time_ms``, ``time_us`` or ``time_ns``.
         transform: metres per pixel, or a homography ``[3, 3]`` from (x, y, 1) of the file to metres. The coordinates
             of the file are pixels then.
+        topic: topic of people of a ROS bag (default: ``/people``, or the only topic of people).
+        frame: coordinate frame of the tracks of a ROS bag, such as ``map`` (default: the frame of the people if it is
+            fixed, else the root of the transforms above it).
 
     Raises:
         InputError: an argument is not allowed.
@@ -116,13 +136,27 @@ def load(
     if transform is not None and units not in (None, "px"):
         raise InputError(f"units {units!r} and a transform are given; a transform is from pixels to metres")
     units = units if transform is None else "px"
-    options = ReadOptions(None if fps is None else check_fps(fps), units, time_base, columns or {})
-    source = Source.of(Path(path))
+    options = ReadOptions(None if fps is None else check_fps(fps), units, time_base, columns or {}, topic, frame)
+    path = Path(path)
+    if path.is_dir():
+        bag = bag_file(path)
+        if bag is None:
+            if format or topic or frame:
+                raise InputError(f"{path} is a folder of files, which has no format, topic or frame; leave them out")
+            return _finish(read_folder(path, options), transform, options)
+        path = bag
+    source = Source.of(path)
     reader = next((reader for reader in _READERS if reader.name == format), None)
     reader = reader or (_table(source) if columns else _detect(source))
     if columns and reader not in TABLES:
         raise InputError(f"columns are given, but the format {reader.name} has none; they need a CSV or Parquet file")
-    tracks = reader.read(source, options)
+    if (topic or frame) and reader not in BAGS:
+        raise InputError(f"a topic or a frame is given, but the format {reader.name} has none; they need a ROS bag")
+    return _finish(reader.read(source, options), transform, options)
+
+
+def _finish(tracks: Trajectories, transform: ArrayLike | None, options: ReadOptions) -> Trajectories:
+    """Return the tracks in metres if a transform is given."""
     return tracks if transform is None else check_walkers(tracks.metres(transform), options)
 
 
@@ -153,4 +187,8 @@ def _detect(source: Source) -> Reader:
             return reader
     kind = {"binary": "is binary and", "zip": "is a zip and"}.get(source.kind, "is text and")
     first = f" (it starts with {source.lines[0].strip()[:40]!r})" if source.lines else ""
-    raise DataError(f"{source.path} {kind} of an unknown format{first}; formats are {', '.join(FORMATS)}")
+    hint = "a table without names needs numbers of columns, such as --columns time=1 id=2 x=3 y=4; "
+    numbers = bool(source.rows) and source.numeric(len(source.rows[0]))
+    raise DataError(
+        f"{source.path} {kind} of an unknown format{first}; {hint if numbers else ''}formats are {', '.join(FORMATS)}"
+    )

@@ -37,6 +37,7 @@ class Recording:
         layout: walls and exits of the place, instead of the walls of the file.
         agents: ``pedestrians`` leaves out the cyclists, cars and others that the labels of a file name; ``all`` keeps
             them.
+        topic, frame: topic of people and coordinate frame of a ROS bag, see :func:`crowdbot.load`.
 
     Raises:
         InputError: ``learn`` is not in [0, 1), ``every`` is below 1, or ``agents`` is unknown.
@@ -59,6 +60,8 @@ class Recording:
     transform: float | tuple[tuple[float, ...], ...] | None = None
     layout: PlaceLayout | None = None
     agents: str = "pedestrians"
+    topic: str | None = None
+    frame: str | None = None
 
     def __post_init__(self) -> None:
         if self.step is not None and not self.step > 0.0:
@@ -70,6 +73,25 @@ class Recording:
             raise InputError(f"every = {self.every} must be at least 1")
         if not 0.0 <= self.learn < 1.0:
             raise InputError(f"learn = {self.learn} must be at least 0 and below 1")
+
+    @property
+    def original(self) -> Trajectories:
+        """The whole recording at the time step of the file, in metres if its scale is known."""
+        columns = dict(self.columns)
+        tracks = load(
+            self.path,
+            self.fps,
+            self.format,
+            self.units,
+            self.time_base,
+            columns,
+            self.transform,
+            self.topic,
+            self.frame,
+        )
+        if self.agents == "pedestrians":
+            tracks = tracks.without_other_agents()
+        return tracks.metres() if tracks.units == "px" and tracks.homography is not None else tracks
 
     @property
     def tracks(self) -> Trajectories:
@@ -100,9 +122,11 @@ class Recording:
         """Hash of the content of the file."""
         found = hashlib.blake2b(digest_size=8)
         try:
-            with Path(self.path).open("rb") as file:
-                while block := file.read(1 << 20):
-                    found.update(block)
+            path = Path(self.path)
+            for part in sorted(path.iterdir()) if path.is_dir() else (path,):
+                with part.open("rb") as file:
+                    while block := file.read(1 << 20):
+                        found.update(block)
         except OSError as error:
             raise DataError(f"{self.path} cannot be read: {error.strerror}") from None
         return found.hexdigest()
@@ -116,11 +140,7 @@ class Recording:
 @functools.lru_cache(maxsize=4)
 def _tracks(recording: Recording) -> Trajectories:
     one = recording
-    tracks = load(one.path, one.fps, one.format, one.units, one.time_base, dict(one.columns), one.transform)
-    if one.agents == "pedestrians":
-        tracks = tracks.without_other_agents()
-    if tracks.units == "px" and tracks.homography is not None:
-        tracks = tracks.metres()
+    tracks = recording.original
     if one.layout is not None:
         if tracks.units != "m":
             raise InputError(f"{one.path} is in pixels, and a layout in metres; give metres per pixel or a homography")

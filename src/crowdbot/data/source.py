@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import gzip
 import re
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,9 +20,12 @@ __all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "parse_errors"]
 
 MAX_BYTES = 2 * 1024**3
 """Largest file [bytes]."""
+MAX_UNPACKED = 512 * 1024**2
+"""Largest text in a gzip file [bytes]."""
 MAX_ROWS = 20_000_000
 """Largest number of rows of a table, compressed or not."""
 HEAD = 64 * 1024
+GZIP = b"\x1f\x8b"
 
 MAGIC = {
     b"\x89HDF\r\n\x1a\n": "hdf5",
@@ -28,15 +33,18 @@ MAGIC = {
     b"PAR1": "parquet",
     b"\x89MCAP0\r\n": "mcap",
     b"PK\x03\x04": "zip",
+    b"#ROSBAG V": "rosbag",
 }
 
 
 @dataclass(frozen=True)
 class Source:
-    """An existing, non-empty file of at most 2 GiB."""
+    """An existing, non-empty file of at most 2 GiB; a text may be packed by gzip."""
 
     path: Path
     head: bytes
+    packed: bool = False
+    """Whether the file is gzip of a text; ``head`` and :meth:`text` are unpacked."""
 
     @classmethod
     def of(cls, path: Path) -> Source:
@@ -46,7 +54,7 @@ class Source:
             DataError: it is missing, a folder, empty, larger than 2 GiB, or cannot be read.
         """
         if path.is_dir():
-            raise DataError(f"{path} is a folder, not a recording; name one file in it")
+            raise DataError(f"{path} is a folder, not a file; name one file in it")
         try:
             size = path.stat().st_size
             if size > MAX_BYTES:
@@ -57,9 +65,15 @@ class Source:
             raise DataError(f"there is no file {path}") from None
         except (OSError, ValueError) as error:
             raise DataError(f"{path} cannot be read: {error}") from None
+        packed = head.startswith(GZIP)
+        if packed:
+            head = _unpack(path, HEAD)
         if not head.strip():
             raise DataError(f"{path} is empty")
-        return cls(path, head)
+        source = cls(path, head, packed)
+        if packed and source.kind != "text":
+            raise DataError(f"{path} is gzip of {source.kind}; only texts are read from gzip, unpack it first")
+        return source
 
     @property
     def name(self) -> str:
@@ -68,7 +82,7 @@ class Source:
 
     @cached_property
     def kind(self) -> str:
-        """``hdf5``, ``sqlite``, ``parquet``, ``mcap``, ``zip``, ``text`` or ``binary``, from the first bytes."""
+        """``hdf5``, ``sqlite``, ``parquet``, ``mcap``, ``rosbag``, ``zip``, ``text`` or ``binary``."""
         for magic, kind in MAGIC.items():
             if self.head.startswith(magic):
                 return kind
@@ -98,7 +112,9 @@ class Source:
 
     def text(self) -> str:
         """Return the whole text."""
-        data = self.path.read_bytes()
+        data = _unpack(self.path, MAX_UNPACKED + 1) if self.packed else self.path.read_bytes()
+        if self.packed and len(data) > MAX_UNPACKED:
+            raise DataError(f"{self.path} unpacks to more than {MAX_UNPACKED} bytes; unpack it and split it in time")
         if b"\x00" in data:
             raise DataError(f"{self.path} has binary bytes after text; the file is damaged")
         return _decode(data)
@@ -149,6 +165,15 @@ def _describe_first_error(name: str, lines: list[str], line: NDArray[np.int64], 
         if bad is not None:
             return f"{name} line {number}: {bad[:40]!r} is not a number"
     return f"{name} does not hold {columns} columns of numbers"
+
+
+def _unpack(path: Path, most: int) -> bytes:
+    """Return the first bytes of a gzip file, unpacked."""
+    try:
+        with gzip.open(path) as file:
+            return file.read(most)
+    except (OSError, EOFError, zlib.error) as error:
+        raise DataError(f"{path} cannot be read as gzip, it is truncated or damaged: {error}") from None
 
 
 def _decode(data: bytes) -> str:

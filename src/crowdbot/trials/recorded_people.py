@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.data import FILE_OPTIONS, parse_columns, split_columns
 
 from .distribution import Distribution
 from .fields import FieldProblem, attribute, check, quote_value
@@ -22,7 +23,7 @@ from .files.trial_files import resolve_file
 from .people import BODY_RADIUS
 
 if TYPE_CHECKING:
-    from crowdbot.data import Trajectories
+    from crowdbot.data import Recording, Trajectories
 
 __all__ = ["RecordedPeople", "Walk"]
 
@@ -56,18 +57,16 @@ class RecordedPeople:
 
     name: str = attribute("", about="name for messages")
     data: str = attribute(about="recording file in the folder of the trial", pattern=r"[^\x00]{1,500}")
-    fps: float | None = attribute(
-        None, about="frame rate of the recording (default: from the file)", unit="1/s", exclusive_min=0.0
-    )
-    format: str = attribute("", about="file format (default: detected automatically)")
-    units: str = attribute(
-        "", about="length unit of the file (default: from the file)", choices=("", "m", "cm", "mm", "px")
-    )
-    time_base: str = attribute(
-        "true",
-        about="time base of the published ETH text file, whose frame rate is wrong",
-        choices=("true", "published"),
-    )
+    fps: float | None = attribute(None, about=FILE_OPTIONS["fps"].about, unit="1/s", exclusive_min=0.0)
+    format: str = attribute("", about=FILE_OPTIONS["format"].about)
+    units: str = attribute("", about=FILE_OPTIONS["units"].about, choices=("", "m", "cm", "mm", "ft", "px", "deg"))
+    columns: str = attribute("", about=f"{FILE_OPTIONS['columns'].about}, such as id=who x=east")
+    scale: float | None = attribute(None, about=FILE_OPTIONS["scale"].about, unit="m", exclusive_min=0.0)
+    homography: str = attribute("", about=f"{FILE_OPTIONS['homography'].about}, in the folder of the trial")
+    topic: str = attribute("", about=FILE_OPTIONS["topic"].about)
+    frame: str = attribute("", about=FILE_OPTIONS["frame"].about)
+    time_base: str = attribute("true", about=FILE_OPTIONS["time_base"].about, choices=("true", "published"))
+    agents: str = attribute("all", about=FILE_OPTIONS["agents"].about, choices=("all", "pedestrians"))
     mode: str = attribute("scripted", about="whether people react to robots", choices=("scripted", "reactive"))
     reaction_distance: float = attribute(
         5.0, about="distance to a robot below which people react", unit="m", exclusive_min=0.0, max=1000.0
@@ -83,6 +82,9 @@ class RecordedPeople:
     def __post_init__(self) -> None:
         check(self)
         self.excluded_ids()
+        parse_columns(split_columns(self.columns))
+        if self.scale is not None and self.homography:
+            raise InputError("scale and homography are given; coordinates have one scale")
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
@@ -92,6 +94,12 @@ class RecordedPeople:
             _ids(values.get("exclude", ""))
         except InputError as error:
             found.append((("exclude",), str(error)))
+        try:
+            parse_columns(split_columns(values.get("columns", "")))
+        except InputError as error:
+            found.append((("columns",), str(error)))
+        if values.get("scale") is not None and values.get("homography"):
+            found.append((("scale", "homography"), "scale and homography are given; coordinates have one scale"))
         try:
             if "data" in values:
                 resolve_file(values["data"], values["folder"], values["trust"])
@@ -112,8 +120,33 @@ class RecordedPeople:
         """
         path = resolve_file(self.data, self.folder, self.trust)
         stamp = path.stat()
-        options = (self.fps, self.format or None, self.units or None, self.time_base)
-        return _load(path, stamp.st_mtime_ns, stamp.st_size, *options)
+        return _load(self.recording(path), stamp.st_mtime_ns, stamp.st_size)
+
+    def recording(self, path: Path) -> Recording:
+        """Return a file with the options of the element.
+
+        Raises:
+            InputError: there is no homography file in the folder of the trial.
+            DataError: it has no homography.
+        """
+        from crowdbot.data import Recording, read_homography
+
+        transform: Any = self.scale
+        if self.homography:
+            matrix = read_homography(resolve_file(self.homography, self.folder, self.trust))
+            transform = tuple(map(tuple, matrix.tolist()))
+        return Recording(
+            str(path),
+            fps=self.fps,
+            format=self.format or None,
+            units=self.units or None,
+            time_base=self.time_base,
+            columns=parse_columns(split_columns(self.columns)),
+            transform=transform,
+            agents=self.agents,
+            topic=self.topic or None,
+            frame=self.frame or None,
+        )
 
     def remarks(self) -> list[str]:
         """Return why the file can hardly have the units or the columns that it is read with.
@@ -155,15 +188,16 @@ def _ids(without: str) -> frozenset[int]:
 
 
 @functools.lru_cache(maxsize=4)
-def _load(
-    path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None, time_base: str
-) -> Trajectories:
+def _load(recording: Recording, changed: int, size: int) -> Trajectories:
     """Return a recording, which is read again only if its file has changed."""
-    from crowdbot.data import RowRateError, load
+    from crowdbot.data import RowRateError
 
     try:
-        tracks = load(path, fps=fps, format=format, units=units, time_base=time_base)
+        tracks = recording.original
     except RowRateError as error:  # in older trial files fps was rows per second
-        warnings.warn(f'{path.name}: fps="{fps:g}" is read as rows per second; write fps="{error.fps:g}"', stacklevel=1)
-        tracks = load(path, fps=error.fps, format=format, units=units, time_base=time_base)
-    return tracks if tracks.units == "m" and tracks.homography is None else tracks.metres()
+        warnings.warn(
+            f'{recording.name}: fps="{recording.fps:g}" is read as rows per second; write fps="{error.fps:g}"',
+            stacklevel=1,
+        )
+        tracks = dataclasses.replace(recording, fps=error.fps).original
+    return tracks if tracks.units == "m" else tracks.metres()

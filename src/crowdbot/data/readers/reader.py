@@ -21,12 +21,16 @@ class ReadOptions:
         units: units of the coordinates in the file: ``m``, ``cm``, ``mm``, ``ft`` or ``px``.
         time_base: ``true`` or ``published``.
         columns: columns of a table by quantity, ``id``, ``frame``, ``time``, ``x``, ``y`` or ``label``.
+        topic: topic of people of a bag.
+        frame: coordinate frame of the tracks of a bag.
     """
 
     fps: float | None = None
     units: str | None = None
     time_base: str = "true"
     columns: Mapping[str, str] = field(default_factory=dict)
+    topic: str | None = None
+    frame: str | None = None
 
 
 class Reader(NamedTuple):

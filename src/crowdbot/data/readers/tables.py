@@ -1,14 +1,22 @@
-"""CSV and Parquet with named columns."""
+"""CSV and Parquet with named columns; CSV without names, whose columns are numbered; and folders of tables.
+
+A table without names has the columns 1, 2, 3, ... A second line of units (``"s","","m","m"``, as in Pathfinder) gives
+the units. A table without a column of ids is one person if its times ascend; a folder of such tables is one recording.
+"""
 
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
 import json
 import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data.rows import integers
@@ -32,11 +40,17 @@ from .columns import (
 from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
-__all__ = ["CSV", "PARQUET", "ROBOT"]
+__all__ = ["ATC", "CSV", "PARQUET", "ROBOT", "read_persons"]
 
 ROBOT = "robot"
 """Tracks with this label are robots."""
 DELIMITERS = ",;\t"
+ROW_UNITS = ("m", "cm", "mm", "ft")
+OWN_ID = "id of the file"
+"""Column that is added to tables of one person."""
+ONE_PERSON = "no column of ids and ascending times: all rows are of one person"
+LAST_NUMBER = re.compile(r"\d{1,15}(?=\D*$)")
+ATC_COLUMNS = {"time": "1", "id": "2", "x": "3", "y": "4"}
 NAME = re.compile(r"^[A-Za-z_][\w .:/()\[\]-]*$")
 
 
@@ -53,7 +67,15 @@ def sniff_csv(source: Source) -> bool:
 
 
 def read_csv(source: Source, options: ReadOptions) -> Trajectories:
-    """Read a table with a line of names; delimiters are commas, semicolons, tabs or blanks, "#" begins a comment."""
+    """Read a table with or without a line of names; delimiters are commas, semicolons, tabs or blanks, "#" begins a
+    comment.
+    """
+    columns, units, line = _csv_columns(source)
+    return _tracks(source, options, columns, {"units": units} if units else {}, line)
+
+
+def _csv_columns(source: Source) -> tuple[Columns, str, NDArray[np.int64]]:
+    """Return the columns of a text by name, the unit of x and y if a line of units names it, and the lines of rows."""
     head = _data_lines(source)
     if not head:
         raise DataError(f"{source.name} is not a text with a line of column names")
@@ -70,14 +92,85 @@ def read_csv(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(f"{source.name} line {reader.line_num} cannot be read as a table: {error}") from None
     if not rows:
         raise DataError(f"{source.name} has no line of column names")
-    names = [name.strip() for name in rows.pop(0)]
-    wrong = next((index for index, row in enumerate(rows) if len(row) != len(names)), None)
+    if all(map(_is_number, rows[0])):
+        names, first = [str(number) for number in range(1, len(rows[0]) + 1)], 0
+    else:
+        names, first = [name.strip() for name in rows[0]], 1
+    wrong = next((index for index in range(first, len(rows)) if len(rows[index]) != len(names)), None)
     if wrong is not None:
-        place = f"{source.name} line {lines[wrong + 1]}"
-        raise DataError(f"{place} has {len(rows[wrong])} columns, the line of names has {len(names)}")
-    cells = zip(*rows, strict=True) if rows else [()] * len(names)
+        other = "the line of names" if first else "the first line"
+        raise DataError(f"{source.name} line {lines[wrong]} has {len(rows[wrong])} columns, {other} has {len(names)}")
+    units = _units_row(names, rows[first]) if first and len(rows) > 1 else ""
+    first += bool(units)
+    cells = zip(*rows[first:], strict=True) if rows[first:] else [()] * len(names)
     columns = {name: np.asarray(column, dtype=np.str_) for name, column in zip(names, cells, strict=True)}
-    return _tracks(source, options, columns, {}, np.asarray(lines[1:], dtype=np.int64))
+    return columns, units, np.asarray(lines[first:], dtype=np.int64)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _units_row(names: list[str], row: list[str]) -> str:
+    """Return the unit of x and y if a row has units instead of numbers, else an empty text."""
+    found, _ = find_columns(names)
+    cells = {row[names.index(found[axis])].strip() for axis in "xy" if axis in found}
+    unit = cells.pop() if len(cells) == 1 else ""
+    return unit if unit in ROW_UNITS else ""
+
+
+def read_atc(source: Source, options: ReadOptions) -> Trajectories:
+    """Read a day of the ATC shopping center."""
+    options = dataclasses.replace(options, columns={**ATC_COLUMNS, **options.columns})
+    return _tracks(source, options, *_atc(source))
+
+
+def _atc(source: Source) -> tuple[Columns, dict[str, Any], NDArray[np.int64]]:
+    columns, _, line = _csv_columns(source)
+    return columns, {"units": "mm"}, line
+
+
+def sniff_atc(source: Source) -> bool:
+    """Return whether the first rows have eight numbers with commas, of which the last two can be angles [rad]."""
+    if not source.lines or source.lines[0].count(",") != 7 or not source.numeric(8):
+        return False
+    values = np.asarray(source.rows, dtype=np.float64)
+    whole = bool(np.all(values[:, 1] == np.rint(values[:, 1])))
+    return whole and bool(np.all(np.abs(values[:, 6:]) <= 2.0 * np.pi) and np.max(np.abs(values[:, 2:4])) > 100.0)
+
+
+def read_persons(sources: Sequence[Source], folder: Path, options: ReadOptions) -> Trajectories:
+    """Read tables of one person each as one recording; the number in the name of a file is the id, if all have one.
+
+    Raises:
+        DataError: a table cannot be read, has other columns than the first one, or has ids.
+    """
+    tables, units = list[Columns](), ""
+    for source in sources:
+        columns, units, _ = _csv_columns(source)
+        found, _ = find_columns(list(columns), _by_name(options.columns, list(columns)))
+        if "id" in found:
+            raise DataError(f"{source.name} has a column of ids, {found['id']}; give the files instead of the folder")
+        if tables and list(columns) != list(tables[0]):
+            raise DataError(
+                f"{source.name} has the columns {', '.join(columns)}, {sources[0].name} has {', '.join(tables[0])}"
+            )
+        tables.append(columns)
+    numbers = [LAST_NUMBER.search(source.path.name.partition(".")[0]) for source in sources]
+    ids = [int(number[0]) for number in numbers if number is not None]
+    if len(set(ids)) < len(sources):
+        ids = list(range(1, len(sources) + 1))
+    whole = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
+    counts = [len(next(iter(table.values()))) for table in tables]
+    whole[OWN_ID] = np.repeat(np.asarray(ids, dtype=np.int64), counts)
+    options = dataclasses.replace(options, columns={**options.columns, "id": OWN_ID})
+    tracks = _tracks(Source(folder, b"", False), options, whole, {"units": units} if units else {}, None)
+    note = f"{len(sources)} files of one person each"
+    return dataclasses.replace(tracks, note="; ".join(filter(None, (note, tracks.note))))
 
 
 def read_parquet(source: Source, options: ReadOptions) -> Trajectories:
@@ -107,7 +200,12 @@ def _words(line: str) -> list[str]:
 
 def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[str, Any], line: Lines) -> Trajectories:
     name = source.name
+    options = dataclasses.replace(options, columns=_by_name(options.columns, list(columns)))
     found, units = find_columns(list(columns), options.columns)
+    one = ""
+    if "id" not in found and "id" not in options.columns and _is_one_person(columns, found):
+        columns, one = {**columns, OWN_ID: np.ones(len(columns[found["x"]]), dtype=np.int64)}, ONE_PERSON
+        found["id"] = OWN_ID
     check_columns(found, list(columns), name, options.columns)
     known = [meaning for meaning in ("frame", "time", "x", "y", "height") if meaning in found]
     values = {meaning: numbers(columns[found[meaning]], found[meaning], name, line) for meaning in known}
@@ -126,15 +224,32 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
         frame = integers(values["frame"], found["frame"], name, line)
         rate = row_rate_of_times(id, frame, values["time"]) if "time" in found else None
         rows: dict[str, Any] = {"id": id, "frame": frame, "x": values["x"], "y": values["y"], "row_rate": rate}
-        notes = "; ".join(filter(None, (renamed, remark)))
+        notes = "; ".join(filter(None, (one, renamed, remark)))
         seconds = seconds if options.fps is None else ""
     else:
         regular = regular_rows(id, values["time"], values["x"], values["y"], options.fps, name, line)
         rows = {"id": regular.id, "frame": regular.frame, "x": regular.x, "y": regular.y, "fps": regular.fps}
         line = line if regular.id is id else None  # positions that are interpolated are on no line
-        notes = "; ".join(filter(None, (renamed, remark, regular.note)))
+        notes = "; ".join(filter(None, (one, renamed, remark, regular.note)))
     evidence = FileColumns(seconds, found.get("height", ""), values.get("height"), named=True)
     return assemble(source, options, line=line, columns=evidence, **{**rows, "note": notes, **beside, **extra})
+
+
+def _by_name(given: Mapping[str, str], names: list[str]) -> dict[str, str]:
+    """Return the columns of the user by name; a number that is no name counts columns from 1."""
+    numbered = {str(number): name for number, name in enumerate(names, 1)}
+    return {what: column if column in names else numbered.get(column, column) for what, column in given.items()}
+
+
+def _is_one_person(columns: Columns, found: dict[str, str]) -> bool:
+    """Return whether there are positions and ascending times or frames."""
+    if not {"x", "y"} <= set(found) or not {"time", "frame"} & set(found):
+        return False
+    try:
+        clock = columns[found.get("time") or found["frame"]].astype(np.float64)
+    except (ValueError, TypeError):
+        return False
+    return len(clock) > 1 and bool(np.all(np.diff(clock) > 0.0))
 
 
 def _metadata_fields(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
@@ -163,5 +278,6 @@ def _scene(extra: list[Any]) -> PrimaryScene:
     return PrimaryScene(int(id), int(person), int(first), int(last), tuple(map(int, tag)))
 
 
+ATC = Reader("atc", "ATC shopping center: time, person, x, y [mm], ... without names", sniff_atc, read_atc)
 CSV = Reader("csv", "CSV with named columns: id, frame or time, x, y", sniff_csv, read_csv)
 PARQUET = Reader("parquet", "Parquet with named columns", lambda source: source.kind == "parquet", read_parquet)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,13 +35,11 @@ AHEAD = 1.0
 def recorded_trial(
     path: str | Path,
     *,
-    fps: float | None = None,
-    format: str = "",
-    units: str = "",
     mode: str = "scripted",
     near: float = 5.0,
     replace: int | None = None,
     name: str = "",
+    **options: Any,
 ) -> Trial:
     """Return a trial with the people of a recording.
 
@@ -49,21 +48,19 @@ def recorded_trial(
 
     Args:
         path: recording. The trial refers to it by file name, so it must be in the folder of the trial file.
-        fps, format, units: as in :func:`crowdbot.load` (default: from the file).
         mode: ``scripted`` (people follow the recording) or ``reactive`` (people nearer to the robot than ``near``
             follow a model).
         near: distance to the robot below which people react [m].
         replace: id of the person that a robot replaces; it has the person's start, goal and starting time.
         name: name of the trial (default: the file name).
+        options: how the file is read, as in :class:`RecordedPeople`: ``fps``, ``format``, ``units``, ``columns``, ...
 
     Raises:
         InputError: no person has this id, or the person stands still.
         DataError: the file cannot be read.
     """
     path = Path(path)
-    crowd = RecordedPeople(
-        data=path.name, fps=fps, format=format, units=units, mode=mode, reaction_distance=near, folder=path.parent
-    )
+    crowd = RecordedPeople(data=path.name, mode=mode, reaction_distance=near, folder=path.parent, **options)
     tracks = crowd.tracks()
     step = _step(tracks)
     period = step * round(tracks.dt / step) if tracks.dt <= 0.5 else step * max(1, round(0.1 / step))
@@ -72,10 +69,7 @@ def recorded_trial(
     robots: tuple[RobotSpec, ...] = ()
     if replace is not None:
         walk = _walk_of(crowd, replace, whole)
-        crowd = RecordedPeople(
-            data=path.name, fps=fps, format=format, units=units, mode=mode, reaction_distance=near, folder=path.parent,
-            begin=float(walk.time[0]), exclude=str(replace),
-        )  # fmt: skip
+        crowd = dataclasses.replace(crowd, begin=float(walk.time[0]), exclude=str(replace))
         robots = (_robot(walk, step),)
         whole = max(whole - float(walk.time[0]), SLOWER * float(walk.time[-1] - walk.time[0]))
     return Trial(

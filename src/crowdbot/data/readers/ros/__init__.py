@@ -1,0 +1,1 @@
+"""Readers of ROS recordings: bags, their frames, and episodes."""

@@ -1,0 +1,175 @@
+"""Coordinate frames of a bag: transforms of ``/tf``, ``/tf_static`` and odometry, interpolated in time."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SECOND", "WORLD_FRAMES", "Frames", "frame_name", "stamp_of"]
+
+Floats = NDArray[np.float64]
+
+SECOND = 1_000_000_000
+WORLD_FRAMES = frozenset(("map", "odom", "odom_combined", "world", "earth"))
+"""Names of frames that do not move (REP 105), perhaps after a namespace: ``robot/odom``."""
+LONGEST_GAP = 2.0
+"""Longest time [s] between two poses that is interpolated."""
+
+
+def frame_name(name: str) -> str:
+    """Return a frame as in tf2, without the slash that tf of ROS 1 puts first."""
+    return str(name).strip().lstrip("/")
+
+
+def stamp_of(header: Any) -> int:
+    """Return the stamp of a header of ROS 2 or ROS 1 [ns]."""
+    return int(header.stamp.sec) * SECOND + int(header.stamp.nanosec)
+
+
+@dataclass
+class _Edge:
+    """Poses of a frame in its parent: stamps [ns], and x, y, z [m] with a quaternion x, y, z, w."""
+
+    parent: str
+    topic: str
+    static: bool
+    stamps: list[int] = field(default_factory=list)
+    poses: list[tuple[float, ...]] = field(default_factory=list)
+
+    @functools.cached_property
+    def table(self) -> tuple[NDArray[np.int64], Floats]:
+        """Stamps ``[P]`` in ascending order without duplicates, and poses ``[P, 7]``."""
+        stamps, first = np.unique(np.asarray(self.stamps, dtype=np.int64), return_index=True)
+        return stamps, np.asarray(self.poses, dtype=np.float64)[first]
+
+
+class Placement(NamedTuple):
+    """Rotations ``[N, 3, 3]`` and translations ``[N, 3]`` [m] from a frame to another, NaN where they are unknown."""
+
+    turn: Floats
+    shift: Floats
+
+    def apply(self, points: Floats) -> Floats:
+        """Move points ``[N, 3]``."""
+        return np.asarray(np.einsum("nij,nj->ni", self.turn, points) + self.shift)
+
+    def after(self, first: Placement) -> Placement:
+        """Return the placement that applies ``first``, then this one."""
+        return Placement(self.turn @ first.turn, self.apply(first.shift))
+
+    def inverse(self) -> Placement:
+        """Return the opposite placement."""
+        turn = np.swapaxes(self.turn, 1, 2)
+        return Placement(turn, -np.einsum("nij,nj->ni", turn, self.shift))
+
+
+@dataclass
+class Frames:
+    """The tree of frames. A transform of ``/tf`` wins over odometry with the same child."""
+
+    edges: dict[str, _Edge] = field(default_factory=dict)
+    odometry: dict[str, _Edge] = field(default_factory=dict)
+
+    def add_transforms(self, topic: str, message: Any) -> None:
+        """Add a message of type TFMessage."""
+        static = topic.endswith("tf_static")
+        for row in message.transforms:
+            parent, child = frame_name(row.header.frame_id), frame_name(row.child_frame_id)
+            edge = self.edges.setdefault(child, _Edge(parent, topic, static))
+            if edge.parent == parent:
+                place, turn = row.transform.translation, row.transform.rotation
+                edge.stamps.append(stamp_of(row.header))
+                edge.poses.append((place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+
+    def add_odometry(self, topic: str, message: Any) -> None:
+        """Add a message of type Odometry; the first topic of a child counts."""
+        parent, child = frame_name(message.header.frame_id), frame_name(message.child_frame_id)
+        edge = self.odometry.setdefault(child, _Edge(parent, topic, False))
+        if edge.topic == topic and edge.parent == parent:
+            place, turn = message.pose.pose.position, message.pose.pose.orientation
+            edge.stamps.append(stamp_of(message.header))
+            edge.poses.append((place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+
+    def above(self, frame: str) -> list[str]:
+        """Return a frame and those above it, up to the root."""
+        chain = [frame]
+        while (edge := self._edge(chain[-1])) is not None and edge.parent not in chain:
+            chain.append(edge.parent)
+        return chain
+
+    def is_fixed(self, frame: str) -> bool:
+        """Whether a frame has the name of a fixed frame, or odometry is relative to it."""
+        return frame.rpartition("/")[2] in WORLD_FRAMES or any(edge.parent == frame for edge in self.odometry.values())
+
+    def topics(self, frame: str, target: str) -> list[str]:
+        """Return the topics whose transforms join two frames."""
+        up, down = self._paths(frame, target)
+        edges = [edge for name in (*up, *down) if (edge := self._edge(name)) is not None]
+        return list(dict.fromkeys(edge.topic for edge in edges))
+
+    def describe(self) -> str:
+        """Return the transforms in words."""
+        edges = {**self.odometry, **self.edges}
+        return ", ".join(f"{edge.parent} -> {child}" for child, edge in list(edges.items())[:12]) or "none"
+
+    def connects(self, frame: str, target: str) -> bool:
+        """Whether transforms join two frames."""
+        return bool(set(self.above(frame)) & set(self.above(target)))
+
+    def placement(self, frame: str, target: str, stamps: NDArray[np.int64]) -> Placement:
+        """Return the placement ``[N]`` of a frame in a target frame that it is joined with, at stamps ``[N]`` [ns]."""
+        up, down = self._paths(frame, target)
+        placement = self._chain(up, stamps)
+        return self._chain(down, stamps).inverse().after(placement) if down else placement
+
+    def _edge(self, frame: str) -> _Edge | None:
+        return self.edges.get(frame) or self.odometry.get(frame)
+
+    def _paths(self, frame: str, target: str) -> tuple[list[str], list[str]]:
+        """Return the frames below the lowest shared one, on the way up from both."""
+        up, down = self.above(frame), self.above(target)
+        shared = next(name for name in up if name in down)
+        return up[: up.index(shared)], down[: down.index(shared)]
+
+    def _chain(self, names: list[str], stamps: NDArray[np.int64]) -> Placement:
+        placement = Placement(np.tile(np.eye(3), (len(stamps), 1, 1)), np.zeros((len(stamps), 3)))
+        for name in names:
+            edge = self._edge(name)
+            if edge is not None:  # always: a frame below another one has a parent
+                placement = _interpolate(edge, stamps).after(placement)
+        return placement
+
+
+def _interpolate(edge: _Edge, stamps: NDArray[np.int64]) -> Placement:
+    """Return the poses at stamps: places are interpolated linearly, quaternions too, then normalized."""
+    times, poses = edge.table
+    if edge.static:
+        pose = np.repeat(poses[-1:], len(stamps), axis=0)
+        return Placement(_matrices(pose[:, 3:]), pose[:, :3])
+    after = np.clip(np.searchsorted(times, stamps), 1, max(1, len(times) - 1))
+    before = np.where(np.isin(stamps, times), np.minimum(np.searchsorted(times, stamps), len(times) - 1), after - 1)
+    after = np.minimum(np.where(np.isin(stamps, times), before, after), len(times) - 1)
+    gap = (times[after] - times[before]) / SECOND
+    share = np.where(gap > 0.0, (stamps - times[before]) / SECOND / np.where(gap > 0.0, gap, 1.0), 0.0)
+    first, last = poses[before], poses[after].copy()
+    last[np.sum(first[:, 3:] * last[:, 3:], axis=1) < 0.0, 3:] *= -1.0  # both signs are the same rotation
+    pose = first + share[:, None] * (last - first)
+    unknown = (stamps < times[0]) | (stamps > times[-1]) | (gap > LONGEST_GAP)
+    pose[unknown] = np.nan
+    return Placement(_matrices(pose[:, 3:]), pose[:, :3])
+
+
+def _matrices(quaternions: Floats) -> Floats:
+    """Return rotation matrices ``[N, 3, 3]`` of quaternions x, y, z, w ``[N, 4]``; NaN for those of no length."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.asarray(rows, dtype=np.float64), 2, 0)
