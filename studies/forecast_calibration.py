@@ -1,6 +1,6 @@
 """Measures how often people are inside the 95 % ellipse of a forecast, on data sets that no training saw.
 
-    python studies/forecast_calibration.py DATA [--windows 12] [--only CITR HERMES] [--share 0.95]
+    python studies/forecast_calibration.py DATA [--windows 12] [--only CITR ETH] [--share 0.95]
 
 DATA is that of studies/zero_shot.py. Prints a Markdown table: share of true positions inside the ellipse, mean over all
 steps, and at 0.4, 2.4 and 4.8 s. A calibrated forecast has the asked share everywhere; less is overconfident.

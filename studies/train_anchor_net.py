@@ -1,17 +1,22 @@
-"""Trains the shipped weights of AnchorNet and Anchors on the leave-one-out files of ETH/UCY, and scores them.
+"""Trains the shipped weights of AnchorNet and Anchors, and scores those of the leave-one-out files of ETH/UCY.
 
+    python studies/train_anchor_net.py train DATA OUT --fold open
     python studies/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
     python studies/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
     python studies/train_anchor_net.py describe DATA OUT --fold all
     python studies/train_anchor_net.py score DATA OUT --seed 0
     python studies/train_anchor_net.py reliability DATA OUT --seed 0
 
-DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
-that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
-temperature; the last weights are taken, so nothing is chosen by the place that is left out.
-The default fold `open` learns only from the recordings with stated terms (UCY) and from simulated crowds, with the
-recipe `general`; `train DATA OUT --fold open` makes its weights anew. The fold `all` is trained and then described,
-which limits it to near neighbors.
+A training that was stopped goes on where it was; one that is done is not repeated.
+
+Fold `open`, the default weights: DATA holds eth_ucy_splits/, hermes/ and juelich/. The training learns from data whose
+terms allow it: UCY, the corridors and bottlenecks of the Jülich archive, and simulated crowds with and without robots,
+with at most so many futures of each (`SOURCES`). --leave-out NAME leaves some of them out, --research DIR adds the
+Stanford Drone Dataset in the TrajNet cut (non-commercial; such weights do not ship).
+
+Other folds: DATA holds train/, val/ and all_data/ as SGAN published them. Only train/ of the other places is learned
+from; val/ of the other places gives the temperature; the last weights are taken, so nothing is chosen by the place that
+is left out. The fold `all` is trained and then described, which limits it to near neighbors.
 """
 
 from __future__ import annotations
@@ -28,22 +33,25 @@ import numpy as np
 
 from crowdbot.benchmark import evaluate
 from crowdbot.core import stream
-from crowdbot.data import Trajectories, Windows, load
+from crowdbot.data import Recording, Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import REACH
 from crowdbot.prediction.anchor_net.confidence import calibrate_confidence
-from crowdbot.prediction.anchor_net.out_of_distribution import distribution_of
-from crowdbot.prediction.anchor_net.training import DESCRIBED, PRESETS, UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.anchor_net.filtered_line import LINE_SHARE
+from crowdbot.prediction.anchor_net.training import PRESETS, UPDATES, AnchorNetTraining, AnchorTraining
 from crowdbot.prediction.anchor_net.training_data import (
     NO_AUGMENTATION,
     Augmentation,
-    augment_people,
+    TrainingSet,
     make_batch,
     training_set,
+    training_set_of,
 )
-from crowdbot.prediction.pretrained_weights import ALL, FOLDS, OPEN, is_held_out
+from crowdbot.prediction.pretrained_weights import ALL, FOLDS, OPEN, STEP, is_held_out
 from crowdbot.prediction.training.loop import TrainingSchedule, train
+from crowdbot.prediction.training.robot_encounters import robot_encounters
+from crowdbot.prediction.training.samples import Samples, recordings_with_windows, split_in_time
 from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
 
@@ -52,22 +60,80 @@ EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
 """Borders of the probabilities that are counted together."""
 CREDITED = ("crowds_", "students", "uni_examples")
 """Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
-OPEN_UPDATES = 2500
+SOURCES = {"ucy": 30000, "hermes": 8000, "juelich": 8000, "simulated": 4000, "robots": 2000, "sdd": 8000}
+"""Data of the fold `open` -> largest number of futures; `sdd` with --research only."""
+ARCHIVE = {
+    "hermes": ("hermes/Corridor-*/*.txt", {"fps": 16.0, "units": "cm"}),
+    "juelich": ("juelich/b*/*.txt", {}),
+}
+"""Data -> pattern of the files, and options of their reader."""
+HOLD = 0.15
+"""Final share of the recordings of the archive that gives the temperature."""
+OPEN_UPDATES = 8000
 """Optimizer steps of the fold `open`."""
-CROWDS = 3
-"""Simulated scenes per crowd model and layout in the fold `open`."""
-SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "line_share",
-         "situation_mean", "situation_whitening", "situation_range")  # fmt: skip
+CROWDS, MEETINGS = 5, 30
+"""Simulated scenes per crowd model and layout, and per crowd model and kind of encounter with a robot."""
+SMALL = ("basis", "centres", "spread", "share", "width", "temperature", "widening", "reach", "line_share")
 
 
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    if fold == OPEN:
-        return [tracks for tracks in found if tracks.name.startswith(CREDITED)] + simulated_crowds(
-            CROWDS, seed=1 if folder.name == "val" else 0
-        )
     return [tracks for tracks in found if is_held_out(fold, tracks.name) == left_out]
+
+
+def open_samples(options: argparse.Namespace) -> tuple[Samples, Samples]:
+    """Return the balanced training and validation samples of the fold `open`."""
+    found = {}
+    for name, limit in SOURCES.items():
+        if name in options.leave_out or (name == "sdd" and options.research is None):
+            continue
+        for part, samples in zip(("train", "val"), _source(options, name), strict=True):
+            kept = samples.limit(limit if part == "train" else limit // 5)
+            found.setdefault(part, []).append(kept)
+            print(f"{name}, {part}: {kept.people} of {samples.people} futures", flush=True)
+    return Samples.concatenate(found["train"]), Samples.concatenate(found["val"])
+
+
+def _source(options: argparse.Namespace, name: str) -> tuple[Samples, Samples]:
+    """Return the training and validation samples of one source."""
+    if name == "ucy":
+        parts = (sorted((options.data / "eth_ucy_splits" / part).glob("*.txt")) for part in ("train", "val"))
+        one, other = (
+            Samples.of([Recording(str(path), fps=25) for path in paths if path.name.startswith(CREDITED)])
+            for paths in parts
+        )
+        return one, other
+    if name == "simulated":
+        crowds = simulated_crowds(CROWDS, seed=0), simulated_crowds(2, seed=1)
+        one, other = (
+            Samples.concatenate([Samples.from_windows(*tracks.windows(), tracks.name) for tracks in found])
+            for found in crowds
+        )
+        return one, other
+    if name == "robots":
+        met = robot_encounters(MEETINGS, seed=0), robot_encounters(8, seed=1)
+        one, other = (
+            Samples.concatenate([Samples.from_windows(*pair, kind) for kind, pair in found.items()]) for found in met
+        )
+        return one, other
+    if name == "sdd":
+        files = [Recording(str(path)) for path in sorted(options.research.glob("*.txt"))]
+    else:
+        pattern, how = ARCHIVE[name]
+        files = [Recording(str(path), step=STEP, **how) for path in sorted(options.data.glob(pattern))]
+    split = split_in_time(recordings_with_windows(files)[0], HOLD)
+    return split.training, split.validation
+
+
+def training_data(options: argparse.Namespace, fold: str) -> tuple[tuple[str, ...], TrainingSet, TrainingSet]:
+    """Return the names of the recordings, the training data and the validation data of a fold."""
+    if fold == OPEN:
+        samples, other = open_samples(options)
+        return samples.names, training_set_of(samples), training_set_of(other, reverse=False)
+    used = recordings(options.data / "train", fold)
+    watched = training_set(recordings(options.data / "val", fold), reverse=False)
+    return tuple(tracks.name for tracks in used), training_set(used), watched
 
 
 def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
@@ -77,15 +143,10 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     if done.exists():
         print(f"{done} is there already")
         return
-    used = recordings(options.data / "train", fold)
+    names, material, watched = training_data(options, fold)
+    model = AnchorNetTraining(_recipe(options.set, fold, seed), material, watched, names)
     if seed == 0:
-        anchors = Anchors.fit(*(tracks.windows() for tracks in used))
-        assert anchors.share is not None
-        assert anchors.shapes is not None
-        np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
-    how = _recipe(options.set, fold, seed)
-    watched = training_set(recordings(options.data / "val", fold), reverse=False)
-    model = AnchorNetTraining(how, training_set(used), watched, [tracks.name for tracks in used])
+        write_anchors(options.out / f"anchors-{fold}.npz", material)
     updates = options.updates or (OPEN_UPDATES if fold == OPEN else UPDATES)
     schedule = TrainingSchedule(updates, check_every=updates, keep_every=500, seed=seed)
     work, folder = time.process_time(), options.out / name
@@ -96,16 +157,25 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
 
     with torch_threads():
         course = train(model, schedule, folder, resume=True, tick=tell)
-    write(options, fold, done, model.numbers())
+    write(done, model.numbers(), watched)
     shutil.rmtree(folder)
     watch = " ".join(f"{key} {value:.3f}" for key, value in course.rows[-1].items())
     print(f"{name}: {watch}, {time.process_time() - work:.0f} CPU s", flush=True)
 
 
-def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str, np.ndarray]) -> None:
-    """Calibrate on val/ of the places that were learned from, and write the numbers in as few bytes as they need."""
+def write_anchors(file: Path, material: TrainingSet) -> None:
+    """Write the fixed anchors of the training data."""
+    missed = make_batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "anchors")).missed
+    anchors = Anchors.fit_residuals(missed)
+    assert anchors.share is not None
+    assert anchors.shapes is not None
+    np.savez(file, shapes=anchors.shapes.astype(np.float32), share=anchors.share)
+
+
+def write(file: Path, numbers: dict[str, np.ndarray], watched: TrainingSet) -> None:
+    """Calibrate on validation data of what was learned from, and write the numbers in as few bytes as they need."""
     kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
-    kept = calibrate_confidence(kept, training_set(recordings(options.data / "val", fold), reverse=False))
+    kept = calibrate_confidence(kept, watched)
     arrays: dict[str, Any] = {k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()}
     np.savez(file, **arrays)
     size = sum(values.size for values in kept.values())
@@ -114,22 +184,22 @@ def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str,
 
 
 def describe(options: argparse.Namespace, fold: str) -> None:
-    """Limit weights that learned from unbounded features to near neighbors, and add the out-of-distribution score."""
+    """Limit weights that learned from unbounded features to near neighbors, with a share of the filtered line."""
     used = [load(path, fps=25) for path in sorted((options.data / "train").glob("*.txt"))]
     used = [tracks for tracks in used if not is_held_out(fold, tracks.name)]
     material, file = training_set(used), Path(weights_file(options, fold, 0))
     with np.load(file) as kept:
         numbers = {name: kept[name] for name in kept.files}
-    rng = stream(0, "described")
-    shown = augment_people(material, rng.integers(0, len(material), DESCRIBED), Augmentation(), rng)[0].within(REACH)
     missed = make_batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "share")).missed
     points = missed.reshape(len(missed), -1) @ numbers["basis"].T
     nearest = np.argmin([((points - centre) ** 2).sum(axis=1) for centre in numbers["centres"]], axis=0)
     count = np.bincount(nearest, minlength=len(numbers["centres"])) + 1.0
-    found = {"reach": np.array(REACH), "unbounded": np.array(1.0), "share": count / count.sum()}
-    found |= distribution_of(shown)
+    found = {
+        "reach": np.array(REACH), "unbounded": np.array(1.0), "line_share": np.array(LINE_SHARE),
+        "share": count / count.sum(),
+    }  # fmt: skip
     np.savez(file, **numbers | {name: values.astype(np.float32) for name, values in found.items()})
-    print(f"{file.name}: neighbors within {REACH} m, scores from {found['situation_range'].round(2).tolist()}")
+    print(f"{file.name}: neighbors within {REACH} m")
 
 
 def _recipe(words: list[str], fold: str, seed: int) -> AnchorTraining:
@@ -246,6 +316,8 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL, OPEN])
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
+    parser.add_argument("--leave-out", nargs="+", default=[], choices=SOURCES, help="fold open: sources left out")
+    parser.add_argument("--research", type=Path, metavar="DIR", help="fold open: SDD in the TrajNet cut, stanford/")
     parser.add_argument("--updates", type=int, help=f"default: {OPEN_UPDATES} for the fold open, else {UPDATES}")
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
     parser.add_argument("--eth", type=Path, help="obsmat.txt of eth, its true time base, in place of biwi_eth.txt")
@@ -261,8 +333,9 @@ def main() -> None:
         for seed in options.seed:
             for fold in options.fold:
                 file = Path(weights_file(options, fold, seed))
+                _, _, watched = training_data(options, fold)
                 with np.load(file) as kept:
-                    write(options, fold, file, {name: kept[name] for name in kept.files})
+                    write(file, {name: kept[name] for name in kept.files}, watched)
         return
     if options.what == "describe":
         for fold in options.fold:

@@ -1,14 +1,17 @@
 """Scores predictors on whole data sets that the default weights did not learn from, and prints the table of the site.
 
-    python studies/zero_shot.py DATA --weights NEW.npz OLD.npz
+    python studies/zero_shot.py DATA [--noise 0.05] [--weights NEW.npz OLD.npz]
+    python studies/zero_shot.py DATA --only HERMES --weights OUT/anchor-net-open.npz
 
-DATA holds eth_biwi/, sdd_trajnet/, citr/, hermes/ and juelich/ in the formats of their authors. 8 + 12 rows of 0.4 s,
-at most --windows windows per recording, evenly spaced. K = 1 and the best of 20 per person.
+DATA holds eth_biwi/, sdd_trajnet/, citr/, hermes/, juelich/ and eth_ucy_splits/ in the formats of their authors. 8 + 12
+rows of 0.4 s, at most --windows windows per recording, evenly spaced. K = 1 and the best of 20 per person. The default
+weights learned from the data sets in LEARNED: give --weights of `train_anchor_net.py train ... --leave-out NAME`.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,6 +20,7 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot.benchmark import evaluate
+from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Kalman, LeastSquares, Predictor
@@ -28,16 +32,20 @@ RECORDINGS = {
     "SDD gates": ("sdd_trajnet/Train/stanford/gates_*.txt",),
     "SDD hyang": ("sdd_trajnet/Train/stanford/hyang_*.txt",),
     "CITR": ("citr/*/*ped_filtered.csv",),
-    "HERMES": ("hermes/Corridor-1D/uo-[01]*0-180-*.txt", "hermes/Corridor-2D/bo*.txt"),
-    "Jülich": ("juelich/bidirectional/bi_corr_400_b_03.txt",),
 }
-"""Data set -> patterns of its files."""
+"""Data set that no default weights learned from -> patterns of its files."""
+LEARNED = {
+    "HERMES": ("hermes/Corridor-1D/uo-*.txt", "hermes/Corridor-2D/bo*.txt"),
+    "Jülich": ("juelich/b*/*.txt",),
+    "UCY": ("eth_ucy_splits/all_data/crowds_*.txt", "eth_ucy_splits/all_data/students*.txt"),
+}
+"""Data set that the default weights learned from -> patterns of its files."""
 TRIALS = ("one-way-with", "crossing-flows")
 """Built-in trials."""
 OPTIONS: dict[str, dict[str, Any]] = {
     "citr": {"fps": 29.97, "columns": {"x": "x_est", "y": "y_est"}},
     "hermes": {"fps": 16.0, "units": "cm"},
-    "juelich": {"units": "cm"},
+    "eth_ucy_splits": {"fps": 25},
 }
 """Folder -> options of :func:`crowdbot.data.load`."""
 
@@ -64,6 +72,12 @@ def thinned(tracks: list[Trajectories], windows: int) -> list[tuple[Windows, Win
     return [(past[::n], future[::n]) for (past, future), n in zip(cut, every, strict=True)]
 
 
+def with_noise(past: Windows, deviation: float) -> Windows:
+    """Return windows with independent noise [m] on every observed row."""
+    noise = deviation * stream(0, "noise", past.source).standard_normal(past.position.shape)
+    return dataclasses.replace(past, position=np.where(past.present[..., None], past.position + noise, 0.0))
+
+
 def predictors(weights: list[Path]) -> dict[str, tuple[Predictor, int]]:
     """Return the columns of the table: name -> predictor and number of samples."""
     asked: dict[str, tuple[Predictor, int]] = {
@@ -81,17 +95,20 @@ def main() -> None:
     parser.add_argument("data", type=Path)
     parser.add_argument("--weights", type=Path, nargs="+", default=[], help="files, named after their folders")
     parser.add_argument("--windows", type=int, default=60)
-    parser.add_argument("--only", nargs="+", default=[*RECORDINGS, *TRIALS])
+    parser.add_argument("--noise", type=float, default=0.0, help="noise on the observed rows [m] (default: 0)")
+    parser.add_argument("--only", nargs="+", default=[*RECORDINGS, *TRIALS], choices=[*RECORDINGS, *LEARNED, *TRIALS])
     options = parser.parse_args()
     asked = predictors(options.weights)
     print("| data set | persons | " + " | ".join(asked) + " |")
     print("|---" * (len(asked) + 2) + "|")
     for name in options.only:
-        tracks = read(options.data, RECORDINGS[name]) if name in RECORDINGS else trial_tracks(name)
+        patterns = RECORDINGS.get(name) or LEARNED.get(name)
+        tracks = trial_tracks(name) if patterns is None else read(options.data, patterns)
         short = [one.name for one in tracks if np.unique(one.frame).size < ROWS]
         if short:
             print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
         cut = thinned([one for one in tracks if one.name not in short], options.windows)
+        cut = [(with_noise(past, options.noise), future) for past, future in cut if future.scored.any()]
         scores = [Score.total([evaluate(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in scores)
         print(f"| {name} | {scores[0].persons} | {cells} |", flush=True)

@@ -243,10 +243,10 @@ def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_
     assert np.array_equal(own.predict(crowd(), 12).position, AnchorNet("open").predict(crowd(), 12).position)
     np.savez(tmp_path / "half.npz", **{k: v for k, v in numbers.items() if k != "query_bias"})
     np.savez(tmp_path / "old.npz", **numbers | {"own_1_weight": np.zeros((30, 256))})
-    np.savez(tmp_path / "score.npz", **{k: v for k, v in numbers.items() if k != "situation_whitening"})
+    np.savez(tmp_path / "unshared.npz", **{k: v for k, v in numbers.items() if k != "share"})
     np.savez(tmp_path / "share.npz", **numbers | {"share": np.full(3, 1 / 3)})
     wrong = {
-        "half": "query_bias is missing", "old": "own_1_weight has shape", "score": "situation_whitening is missing",
+        "half": "query_bias is missing", "old": "own_1_weight has shape", "unshared": "share is missing",
         "share": r"share has shape \[3\], it must be \[20\]",
     }  # fmt: skip
     for file, word in wrong.items():

@@ -17,6 +17,7 @@ from crowdbot.prediction.anchor_net.agent_frame import AGENT_FEATURES, NEAR, NEI
 from crowdbot.prediction.anchor_net.forward_pass import network_output
 from crowdbot.prediction.anchor_net.network_shapes import NEEDED
 from crowdbot.prediction.anchor_net.training import (
+    PRESETS,
     AnchorNetTraining,
     AnchorTraining,
     learner,
@@ -35,6 +36,7 @@ from crowdbot.prediction.anchor_net.training_data import (
 )
 from crowdbot.prediction.training.loop import TrainingSchedule, train
 from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
 
 TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
@@ -73,6 +75,8 @@ def test_every_variation_changes_what_is_seen(material: TrainingSet) -> None:
         assert not np.array_equal(seen.own, plain.own) or not np.array_equal(seen.company, plain.company), name
         assert np.isfinite(seen.own).all()
         assert np.isfinite(seen.company).all()
+    drifting = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, correlated=1.0, noise=0.1), stream(0))
+    assert not np.array_equal(drifting.own, plain.own)
     holes = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, holes=1.0, hole=0.5), stream(0))
     assert 0.4 < holes.own[:, -7:].mean() < 0.75
     planned = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, planned=1.0), stream(0))
@@ -142,6 +146,20 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Train
     assert all(np.array_equal(whole[name], again[name]) for name in whole)
     with pytest.raises(InputError, match="contains a training with other settings"):
         trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
+
+
+def test_a_training_on_a_balanced_mixture_repeats_itself(recorded: Callable[[str], Trajectories]) -> None:
+    hotel = Samples.from_windows(*recorded("biwi_hotel").windows(), "hotel")
+    crowds = Samples.concatenate([Samples.from_windows(*t.windows(), t.name) for t in simulated_crowds(1)[:4]])
+    parts = [hotel.limit(200), crowds.limit(100)]
+    assert [part.people for part in parts] == [pytest.approx(200, rel=0.15), pytest.approx(100, rel=0.3)]
+    assert hotel.limit(10**6) is hotel
+    mixed = training_set_of(Samples.concatenate(parts))
+    how = dataclasses.replace(PRESETS["general"], people=32, width=16, social=8, warm=5)
+    one, other = (trained(mixed, how, 20).weights() for _ in range(2))
+    assert one.keys() == other.keys()
+    assert {"reach", "line_share", "share"} <= set(one)
+    assert all(np.array_equal(one[name], other[name]) for name in one)
 
 
 def test_the_learning_rate_rises_linearly_and_falls_along_a_cosine(material: TrainingSet) -> None:

@@ -42,7 +42,7 @@ LONGEST_STEP = 0.7
 ALL = "all"
 """Fold of the weights that learned from all ETH/UCY recordings."""
 OPEN = "open"
-"""Fold of the default weights: only recordings whose terms allow it (UCY), and simulated crowds."""
+"""Fold of the default weights: only recordings whose terms allow it (UCY, Jülich archive), and simulated crowds."""
 AUTO = "auto"
 FOLDS = {
     "eth": ("biwi_eth", "seq_eth"),

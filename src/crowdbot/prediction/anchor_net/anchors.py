@@ -49,8 +49,8 @@ class Anchors(Predictor):
 
     Fields:
         fold: shipped set: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with ``all``
-            places, ``open``: with UCY and simulated crowds only, or ``auto``: without the place of the recording, by
-            its name, else ``open``.
+            places, ``open``: with UCY, the Jülich archive and simulated crowds only, or ``auto``: without the place of
+            the recording, by its name, else ``open``.
         shapes: ``[K, 12, 2]`` [m] own residuals at steps of 0.4 s, see :meth:`fit`; None means the shipped set.
         share: ``[K]`` relative cluster sizes.
 
@@ -110,7 +110,10 @@ class Anchors(Predictor):
         if why:
             return f"anchors: {why}; a baseline is used instead"
         if self.shapes is None and self.fold == AUTO and fold_of(past.source) == OPEN:
-            return f"anchors: {past.source} is not named after a training place; using those of UCY and simulations"
+            return (
+                f"anchors: {past.source} is not named after a training place; using those of UCY, the Jülich archive"
+                " and simulations"
+            )
         return ""
 
     @classmethod
@@ -120,7 +123,18 @@ class Anchors(Predictor):
         Raises:
             InputError: fewer than ``count`` people with 12 future rows at steps of 0.4 s.
         """
-        missed = np.concatenate([residuals(*pair) for pair in pairs]) if pairs else np.zeros((0, PREDICTED_ROWS, 2))
+        return cls.fit_residuals(
+            np.concatenate([residuals(*pair) for pair in pairs]) if pairs else np.zeros((0, PREDICTED_ROWS, 2)),
+            count, seed,
+        )  # fmt: skip
+
+    @classmethod
+    def fit_residuals(cls, missed: Floats, count: int = 20, seed: int = 0) -> Self:
+        """Return the anchors of residuals ``[N, 12, 2]`` [m] to constant velocity, in the frames of people.
+
+        Raises:
+            InputError: fewer than ``count`` people.
+        """
         if len(missed) < count:
             raise InputError(f"anchors: {len(missed)} futures of 12 rows are too few for {count} shapes")
         both = np.concatenate([missed, missed * np.array([1.0, -1.0])])

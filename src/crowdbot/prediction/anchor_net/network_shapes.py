@@ -8,14 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, SPEED_CLASSES
-from .out_of_distribution import DESCRIPTORS
 
 __all__ = ["LAYERS", "NEEDED", "wrong_array"]
 
 LAYERS = ("own_1", "own_2", "query", "near_1", "near_2", "both_1", "both_2", "out")
 OTHERS = ("basis", "centres", "spread", "width", "temperature", "widening", "nobody", "alone")
-SITUATION = ("situation_mean", "situation_whitening", "situation_range", "share")
-"""Arrays of the out-of-distribution score; weights have all of them or only ``share``."""
 NEEDED = (*OTHERS, *(f"{layer}_{part}" for layer in LAYERS for part in ("weight", "bias")))
 
 
@@ -25,8 +22,7 @@ def wrong_array(numbers: Mapping[str, NDArray[np.float64]]) -> str:
     >>> wrong_array({})
     'basis is missing'
     """
-    scored = any(name in numbers for name in SITUATION[:3])
-    missing = [name for name in (*NEEDED, *(SITUATION if scored else ())) if name not in numbers]
+    missing = [name for name in (*NEEDED, *(("share",) if "reach" in numbers else ())) if name not in numbers]
     if missing:
         return f"{missing[0]} is missing"
     for name, wanted in _shapes(numbers).items():
@@ -64,9 +60,6 @@ def _shapes(numbers: Mapping[str, NDArray[np.float64]]) -> dict[str, tuple[int, 
         "reach": (),
         "line_share": (),
         "share": (anchors,),
-        "situation_mean": (len(DESCRIPTORS),),
-        "situation_whitening": (len(DESCRIPTORS), len(DESCRIPTORS)),
-        "situation_range": (2,),
     }
     for layer in LAYERS:
         shapes |= {f"{layer}_weight": (inputs[layer], outputs[layer]), f"{layer}_bias": (outputs[layer],)}

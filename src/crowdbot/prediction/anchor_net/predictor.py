@@ -37,7 +37,7 @@ from .agent_frame import (
     speed_class,
 )
 from .anchors import CHAI, resample_paths, scatter_to_slots
-from .fitted_line import line_coefficients
+from .filtered_line import filtered_lines
 from .forward_pass import feature_limit, network_output, reach_of
 from .mixture import future_covariances, total_covariances
 from .out_of_distribution import out_of_distribution
@@ -80,7 +80,7 @@ class _Bends(NamedTuple):
     """``[N, K, 6]``."""
     probability: Floats
     single: Floats
-    """``[N, 6]``; with a share of the least-squares line, see :mod:`.fitted_line`."""
+    """``[N, 6]``; with a share of the filtered line, see :mod:`.filtered_line`."""
     spread: Floats
     """``[N, K, 6]`` standard deviation around each future."""
     heading: Floats
@@ -111,12 +111,14 @@ class AnchorNet(Predictor):
 
     People who are unlike the training data have a high ``out_of_distribution`` score in the forecast. The corrections
     of the network are multiplied by 1 minus the score: at a score of 1 the set is the fixed anchors, and the single
-    trajectory is constant velocity. Leave-one-out weights have no score.
+    trajectory is the line of Kalman filters whose noise is fitted to the track. The line also has a share of up to 0.8
+    in the single trajectory of people who walk straight with a noisy track. Leave-one-out weights have neither.
 
     Fields:
         fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
-            ``all`` places, ``open``: with UCY and simulated crowds only, or ``auto``: without the place of the
-            recording, by its name, else ``open``.
+            ``all`` places, ``open``: with data whose terms allow it (UCY, corridors and bottlenecks of the Jülich
+            archive, simulated crowds with and without robots; ``python studies/train_anchor_net.py train DATA OUT --fold
+            open`` makes them), or ``auto``: without the place of the recording, by its name, else ``open``.
         sample: ``set``: the weighted futures, at most 20, and the single trajectory for K = 1; ``draws``: any number
             of independent random draws.
         file: own weights from ``crowdbot train anchor-net``, instead of the shipped ones.
@@ -206,8 +208,8 @@ class AnchorNet(Predictor):
             return f"anchor-net: {why}; a baseline is used instead"
         if not self.file and self.fold == AUTO and fold_of(past.source) == OPEN:
             return (
-                f"anchor-net: {past.source} is not named after a training place; using the weights trained on UCY and"
-                " simulated crowds; set fold if the recording is from one of them"
+                f"anchor-net: {past.source} is not named after a training place; using the weights trained on UCY, the"
+                " Jülich archive and simulated crowds; set fold if the recording is from one of the places"
             ) + self._foreign_note(past)
         return self._foreign_note(past).removeprefix("; ")
 
@@ -220,7 +222,7 @@ class AnchorNet(Predictor):
             return ""
         return (
             f"; {np.mean(score > 0.5):.0%} of the people of {past.source} are unlike the training data (score above"
-            " 0.5): their forecasts are mostly constant velocity or the anchors"
+            " 0.5): their forecasts are mostly a fitted line or the anchors"
         )
 
     def _numbers(self, past: Windows) -> Numbers:
@@ -271,7 +273,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
         out[part] = network_output(numbers, *agent_features(some, heading[part], feature_limit(numbers)), some.there)
-    own = (1.0 - foreign)[:, None]  # share of the network; the rest is the anchors, or constant velocity
+    own = (1.0 - foreign)[:, None]  # share of the network; the rest is the anchors, or the filtered line
     mode = numbers["centres"] + own[..., None] * out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
     kind = speed_class(people.past)
     score = out[:, K * D : K * D + K] / numbers["temperature"][kind, None]
@@ -285,10 +287,10 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     order = np.argsort(-probability, axis=1, kind="stable")
     row = np.arange(len(order))[:, None]
     walked = (people.seen.sum(axis=1) > 1)[:, None]
-    single = own * out[:, K * D + K : K * D + K + D] * numbers["spread"]
+    single = out[:, K * D + K : K * D + K + D] * numbers["spread"]
     if "line_share" in numbers:
-        line = own * line_coefficients(people.past, heading, numbers["basis"])
-        single = single + numbers["line_share"] * (line - single)
+        line, straight = filtered_lines(people.past, people.seen, heading, numbers["basis"])
+        single = line + own * (1.0 - numbers["line_share"] * straight[:, None]) * (single - line)
     return _Bends(
         np.where(walked[..., None], mode[row, order], 0.0),
         probability[row, order],

@@ -21,9 +21,8 @@ from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, REACH, heading_vectors, rotate
 from .anchors import cluster_centers
 from .confidence import calibrate_confidence
-from .fitted_line import LINE_SHARE
+from .filtered_line import LINE_SHARE
 from .forward_pass import feature_limit, network_output
-from .out_of_distribution import distribution_of
 from .own_weights import load_start_weights
 from .training_data import (
     GENERAL,
@@ -31,7 +30,6 @@ from .training_data import (
     Augmentation,
     TrainingBatch,
     TrainingSet,
-    augment_people,
     make_batch,
     training_set_of,
 )
@@ -42,9 +40,7 @@ Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000
-"""Optimizer steps of the shipped weights, which are the averaged weights after the last step."""
-DESCRIBED = 20000
-"""Number of augmented people that describe the training data for the out-of-distribution score."""
+"""Optimizer steps of the shipped leave-one-out weights, which are the averaged weights after the last step."""
 ADAPTING = 3e-4
 """Learning rate of a training that starts from other weights."""
 RANK = 6
@@ -69,7 +65,8 @@ class AnchorTraining:
         variation: data augmentation.
         reach: largest distance of a neighbor [m], which also bounds the features; inf: 12 neighbors at any distance
             and unbounded features.
-        line: share of the least-squares line in the single trajectory, between 0 and 1.
+        line: share of the filtered line in the single trajectory of people who walk straight with a noisy track,
+            between 0 and 1.
     """
 
     people: int = 256
@@ -297,14 +294,10 @@ class AnchorNetTraining(Trainable):
     def numbers(self) -> Numbers:
         """Return the averaged weights before the calibration."""
         found = self.shapes | _plain(self.mean)
-        if self.config.line > 0.0:
+        bounded = np.isfinite(self.config.reach)
+        if bounded or self.config.line > 0.0:  # bounded weights fall back on the line, even if its share is 0
             found["line_share"] = np.array(self.config.line)
-        if not np.isfinite(self.config.reach):
-            return found
-        rng = stream(self.config.seed, "described")
-        rows = rng.integers(0, len(self.material), DESCRIBED)
-        people = augment_people(self.material, rows, self.config.variation, rng)[0].within(self.config.reach)
-        return found | {"reach": np.array(self.config.reach)} | distribution_of(people)
+        return found | ({"reach": np.array(self.config.reach)} if bounded else {})
 
     def weights(self) -> Mapping[str, Any]:
         """Return the averaged weights with probabilities calibrated on the validation data."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -40,6 +41,8 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
+DRIFT = 0.8
+"""Correlation of drifting noise from row to row."""
 AT_ONCE = 64
 """Approximate number of scenes of similar size per batch."""
 
@@ -86,6 +89,8 @@ class Augmentation:
         turn: standard deviation of a heading error [rad].
         jitter: maximum standard deviation of the noise of all rows except the last [m]; it is uniformly distributed.
         noisy, noise: share of tracks with noise at every row, and its maximum standard deviation [m].
+        correlated: share of tracks with noise that drifts, with a correlation of 0.8 from row to row, as that of
+            trackers; its maximum standard deviation is ``noise``.
         holes, hole: share of tracks with missing rows, and the share of missing rows in them.
         late: share of tracks that start late, with 2 to 7 rows.
         switched: share of tracks whose older rows belong to the nearest neighbor.
@@ -108,10 +113,13 @@ class Augmentation:
     planned: float = 0.1
     unseen: float = 0.05
     coarse: float = 0.0
+    correlated: float = 0.0
 
 
-NO_AUGMENTATION = Augmentation(*(0.0,) * 14)
-GENERAL = Augmentation(scale=0.35, noisy=0.2, holes=0.15, late=0.25, unseen=0.1, coarse=0.15)
+NO_AUGMENTATION = Augmentation(*(0.0,) * 15)
+GENERAL = Augmentation(
+    scale=0.35, jitter=0.03, noisy=0.35, holes=0.15, late=0.25, unseen=0.1, coarse=0.15, correlated=0.15
+)
 """Augmentation of the weights for other places: more noise, shorter histories and other clocks."""
 
 
@@ -247,7 +255,14 @@ def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -
     small = how.jitter * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     small[:, -1] = 0.0
     large = how.noise * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
-    return np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
+    found = np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
+    if how.correlated == 0.0:
+        return found
+    drift = rng.standard_normal((count, rows, 2))
+    for row in range(1, rows):
+        drift[:, row] = DRIFT * drift[:, row - 1] + math.sqrt(1.0 - DRIFT**2) * drift[:, row]
+    drift = how.noise * rng.random(count)[:, None, None] * drift
+    return np.where((rng.random(count) < how.correlated)[:, None, None], drift, found)
 
 
 def _switch_identities(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:

@@ -188,6 +188,15 @@ class Samples:
         """Return at most ``most`` evenly spaced scenes."""
         return self if len(self) <= most else self.select(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
 
+    def limit(self, people: int) -> Samples:
+        """Return evenly spaced scenes with about ``people`` scored people; all scenes if there are not more.
+
+        Limits that are the same for several data sets balance a training on all of them.
+        """
+        if self.people <= people:
+            return self
+        return self.subsample(max(1, round(len(self) * people / self.people)))
+
     def batch(self, scenes: Integers) -> Scenes:
         """Return some scenes as padded arrays."""
         start, count = self.first[scenes], np.diff(self.first)[scenes]
