@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 __all__ = ["KINDS", "RICH", "Kind", "planted", "told_apart"]
@@ -221,6 +222,7 @@ def told_apart(kinds: list[Kind]) -> bool:
     return True
 
 
+@functools.cache
 def _span(piece: str) -> tuple[int, int]:
     return RICH.index(piece), RICH.index(piece) + len(piece)
 

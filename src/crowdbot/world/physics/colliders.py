@@ -176,7 +176,7 @@ def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, Array
     """Return the frames of the links of a robot on the floor."""
     x, y = scene.position[0, agent].tolist()
     base = frame((x, y, robot.lift), axis_rotation((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
-    poses = _posture(robot) if not joints else robot.model.poses({**robot.posture, **joints})
+    poses = robot.posture_poses if not joints else robot.model.poses({**robot.posture, **joints})
     return {link: base @ pose for link, pose in poses.items()}
 
 
@@ -195,11 +195,6 @@ def _held_things(scene: Scene, motion: PeopleMotion) -> list[tuple[int, str, Flo
 @functools.lru_cache(maxsize=16)
 def _ground_boxes(ground: Ground) -> tuple[Floats, Floats]:
     return ground_boxes(ground)
-
-
-@functools.lru_cache(maxsize=64)
-def _posture(robot: Robot) -> Frames:
-    return robot.model.poses(robot.posture)
 
 
 @functools.lru_cache(maxsize=64)

@@ -180,6 +180,18 @@ class Robot:
         return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
 
     @functools.cached_property
+    def posture_poses(self) -> Mapping[str, Floats]:
+        """Frames ``[4, 4]`` of all links in the frame of the root, in the default posture; read-only.
+
+        >>> Robot.load("turtlebot2").posture_poses["wheel_left"][:3, 3].tolist()
+        [0.0, 0.115, 0.035]
+        """
+        poses = self.model.poses(self.posture)
+        for pose in poses.values():
+            pose.flags.writeable = False
+        return poses
+
+    @functools.cached_property
     def height(self) -> float:
         """Height [m] of the highest collider above the root, in the default posture."""
         points = self.model.points(self.posture)
@@ -259,7 +271,7 @@ class Robot:
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
         """
         steered = self.steering(twist)
-        poses = self.model.poses({**self.posture, **steered})
+        poses = self.model.poses({**self.posture, **steered}) if steered else self.posture_poses
         speeds = {}
         for wheel in self.wheels:
             if wheel.driven:
@@ -277,12 +289,11 @@ class Robot:
 
         The angles are 0 at rest. Backwards, they are those of forward motion on the same circle.
         """
-        poses = self.model.poses(self.posture)
         angles = {}
         for wheel in self.wheels:
             if wheel.steering:
                 joint = self.model.joints[wheel.steering]
-                matrix = poses[joint.parent] @ joint.origin
+                matrix = self.posture_poses[joint.parent] @ joint.origin
                 x, y = (_carried(twist, matrix) * (-1.0 if twist.forward < 0.0 else 1.0)).tolist()
                 sense = 1.0 if (matrix[:3, :3] @ joint.axis)[2] > 0.0 else -1.0
                 angles[wheel.steering] = round(sense * math.atan2(y, x), 12)

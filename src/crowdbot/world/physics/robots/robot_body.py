@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -209,10 +210,10 @@ class RobotBody:
         """Return steering angles [rad] and wheel speeds [rad/s] of a car or tricycle, by joint."""
         drive = self.robot.drive
         assert isinstance(drive, AckermannDrive | TricycleDrive)
-        angle = twist.steering if isinstance(twist, SteeredTwists) else np.zeros(1)
-        way, speed = drive.motion(float(angle[0])), float(drive.rolling(twist, angle)[0])
-        speeds = {joint: rate * speed for joint, rate in self.robot.wheel_speeds(way).items()}
-        return self.robot.steering(way), speeds
+        steering = twist.steering if isinstance(twist, SteeredTwists) else np.zeros(1)
+        angle, speed = float(steering[0]), float(drive.rolling(twist, steering)[0])
+        angles, rates = _wheel_rates_at(self.robot, angle, math.copysign(1.0, angle))
+        return angles, {joint: rate * speed for joint, rate in rates.items()}
 
     def command(self, joints: Mapping[str, float]) -> None:
         """Set the commands of joint motors: position, velocity or effort, depending on the motor.
@@ -293,6 +294,19 @@ class RobotBody:
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + name)
             if index >= 0:
                 self._data.ctrl[index] = float(np.atleast_1d(position)[0])
+
+
+@functools.lru_cache(maxsize=256)
+def _wheel_rates_at(robot: Robot, angle: float, sign: float) -> tuple[dict[str, float], dict[str, float]]:
+    """Return steering angles [rad] and wheel rates [rad/s per m/s] of a car or tricycle at a steering angle [rad].
+
+    ``sign`` is that of the angle, since 0 and -0 are equal keys. Each angle is asked for twice: a robot goes from the
+    angle of the last step to the next one.
+    """
+    drive = robot.drive
+    assert isinstance(drive, AckermannDrive | TricycleDrive)
+    way = drive.motion(angle)
+    return robot.steering(way), robot.wheel_speeds(way)
 
 
 def _row(twist: Twists) -> Floats:
