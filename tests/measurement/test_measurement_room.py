@@ -282,3 +282,20 @@ def test_walls_of_a_recording_are_its_walkable_area():
     cells = measure.compute_individual_voronoi_polygons(tracks, hall)
     assert cells.polygon[0].bounds[2] < 4.21  # the cell does not reach through the wall
     assert not cells.polygon[1].contains(cells.polygon[0].centroid)
+
+
+def test_people_who_are_seen_once_or_never_come_near_are_measured_without_a_warning():
+    seen_once = made([(1, 0, 0.0, 0.0), (2, 0, 1.0, 0.0)])
+    for border in measure.BORDERS:
+        speed = measure.compute_individual_speed(seen_once, 1, border=border)
+        assert (len(speed), list(speed.columns)) == (0, ["id", "frame", "speed", "v_x", "v_y"])
+    assert len(measure.compute_individual_acceleration(seen_once, 1)) == 0
+    tracks = made([(1, 0, 0.0, 0.0), (1, 1, 1.0, 0.0), (1, 2, 2.0, 0.0), (2, 2, 5.0, 0.0)], rate=2.0)
+    far = measure.MeasurementArea([(40, 0), (41, 0), (41, 1)])
+    line = measure.MeasurementLine((50, 0), (50, 1))
+    found = measure.measure(
+        tracks, measure.MeasurementPlan(("area", "line", "passing"), area=far, line=line, passage=1)
+    )
+    assert found.notes == ("1 rows without a second row of the same person have no speed and are not measured",)
+    assert found.figures["passages"] == found.figures["crossings"] == found.figures["voronoi_density"] == 0.0
+    assert found.tables["area"].mean_speed.isna().all()
