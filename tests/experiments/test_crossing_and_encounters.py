@@ -30,7 +30,7 @@ from crowdbot.experiments import (
 )
 from crowdbot.trials import load_trial, parse_trial
 
-PARTICIPANTS = (1, 2, 3)
+PARTICIPANTS = (1, 2)
 
 
 def rehearse(name, home, duration):
@@ -59,6 +59,12 @@ def encounters(tmp_path_factory):
     return rehearse("encounters", tmp_path_factory.mktemp("encounters"), 10)
 
 
+@pytest.fixture(scope="module")
+def crossing_analysis(crossing):
+    """Return the analysis of the experiment on crossing."""
+    return analyse_sessions(crossing)
+
+
 @pytest.mark.parametrize(("name", "conditions"), [("crossing", 4), ("encounters", 3)])
 def test_a_rehearsal_goes_from_consent_to_a_report(name, conditions, request, tmp_path, capsys):
     data = request.getfixturevalue(name)
@@ -84,9 +90,16 @@ def test_a_rehearsal_goes_from_consent_to_a_report(name, conditions, request, tm
     tests = json.loads(capsys.readouterr().out)["tests"]
     assert len(tests) == len(found.tests) > 0
     assert all(one["bound"] == pytest.approx(0.6) for one in tests if one["measure"] == "rating.safe")
-    words = ["evaluate", "--participants", str(data)]
+
+
+def test_evaluate_compares_the_participants_of_a_study(crossing, crossing_analysis, tmp_path, capsys):
+    words = ["evaluate", "--participants", str(crossing)]
     assert main([*words, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["tests"] == tests
+    tests = json.loads(capsys.readouterr().out)["tests"]
+    shown = {(one["measure"], one["first"], one["second"]): one["difference"] for one in tests}
+    assert len(shown) == len(crossing_analysis.tests)
+    for one in crossing_analysis.tests:
+        assert shown[one.measure, one.first, one.second] == pytest.approx(one.test.difference, nan_ok=True)
     assert main([*words, "--out", str(tmp_path / "compared")]) == 0
     assert f"participants: {len(PARTICIPANTS)}" in capsys.readouterr().out
     assert (tmp_path / "compared" / "report.html").is_file()
@@ -94,10 +107,9 @@ def test_a_rehearsal_goes_from_consent_to_a_report(name, conditions, request, tm
     assert "evaluate takes trials, --logs, --real, or --participants" in capsys.readouterr().err
 
 
-def test_a_robot_that_yields_lets_the_participant_pass_first(crossing):
-    found = analyse_sessions(crossing)
-    assert set(found.values("first", "fast_yields").values()) == {1.0}
-    assert np.mean(list(found.values("clearance", "fast_yields").values())) > 0.1
+def test_a_robot_that_yields_lets_the_participant_pass_first(crossing_analysis):
+    assert set(crossing_analysis.values("first", "fast_yields").values()) == {1.0}
+    assert np.mean(list(crossing_analysis.values("clearance", "fast_yields").values())) > 0.1
 
 
 def meeting(person, robot, heading="1.57079633"):
