@@ -53,12 +53,14 @@ def _tracks(*formats: str) -> Kind:
 
         for name, one in SYNTHETIC.items():
             if one.format in formats:
-                (folder / name).mkdir(parents=True)
-                one.write(folder / name / name)
+                path = Path(name)  # of a folder of files, the folder is the sample
+                sample = folder / (path.parent.name or name)
+                sample.mkdir()
+                one.write(sample / path.name)
                 if name.endswith(".mcap"):
-                    _flatten(folder / name / name)
+                    _flatten(sample / name)
 
-    return Kind(f"recordings: {', '.join(formats)}", make, read_tracks)
+    return Kind(f"recordings: {', '.join(formats)}", make, read_tracks, (".ini",))
 
 
 def read_tracks(folder: Path, name: str, rng: random.Random) -> None:
@@ -67,7 +69,7 @@ def read_tracks(folder: Path, name: str, rng: random.Random) -> None:
 
     from crowdbot.data import FORMATS, load
 
-    options = dict(SYNTHETIC[name].options)
+    options = dict(SYNTHETIC[name].options) if name in SYNTHETIC else {}
     if rng.random() < 0.1:
         options["format"] = rng.choice(list(FORMATS))
     if rng.random() < 0.2:

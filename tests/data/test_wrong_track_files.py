@@ -116,7 +116,7 @@ def test_a_number_that_is_none_deep_in_a_long_file(tmp_path):
 def test_missing_files_folders_and_rubbish(tmp_path):
     with pytest.raises(DataError, match="there is no file .*nowhere.txt"):
         load(tmp_path / "nowhere.txt")
-    with pytest.raises(DataError, match="is a folder, not a recording"):
+    with pytest.raises(DataError, match="the folder .* has no files"):
         load(tmp_path)
     with pytest.raises(DataError, match="cannot be read|there is no file"):
         load("a\x00b.txt")

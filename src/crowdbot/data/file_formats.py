@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from .readers import (
-    boxes,
     eth,
     ind,
     jrdb,
     juelich,
     lcas,
     petrack,
-    pixel_tracks,
     sgan,
     simulators,
     socialways,
@@ -35,6 +33,7 @@ from .readers.plausibility import check_walkers
 from .readers.reader import Reader, ReadOptions
 from .readers.ros import episode
 from .readers.time_base import check_fps
+from .readers.video import boxes, pixel_tracks
 from .source import Source
 from .trajectories import Trajectories
 

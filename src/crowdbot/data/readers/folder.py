@@ -13,8 +13,8 @@ from crowdbot.data.trajectories import Trajectories
 
 from . import tables, wildtrack
 from .assemble import assemble
-from .pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
 from .reader import ReadOptions
+from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
 
 __all__ = ["bag_file", "read_folder"]
 

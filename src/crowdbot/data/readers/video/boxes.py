@@ -21,12 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.data.readers.assemble import assemble
+from crowdbot.data.readers.reader import Reader, ReadOptions
 from crowdbot.data.rows import integers
 from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
-
-from .assemble import assemble
-from .reader import Reader, ReadOptions
 
 __all__ = ["KITTI", "MOT", "SDD"]
 

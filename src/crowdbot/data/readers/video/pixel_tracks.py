@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.data.readers.assemble import assemble
+from crowdbot.data.readers.reader import Reader, ReadOptions
 from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
-
-from .assemble import assemble
-from .reader import Reader, ReadOptions
 
 __all__ = ["EDINBURGH", "FOUR_ROWS", "GRAND_CENTRAL", "GRAND_CENTRAL_FPS", "triples"]
 

@@ -1,0 +1,1 @@
+"""Readers of tracks in pictures of cameras."""
