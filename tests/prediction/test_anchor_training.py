@@ -35,6 +35,7 @@ from crowdbot.prediction.anchor_net.training_data import (
     training_set_of,
 )
 from crowdbot.prediction.training.loop import TrainingSchedule, train
+from crowdbot.prediction.training.robot_encounters import robot_encounters
 from crowdbot.prediction.training.samples import Samples
 from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
@@ -148,12 +149,12 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Train
         trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
 
 
-def test_a_training_on_a_balanced_mixture_repeats_itself(recorded: Callable[[str], Trajectories]) -> None:
-    hotel = Samples.from_windows(*recorded("biwi_hotel").windows(), "hotel")
-    crowds = Samples.concatenate([Samples.from_windows(*t.windows(), t.name) for t in simulated_crowds(1)[:4]])
-    parts = [hotel.limit(200), crowds.limit(100)]
-    assert [part.people for part in parts] == [pytest.approx(200, rel=0.15), pytest.approx(100, rel=0.3)]
-    assert hotel.limit(10**6) is hotel
+def test_a_training_on_a_balanced_mixture_repeats_itself() -> None:
+    crowds = Samples.concatenate([Samples.from_windows(*t.windows(), t.name) for t in simulated_crowds(2)[:4]])
+    met = Samples.concatenate([Samples.from_windows(*pair, name) for name, pair in robot_encounters(5).items()])
+    parts = [crowds.limit(150), met.limit(100)]
+    assert [part.people for part in parts] == [pytest.approx(150, rel=0.3), pytest.approx(100, rel=0.1)]
+    assert crowds.limit(10**6) is crowds
     mixed = training_set_of(Samples.concatenate(parts))
     how = dataclasses.replace(PRESETS["general"], people=32, width=16, social=8, warm=5)
     one, other = (trained(mixed, how, 20).weights() for _ in range(2))

@@ -30,7 +30,7 @@ for other places. Chosen with weights that did not learn from the data sets on w
 0.4 points on average, but on one set of noisy tracks more than 3 % worse than the best baseline."""
 ACCELERATION = np.array([0.01, 0.05, 0.2, 0.8])
 """Square roots of the spectral density of the acceleration on the grid [m s^-1.5]."""
-MEASUREMENT = np.array([0.002, 0.015, 0.05, 0.12])
+MEASUREMENT = np.array([0.0005, 0.002, 0.015, 0.05, 0.12])
 """Standard deviations of a measured coordinate on the grid [m]."""
 STRAIGHT, NOISY = 0.1, 0.03
 """Filters with a lower acceleration noise and a higher measurement noise belong to straight noisy tracks."""
