@@ -8,7 +8,7 @@ from collections import deque
 from pathlib import Path
 from typing import Any, ClassVar
 
-from crowdbot.benchmark import builtin_names
+from crowdbot.catalogue import builtin_names
 from crowdbot.core import CrowdbotError, InputError, builtin_name
 from crowdbot.prediction import Predictor
 from crowdbot.recording import branch
