@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, load
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.prediction import (
     AnchorNet,
@@ -76,7 +76,7 @@ def main() -> None:
     past, future = (windows[::4] for windows in test.windows())
 
     def row(name: str, predictor: Predictor, more: str) -> None:
-        one, many = (evaluate(predictor, past, future, samples) for samples in (1, 20))
+        one, many = (score_predictor(predictor, past, future, samples) for samples in (1, 20))
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in (one, many) if isinstance(score, Score))
         print(f"| {name} | {one.persons} | {cells} | {more} |", flush=True)
 

@@ -18,7 +18,8 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot import navigation
-from crowdbot.benchmark import evaluate, measure
+from crowdbot.benchmark import measure
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.recording import run
 from crowdbot.trials import RobotSpec
@@ -132,7 +133,7 @@ def _windows(folder: Path, fold: str, protocol: str = "all") -> list[tuple[cb.Wi
 
 
 def _scored(predictor: cb.Predictor, cut: list[tuple[cb.Windows, cb.Windows]], samples: int = 1) -> Score:
-    return Score.total([evaluate(predictor, past, future, samples=samples) for past, future in cut])
+    return Score.total([score_predictor(predictor, past, future, samples=samples) for past, future in cut])
 
 
 def _table(head: list[str], rows: list[list[str]]) -> None:

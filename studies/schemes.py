@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.benchmark import Evaluation, PredictorResult, plot_errors
 from crowdbot.data import Recording
+from crowdbot.evaluation import PredictorEvaluation, PredictorResult, plot_errors
 from crowdbot.models import CurrentDirection
 from crowdbot.prediction import ConstantVelocity, Kalman, PredictorSpec, Simulated
 
@@ -66,7 +66,7 @@ def _report(shared: Path, folder: Path) -> str:
     for model, cost, search, goal in itertools.product(MODELS, COSTS, SEARCHES, GOALS):
         crowd = Simulated(model, CurrentDirection(), cost, search, BUDGET)
         specs.append(PredictorSpec(crowd, goal if goal == "ground-truth" else None))
-    results = _run(Evaluation(recordings, tuple(specs)), folder, "report")
+    results = _run(PredictorEvaluation(recordings, tuple(specs)), folder, "report")
     lines = ["![ADE of every scheme and baseline](calibrated-crowds/report.png)\n"]
     for recording in recordings:
         own = [one for one in results if one.recording is recording]
@@ -143,7 +143,7 @@ def _learned(shared: Path, folder: Path) -> str:
         "SocialForce, learned, shared": PredictorSpec(scheme("social-force"), "learned-destinations", shared=True),
         "PowerLaw, learned, shared": PredictorSpec(scheme("power-law"), "learned-destinations", shared=True),
     }
-    results = _run(Evaluation(recordings, tuple(made.values())), folder, "learned")
+    results = _run(PredictorEvaluation(recordings, tuple(made.values())), folder, "learned")
     found = {(one.recording.path, one.spec.name): one for one in results}
     lines = [LEARNED.format(budget=BUDGET), "| | " + " | ".join(PLACES) + " |", "|---" * (len(PLACES) + 1) + "|"]
     for label, spec in made.items():
@@ -180,7 +180,7 @@ def _verdicts(
     return [*lines, "", "(95 %): the interval of the difference, bootstrapped over people, is below 0.", ""]
 
 
-def _run(evaluation: Evaluation, folder: Path, name: str) -> list[PredictorResult]:
+def _run(evaluation: PredictorEvaluation, folder: Path, name: str) -> list[PredictorResult]:
     done = []
     jobs = len(evaluation.jobs())
     for job, part in evaluation.run(keep=Path("build/schemes")):

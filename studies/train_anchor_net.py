@@ -31,9 +31,9 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.benchmark import evaluate
 from crowdbot.core import stream
 from crowdbot.data import Recording, Trajectories, Windows, load
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import REACH
@@ -229,7 +229,7 @@ def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, d
     cut = windows_left_out(options, fold)
     rows = {}
     for name, (predictor, samples) in asked.items():
-        found = Score.total([evaluate(predictor, past, future, samples) for past, future in cut])
+        found = Score.total([score_predictor(predictor, past, future, samples) for past, future in cut])
         rows[name] = {k: getattr(found, k) for k in (*SHOWN, "persons", "miss_rate")}
         print(f"{fold} seed {seed} {name:22}"
               + " ".join(f"{k} {v:.3f}" for k, v in rows[name].items()), flush=True)  # fmt: skip

@@ -21,8 +21,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, load
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.prediction import SocialWays
 from crowdbot.prediction.pretrained_weights import FOLDS, is_held_out
@@ -94,7 +94,7 @@ def scored(options: argparse.Namespace, folder: Path, recordings: list[Trajector
     rows = {}
     cut = [one.windows(protocol=protocol) for one in recordings]
     for name, count, chosen in (("20 draws", 20, predictor), ("one draw", 1, predictor), (ALONE, 20, alone)):
-        parts = [evaluate(chosen, past[:: options.every], future[:: options.every], count, seed=seed)
+        parts = [score_predictor(chosen, past[:: options.every], future[:: options.every], count, seed=seed)
                  for past, future in cut]  # fmt: skip
         found = Score.total(parts)
         rows[name] = {key: float(getattr(found, key)) for key in (*SHOWN, "persons", "miss_rate")}

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 
 import crowdbot as cb
-from crowdbot.benchmark import evaluate
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Kalman, LeastSquares, Predictor
 
@@ -109,7 +109,7 @@ def main() -> None:
             print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
         cut = thinned([one for one in tracks if one.name not in short], options.windows)
         cut = [(with_noise(past, options.noise), future) for past, future in cut if future.scored.any()]
-        scores = [Score.total([evaluate(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
+        scores = [Score.total([score_predictor(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in scores)
         print(f"| {name} | {scores[0].persons} | {cells} |", flush=True)
 

@@ -37,7 +37,7 @@ _ROOMS = {
     "trials": ("Trial", "load_trial"),
     "simulation": ("Episode",),
     "recording": ("branch", "read_episode", "replay", "run"),
-    "benchmark": ("cite",),
+    "catalogue": ("cite",),
 }
 __getattr__, __dir__ = lazy_exports(__name__, _ROOMS)
 
@@ -73,7 +73,7 @@ if TYPE_CHECKING:
     from crowdbot.trials import load_trial as load_trial
     from crowdbot.world import Robot as Robot
 
-    from .benchmark import cite as cite
+    from .catalogue import cite as cite
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
     from .prediction import ConstantAcceleration as ConstantAcceleration

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from crowdbot import benchmark
+from crowdbot import evaluation
 from crowdbot.cli import main
 from crowdbot.cli.degrade import read_degradations
 from crowdbot.core import stream
@@ -114,7 +114,7 @@ def test_parameters_find_their_degradation():
 
 
 def test_an_interrupt_keeps_what_is_done(capsys, tmp_path, monkeypatch, small):
-    whole = benchmark.sweep_degradations
+    whole = evaluation.sweep_degradations
 
     def interrupted(*parts):
         levels = whole(*parts)
@@ -122,7 +122,7 @@ def test_an_interrupt_keeps_what_is_done(capsys, tmp_path, monkeypatch, small):
         yield next(levels)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(benchmark, "sweep_degradations", interrupted)
+    monkeypatch.setattr(evaluation, "sweep_degradations", interrupted)
     words = ["degrade", "--data", small, "--by", "gaussian-noise", "--predictor", "constant-velocity"]
     assert main([*words, "--out", str(tmp_path / "out")]) == 130
     said = capsys.readouterr()

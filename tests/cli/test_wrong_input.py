@@ -129,12 +129,12 @@ def test_an_unknown_command_is_a_usage_error(capsys, words, message):
 
 
 def test_an_interrupt_is_said_in_one_word(capsys, monkeypatch):
-    from crowdbot import benchmark
+    from crowdbot import catalogue
 
     def interrupted(kind):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(benchmark, "builtin_names", interrupted)
+    monkeypatch.setattr(catalogue, "builtin_names", interrupted)
     assert main(["list"]) == 130
     assert capsys.readouterr().err == "crowdbot: interrupted\n"
     assert sys.stdout is not None

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
+from crowdbot.evaluation import score_predictor
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES, agent_histories
 from crowdbot.prediction.anchor_net.layers import attend, dense
@@ -267,8 +267,8 @@ def test_wrong_wishes_are_one_sentence() -> None:
 
 def test_shipped_weights_are_ahead_where_they_did_not_learn(recorded: Callable[[str], Trajectories]) -> None:
     past, future = recorded("biwi_hotel").windows()
-    floor, straight = evaluate(Anchors(), past, future, 20), evaluate(ConstantVelocity(), past, future)
-    twenty, one = evaluate(AnchorNet(), past, future, 20), evaluate(AnchorNet(), past, future)
+    floor, straight = score_predictor(Anchors(), past, future, 20), score_predictor(ConstantVelocity(), past, future)
+    twenty, one = score_predictor(AnchorNet(), past, future, 20), score_predictor(AnchorNet(), past, future)
     assert twenty.ade < 0.85 * floor.ade
     assert twenty.fde < 0.75 * floor.fde
     assert one.ade < 0.85 * straight.ade

@@ -9,9 +9,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
+from crowdbot.evaluation import score_predictor
 from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity
 from crowdbot.prediction.anchor_net.anchors import cluster_centers, resample_paths, residuals
 from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, is_held_out, read_weights
@@ -37,9 +37,9 @@ def turners(count: int = 60) -> tuple[Windows, Windows]:
 def test_shapes_are_the_ways_people_bend() -> None:
     past, future = turners()
     fitted = Anchors.fit((past, future), count=3)
-    found = evaluate(fitted, past, future, 20)
+    found = score_predictor(fitted, past, future, 20)
     assert found.ade < 1e-6
-    assert evaluate(ConstantVelocity(), past, future).ade > 0.5
+    assert score_predictor(ConstantVelocity(), past, future).ade > 0.5
     assert fitted.share is not None
     assert np.all(np.diff(fitted.share) <= 0.0)
     assert math.isclose(float(fitted.share.sum()), 1.0)
@@ -103,7 +103,7 @@ def test_places_are_told_by_the_names_of_recordings() -> None:
 
 def test_floor_on_a_recording(recorded: Callable[[str], Trajectories]) -> None:
     past, future = recorded("biwi_hotel").windows()
-    found = evaluate(Anchors(), past, future, 20)
+    found = score_predictor(Anchors(), past, future, 20)
     assert found.ade == pytest.approx(0.154, abs=0.002)
     assert found.fde == pytest.approx(0.268, abs=0.003)
 

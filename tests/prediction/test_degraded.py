@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import DegradedTask, evaluate, sweep_degradations
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
@@ -20,6 +19,7 @@ from crowdbot.data.degrade import (
     MissingFrames,
     Occlusion,
 )
+from crowdbot.evaluation import DegradedTask, score_predictor, sweep_degradations
 from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, degraded_windows
 
 FIELDS = ("position", "present", "scored", "robot", "id", "frame")
@@ -50,7 +50,7 @@ def test_what_is_not_degraded_is_seen_as_it_was(recorded, protocol):
 @pytest.mark.parametrize("predictor", [ConstantVelocity(), Simulated(), SampledConstantVelocity()])
 def test_the_level_that_changes_nothing_is_evaluate(recorded, predictor):
     tracks = recorded("biwi_hotel")
-    clean = evaluate(predictor, *tracks.windows(), samples=3, seed=4)
+    clean = score_predictor(predictor, *tracks.windows(), samples=3, seed=4)
     ((score,),) = sweep_degradations(
         [tracks], [GaussianNoise()], [predictor], [0.0], DegradedTask(samples=3, seed=4, draws=2)
     )
@@ -126,7 +126,7 @@ def test_who_is_not_seen_at_the_last_row_is_asked_for_but_not_scored():
     seen = degraded_windows(past, future, _without(tracks, (3, 2)))
     assert (seen.asked, seen.predictable) == (2, 1)
     assert seen.past.id.tolist() == [[1]]
-    score = evaluate(ConstantVelocity(), seen.past, seen.future)
+    score = score_predictor(ConstantVelocity(), seen.past, seen.future)
     assert score.persons == 1
     assert score.ade == pytest.approx(0.0)
 
@@ -155,7 +155,7 @@ def test_a_switched_track_is_scored_against_who_is_at_its_place_now():
     assert seen.predictable == 2
     assert seen.past.position[0, :, 0, 1].tolist() == [0.0, 0.0, 0.0, 0.3]
     assert seen.future.position[0, :, 0, 1].tolist() == [0.3] * 4
-    assert evaluate(ConstantVelocity(), seen.past, seen.future).ade == pytest.approx(0.3 * 2.5)
+    assert score_predictor(ConstantVelocity(), seen.past, seen.future).ade == pytest.approx(0.3 * 2.5)
 
 
 def test_ghosts_are_company_that_is_never_scored():
@@ -166,7 +166,7 @@ def test_ghosts_are_company_that_is_never_scored():
     assert seen.past.id.shape[1] > 2
     assert seen.future.scored.sum() == seen.asked == 2
     assert not seen.future.present[0, :, 2:].any()
-    assert evaluate(Simulated(), seen.past, seen.future).ade != evaluate(Simulated(), past, future).ade
+    assert score_predictor(Simulated(), seen.past, seen.future).ade != score_predictor(Simulated(), past, future).ade
 
 
 def test_predictors_do_not_see_the_future(recorded):
@@ -232,7 +232,7 @@ def test_only_every_such_window_is_predicted(recorded):
     hotel = recorded("biwi_hotel")
     ((some,),) = sweep_degradations([hotel], [MissingFrames()], [ConstantVelocity()], [0.0], DegradedTask(every=7))
     past, future = hotel.windows()
-    alone = evaluate(ConstantVelocity(), past[::7], future[::7])
+    alone = score_predictor(ConstantVelocity(), past[::7], future[::7])
     assert some.asked == some.score.persons == alone.persons < future.scored.sum() / 5
     assert some.score.ade == alone.ade
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import evaluate
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Trajectories, Windows, load
+from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score, bootstrap_interval, collision_share, energy_score, person_errors
 from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, LeastSquares, Predictor, SampledConstantVelocity
 
@@ -97,7 +97,7 @@ def scored(recorded: Recorded, scene: str, predictor: Predictor, protocol: str =
     parts = []
     for name in SCENES[scene]:
         past, future = recorded(name).windows(observe=8, predict=12, protocol=protocol)
-        parts.append(evaluate(predictor, past, future, **more))  # type: ignore[arg-type]
+        parts.append(score_predictor(predictor, past, future, **more))  # type: ignore[arg-type]
     return Score.total(parts)
 
 
@@ -132,7 +132,7 @@ def test_least_squares_reproduces_the_table_of_sgan_windows(recorded: Recorded, 
 
 @pytest.mark.parametrize(("name", "predictor"), ALONE, ids=lambda value: getattr(value, "name", value))
 def test_recordings_of_univ_alone(recorded: Recorded, name: str, predictor: Predictor) -> None:
-    score = evaluate(predictor, *recorded(name).windows(observe=8, predict=12))
+    score = score_predictor(predictor, *recorded(name).windows(observe=8, predict=12))
     assert (score.ade, score.fde) == near(ALONE[name, predictor])
 
 
@@ -140,7 +140,7 @@ def test_recordings_of_univ_alone(recorded: Recorded, name: str, predictor: Pred
 def test_the_files_of_the_authors(recordings: Path, place: str) -> None:
     past, future = load(recordings / place / "obsmat.txt").windows(observe=8, predict=12)
     for displacements, errors in OBSMAT[place].items():
-        score = evaluate(ConstantVelocity(displacements), past, future)
+        score = score_predictor(ConstantVelocity(displacements), past, future)
         assert (score.ade, score.fde) == near(errors)
 
 
@@ -182,14 +182,14 @@ def test_the_first_second(recorded: Recorded, scene: str) -> None:
 
 def test_samples_are_scored_as_a_distribution(recorded: Recorded) -> None:
     past, future = recorded("crowds_zara01").windows(observe=8, predict=12)
-    sampled = evaluate(SampledConstantVelocity(), past, future, samples=20, chunk=100)
+    sampled = score_predictor(SampledConstantVelocity(), past, future, samples=20, chunk=100)
     forecast = SampledConstantVelocity().predict(past, 12, 20, stream(0, "predict"))
     assert sampled.energy == pytest.approx(np.nanmean(energy_score(forecast, future)))
     assert (sampled.dense, sampled.samples) == (sampled.persons, 20)
-    plain = evaluate(ConstantVelocity(), past, future)
+    plain = score_predictor(ConstantVelocity(), past, future)
     assert math.isnan(plain.nll)
     assert plain.energy == pytest.approx(plain.ade)
-    many = evaluate(SampledConstantVelocity(), past[:4], future[:4], samples=101)
+    many = score_predictor(SampledConstantVelocity(), past[:4], future[:4], samples=101)
     assert math.isnan(many.energy)
     assert not math.isnan(many.nll)
 
@@ -197,17 +197,17 @@ def test_samples_are_scored_as_a_distribution(recorded: Recorded) -> None:
 def test_the_best_of_many_rewards_too_wide_samples_and_the_energy_score_does_not(recorded: Recorded) -> None:
     past, future = recorded("crowds_zara01").windows(observe=8, predict=12)
     narrow, wide = (
-        evaluate(SampledConstantVelocity(math.radians(turn), speed), past, future, samples=20)
+        score_predictor(SampledConstantVelocity(math.radians(turn), speed), past, future, samples=20)
         for turn, speed in ((8.0, 0.1), (25.0, 0.3))
     )
-    plain = evaluate(ConstantVelocity(), past, future)
+    plain = score_predictor(ConstantVelocity(), past, future)
     assert max(narrow.fde, wide.fde) < plain.fde
     assert narrow.energy < plain.energy < wide.energy
 
 
 def test_intervals_are_drawn_by_person_and_a_total_has_its_own(recorded: Recorded) -> None:
     parts = [recorded(name).windows(observe=8, predict=12) for name in SCENES["univ"]]
-    scores = [evaluate(ConstantVelocity(), past, future) for past, future in parts]
+    scores = [score_predictor(ConstantVelocity(), past, future) for past, future in parts]
     total = Score.total(scores)
     values, people = [], []
     for number, (past, future) in enumerate(parts):
@@ -223,7 +223,7 @@ def test_intervals_are_drawn_by_person_and_a_total_has_its_own(recorded: Recorde
 
 def test_a_better_baseline_is_told_from_a_worse_one_person_by_person(recorded: Recorded) -> None:
     past, future = recorded("biwi_hotel").windows(observe=8, predict=12)
-    one, other = (evaluate(ConstantVelocity(count), past, future) for count in (7, 1))
+    one, other = (score_predictor(ConstantVelocity(count), past, future) for count in (7, 1))
     mean, (low, high) = one.difference(other)
     assert mean == pytest.approx(one.ade - other.ade)
     assert low < mean < high < 0.0
@@ -248,7 +248,7 @@ def test_chunks_with_fewer_samples_are_scored_alike(crowd: Maker) -> None:
     past, future = crowd(1, W=9), crowd(2, W=9)
     both = past.present[:, -1] & future.present.all(axis=1) & ~past.robot
     future = dataclasses.replace(future, scored=both)
-    whole, parts = (evaluate(Padded(), past, future, samples=6, chunk=chunk) for chunk in (9, 1))
+    whole, parts = (score_predictor(Padded(), past, future, samples=6, chunk=chunk) for chunk in (9, 1))
     assert whole.samples == parts.samples == 6
     assert whole.as_dict() == {**parts.as_dict(), "seconds_per_window": whole.seconds_per_window}
 
@@ -260,7 +260,7 @@ def test_chunks_change_nothing(crowd: Maker, samples: int) -> None:
     scored_ = past.present[:, -1] & future.present.all(axis=1) & ~past.robot
     future = Windows(*[*list(vars(future).values())[:2], scored_, *list(vars(future).values())[3:]])
     scores = [
-        evaluate(SampledConstantVelocity(), past, future, samples=samples, best_of="scene", chunk=chunk)
+        score_predictor(SampledConstantVelocity(), past, future, samples=samples, best_of="scene", chunk=chunk)
         for chunk in (1, 2, 9, None)
     ]
     plain = [{**score.as_dict(), "seconds_per_window": 0} for score in scores]
@@ -271,7 +271,7 @@ def test_chunks_change_nothing(crowd: Maker, samples: int) -> None:
 def test_progress_is_told_and_ends_at_one(recorded: Recorded) -> None:
     past, future = recorded("biwi_eth").windows(observe=8, predict=12)
     shares: list[float] = []
-    evaluate(ConstantVelocity(), past, future, progress=shares.append, chunk=100)
+    score_predictor(ConstantVelocity(), past, future, progress=shares.append, chunk=100)
     assert shares == sorted(shares)
     assert len(shares) == 3
     assert shares[-1] == 1.0
@@ -289,7 +289,7 @@ class Nosy(ConstantVelocity):
 def test_only_the_past_is_handed_over(recorded: Recorded) -> None:
     past, future = recorded("biwi_eth").windows(observe=8, predict=12)
     garbage = Windows(*[stream(0).normal(size=future.position.shape), *list(vars(future).values())[1:]])
-    score = evaluate(Nosy(), past, garbage)
+    score = score_predictor(Nosy(), past, garbage)
     assert score.predictor == "nosy"
     assert score.ade > 2.0
 
@@ -297,6 +297,6 @@ def test_only_the_past_is_handed_over(recorded: Recorded) -> None:
 def test_windows_of_different_people_are_refused(recorded: Recorded) -> None:
     past, future = recorded("biwi_eth").windows(observe=8, predict=12)
     with pytest.raises(InputError, match="past and future have different people"):
-        evaluate(ConstantVelocity(), past[1:], future)
+        score_predictor(ConstantVelocity(), past[1:], future)
     with pytest.raises(InputError, match="biwi_eth.* has no windows"):
-        evaluate(ConstantVelocity(), past[:0], future[:0])
+        score_predictor(ConstantVelocity(), past[:0], future[:0])

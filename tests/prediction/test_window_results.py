@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import predict_windows
 from crowdbot.core import DataError
 from crowdbot.data import Trajectories, detect_format, save
+from crowdbot.evaluation import predict_windows
 from crowdbot.prediction import SampledConstantVelocity, Simulated
 
 

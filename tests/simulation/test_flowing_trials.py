@@ -142,13 +142,13 @@ def test_scans_name_whom_they_hit(recorded: tuple[Path, Episode]) -> None:
 
 
 def test_the_report_shows_everybody(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
-    from crowdbot.benchmark import PredictionResult, evaluate, write_report
+    from crowdbot.evaluation import PredictionResult, score_predictor, write_demo_report
     from crowdbot.prediction import ConstantVelocity
 
     _, episode = recorded
     past, future = episode.tracks().windows(8, 12, near=8.0)
-    row = PredictionResult(ConstantVelocity().predict(past, 12), evaluate(ConstantVelocity(), past, future))
-    page = write_report(tmp_path / "report.html", episode, past, future, [row], {}, "").read_text(encoding="utf-8")
+    row = PredictionResult(ConstantVelocity().predict(past, 12), score_predictor(ConstantVelocity(), past, future))
+    page = write_demo_report(tmp_path / "report.html", episode, past, future, [row], {}, "").read_text(encoding="utf-8")
     assert f"<b>{len(episode.ids) - 1}</b><span>people" in page
 
 

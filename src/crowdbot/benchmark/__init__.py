@@ -1,4 +1,4 @@
-"""Evaluation of predictors, demo and report, and speed measurements.
+"""Speed measurements, and how robots follow velocity commands in the physics world.
 
 Names are loaded on first use.
 """
@@ -9,8 +9,6 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 _MODULES = {
-    "catalogue": ("builtin_names", "cite", "papers"),
-    "demo": ("Demo", "run_demo"),
     "drives": (
         "DRIVE_BARS",
         "DRIVE_COLUMNS",
@@ -30,24 +28,6 @@ _MODULES = {
     ),
     "engines": ("EngineReport", "EngineRow", "EngineSizes", "MillionRow", "measure_engines", "write_engines_page"),
     "environments": ("BenchmarkSizes", "EnvironmentReport", "EnvironmentRow", "PeerRate", "measure_environments"),
-    "report": ("PredictionResult", "write_report"),
-    "prediction": (
-        "DegradedScore",
-        "FrameResults",
-        "WindowResults",
-        "JobResult",
-        "EvaluationJob",
-        "PredictorResult",
-        "Evaluation",
-        "DegradedTask",
-        "animate_window",
-        "plot_degradation",
-        "evaluate",
-        "predict_windows",
-        "plot_errors",
-        "plot_frames",
-        "sweep_degradations",
-    ),
     "speed": ("Gauge", "Measurement", "SpeedRow", "measure", "measurements"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
@@ -66,11 +46,6 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
-    from .catalogue import builtin_names as builtin_names
-    from .catalogue import cite as cite
-    from .catalogue import papers as papers
-    from .demo import Demo as Demo
-    from .demo import run_demo as run_demo
     from .drives import DRIVE_BARS as DRIVE_BARS
     from .drives import DRIVE_COLUMNS as DRIVE_COLUMNS
     from .drives import DriveFigures as DriveFigures
@@ -97,23 +72,6 @@ if TYPE_CHECKING:
     from .environments import EnvironmentRow as EnvironmentRow
     from .environments import PeerRate as PeerRate
     from .environments import measure_environments as measure_environments
-    from .prediction import DegradedScore as DegradedScore
-    from .prediction import DegradedTask as DegradedTask
-    from .prediction import Evaluation as Evaluation
-    from .prediction import EvaluationJob as EvaluationJob
-    from .prediction import FrameResults as FrameResults
-    from .prediction import JobResult as JobResult
-    from .prediction import PredictorResult as PredictorResult
-    from .prediction import WindowResults as WindowResults
-    from .prediction import animate_window as animate_window
-    from .prediction import evaluate as evaluate
-    from .prediction import plot_degradation as plot_degradation
-    from .prediction import plot_errors as plot_errors
-    from .prediction import plot_frames as plot_frames
-    from .prediction import predict_windows as predict_windows
-    from .prediction import sweep_degradations as sweep_degradations
-    from .report import PredictionResult as PredictionResult
-    from .report import write_report as write_report
     from .speed import Gauge as Gauge
     from .speed import Measurement as Measurement
     from .speed import SpeedRow as SpeedRow

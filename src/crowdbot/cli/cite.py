@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Print the references."""
-    from crowdbot.benchmark import papers
+    from crowdbot.catalogue import papers
 
     found = {name: papers(name) for name in options.names or ["crowdbot"]}
     if options.json:

@@ -13,9 +13,9 @@ from .recordings import add_recordings, horizon, print_notes, recordings
 from .schemes import add_scheme, assignments, predictor_specs
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import DegradedScore, DegradedTask
     from crowdbot.data import Recording, Trajectories
     from crowdbot.data.degrade import Chain, Degradation
+    from crowdbot.evaluation import DegradedScore, DegradedTask
     from crowdbot.prediction import Predictor
 
 ALL = "all"
@@ -203,7 +203,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
 
 
 def _task(options: argparse.Namespace) -> DegradedTask:
-    from crowdbot.benchmark import DegradedTask
+    from crowdbot.evaluation import DegradedTask
 
     names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws", "every")
     return DegradedTask(**{name: getattr(options, name) for name in names})
@@ -219,7 +219,7 @@ def _sweep(
     done: dict[str, list[DegradedScore]],
 ) -> None:
     """Fill ``done`` level by level and update the output file."""
-    from crowdbot.benchmark import sweep_degradations
+    from crowdbot.evaluation import sweep_degradations
 
     for found in sweep_degradations(recordings, degradations, predictors, options.levels, task, report):
         done.setdefault(found[0].degradation.name, []).extend(found)
@@ -242,7 +242,7 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark import plot_degradation
+        from crowdbot.evaluation import plot_degradation
 
         return [file, *plot_degradation(list(done.values()), options.out, _title(options, task))]
     except OSError as error:

@@ -19,8 +19,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run a trial, predict its people, write the report."""
-    from crowdbot.benchmark import run_demo
     from crowdbot.core import explain_write_errors
+    from crowdbot.evaluation import run_demo
 
     begin = time.perf_counter()
     with progress(options.json) as report, explain_write_errors(options.out):

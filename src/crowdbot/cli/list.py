@@ -18,7 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Print names and one-line descriptions."""
-    from crowdbot.benchmark import builtin_names
+    from crowdbot.catalogue import builtin_names
 
     if options.name is not None:
         return _parameters(options)

@@ -15,8 +15,8 @@ from .schemes import add_scheme, frame_line, predictor_specs
 from .track import add_perception, predict_perception
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import Evaluation, EvaluationJob, JobResult, PredictorResult
     from crowdbot.data import Recording
+    from crowdbot.evaluation import PredictorEvaluation, PredictorJob, PredictorJobResult, PredictorResult
     from crowdbot.metrics import Score
     from crowdbot.prediction import PredictorSpec
 
@@ -77,8 +77,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Evaluate every predictor on every recording, or every predictor of scans."""
-    from crowdbot.benchmark import Evaluation
     from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.evaluation import PredictorEvaluation
 
     if (options.data is None) == (options.perception is None):
         raise InputError("predict: give either --data PATH or --perception SOURCE")
@@ -87,7 +87,7 @@ def main(options: argparse.Namespace) -> int:
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
     found = _with_windows(recordings(options))
-    evaluation = Evaluation(
+    evaluation = PredictorEvaluation(
         found,
         (*predictor_specs(options), *_stored(options, found)),
         options.samples,
@@ -149,7 +149,7 @@ def _stored(options: argparse.Namespace, found: Sequence[Recording]) -> list[Pre
     return [PredictorSpec(forecasts_of(path)) for path in options.forecasts]
 
 
-def _forecast_files(evaluation: Evaluation, file: Path) -> dict[Path, tuple[Recording, PredictorSpec]]:
+def _forecast_files(evaluation: PredictorEvaluation, file: Path) -> dict[Path, tuple[Recording, PredictorSpec]]:
     """Return the files of forecasts: FILE, or with several recordings or predictors one for each of them.
 
     Raises:
@@ -175,10 +175,10 @@ def _forecast_files(evaluation: Evaluation, file: Path) -> dict[Path, tuple[Reco
     return files
 
 
-def _write_forecasts(evaluation: Evaluation, files: dict[Path, tuple[Recording, PredictorSpec]]) -> None:
+def _write_forecasts(evaluation: PredictorEvaluation, files: dict[Path, tuple[Recording, PredictorSpec]]) -> None:
     """Predict the windows again and write the forecasts."""
-    from crowdbot.benchmark import predict_windows
     from crowdbot.data import Forecast, write_forecasts
+    from crowdbot.evaluation import predict_windows
 
     how = evaluation
     for file, (recording, spec) in files.items():
@@ -191,7 +191,7 @@ def _write_forecasts(evaluation: Evaluation, files: dict[Path, tuple[Recording, 
         note(f"wrote the forecasts of {spec.name} to {file}")
 
 
-def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
+def _resume_hint(evaluation: PredictorEvaluation, keep: Path | None) -> str:
     """Return what an interrupted run has stored and how to resume it."""
     if keep is None:
         return "nothing is stored; add --out DIR to make a run that can be resumed"
@@ -206,14 +206,14 @@ def _notes(results: list[PredictorResult]) -> list[str]:
 
 
 def _run_jobs(
-    evaluation: Evaluation, options: argparse.Namespace, keep: Path | None, report: Progress
-) -> list[tuple[EvaluationJob, JobResult]]:
+    evaluation: PredictorEvaluation, options: argparse.Namespace, keep: Path | None, report: Progress
+) -> list[tuple[PredictorJob, PredictorJobResult]]:
     """Run the evaluation; print one line per frame of a calibrated crowd, below the name of its scheme."""
     jobs = evaluation.jobs()
     whole: dict[tuple[str, str], int] = {}
     for job in jobs:
         whole[job.label] = whole.get(job.label, 0) + job.last - job.first
-    done: list[tuple[EvaluationJob, JobResult]] = []
+    done: list[tuple[PredictorJob, PredictorJobResult]] = []
     share: dict[tuple[str, str], int] = {}
     headed = ""
     for job, part in evaluation.run(options.workers, options.cluster, keep):
@@ -228,13 +228,13 @@ def _run_jobs(
     return done
 
 
-def _frame_lines(part: JobResult) -> None:
+def _frame_lines(part: PredictorJobResult) -> None:
     frames = part.frames
     for row in zip(frames.frame, frames.people, frames.cost, frames.evaluations, frames.seconds, strict=True):
         note(frame_line(*row))
 
 
-def _tables(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
+def _tables(options: argparse.Namespace, evaluation: PredictorEvaluation, results: list[PredictorResult]) -> None:
     """Print one table for one predictor, or one table per recording for several."""
     from crowdbot.metrics import Score
 
@@ -265,7 +265,7 @@ def _table(title: str, head: str, rows: list[str], scores: list[Score], caption:
     print_table(title, (head, *heads), cells, caption=caption)
 
 
-def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str, Any]:
+def as_json(evaluation: PredictorEvaluation, results: list[PredictorResult]) -> dict[str, Any]:
     """Return the output of ``--json``."""
     from crowdbot.metrics import Score
 
@@ -286,9 +286,11 @@ def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str,
     }
 
 
-def _write_results(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
+def _write_results(
+    options: argparse.Namespace, evaluation: PredictorEvaluation, results: list[PredictorResult]
+) -> None:
     """Write the scores, the results by frame, the plots and the animation, if requested."""
-    from crowdbot.benchmark import animate_window, plot_errors, plot_frames
+    from crowdbot.evaluation import animate_window, plot_errors, plot_frames
 
     from .output import json_text
 

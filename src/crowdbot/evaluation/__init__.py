@@ -1,182 +1,244 @@
-"""Evaluation of navigators: many trials, robots and seeds, with intervals, comparisons and requirements."""
+"""Evaluation of navigators and predictors: many trials, robots, seeds and recordings, with intervals and requirements.
 
-from .comparison import PairedComparison, paired_comparison
-from .decision_metrics import DECISION_METRICS
-from .episode_metrics import PAIRED_FAMILIES, episode_log, episode_metrics, families_of
-from .factor_sweep import FactorSweep, parse_factors, sweep_trials
-from .intervals import Estimate, bootstrap_estimate, proportion_interval
-from .job import RunRow, row_of, row_values
-from .junit import junit_xml
-from .method import Method, own_method, parse_methods, with_safety
-from .pareto import pareto_front
-from .plan import EvaluationCell, EvaluationPlan, parse_seeds
-from .realism import (
-    ClearanceRow,
-    ClearanceTable,
-    CrowdRealism,
-    load_clearances,
-    model_digest,
-    realism_notice,
-    trial_realism,
-)
-from .reality import FEWEST_RUNS, RealPlacement, place_reality, reality_svg
-from .recorded_scans import (
-    OGM_PERIOD,
-    AnnotatedScan,
-    DetectionScores,
-    find_ogm_split,
-    read_drow,
-    read_frog,
-    read_lcas,
-    read_ogm,
-    score_detections,
-    score_positions,
-)
-from .report import write_report
-from .requirement import Requirement, RequirementVerdict, parse_requirement
-from .result import CellResult, EvaluationResult, load_evaluation, remark_lines, result_schema
-from .robot_recording import RobotRecording, load_robot_recording
-from .runner import evaluate
-from .scan_prediction import SCAN_SCORES, SOGMP, ScanProtocol, ScanScores, TruePeople, plot_scan_scores, score_scans
-from .statistic import Statistic, check_metrics, metric_unit, parse_statistic
-from .sweep_effects import FactorEffect, factor_effects
-from .tracking import (
-    BAND_LIMITS,
-    DOWNSTREAM_INPUTS,
-    DOWNSTREAM_SCORES,
-    STRATA,
-    CameraCalibration,
-    LoggedReading,
-    ReadingLog,
-    ReturnsOfPeople,
-    RobotOdometry,
-    TrackingRun,
-    TruePaths,
-    VideoForecast,
-    VideoRun,
-    estimate_downstream,
-    estimate_scores,
-    estimate_strata,
-    log_readings,
-    plot_tracks,
-    plot_video_run,
-    read_camera,
-    read_odometry,
-    read_readings,
-    read_true_paths,
-    scan_statistics,
-    track_people,
-    track_video,
-)
-from .trial_of_recording import recorded_trial
-from .verdict import SafetyVerdict, judge_cell, runs_without_event
-from .worst_run import PersonContact, WorstRun, person_contacts, worst_rows, worst_runs
+Names are loaded on first use.
+"""
 
-__all__ = [
-    "BAND_LIMITS",
-    "DECISION_METRICS",
-    "DOWNSTREAM_INPUTS",
-    "DOWNSTREAM_SCORES",
-    "FEWEST_RUNS",
-    "OGM_PERIOD",
-    "PAIRED_FAMILIES",
-    "SCAN_SCORES",
-    "SOGMP",
-    "STRATA",
-    "AnnotatedScan",
-    "CameraCalibration",
-    "CellResult",
-    "ClearanceRow",
-    "ClearanceTable",
-    "CrowdRealism",
-    "DetectionScores",
-    "Estimate",
-    "EvaluationCell",
-    "EvaluationPlan",
-    "EvaluationResult",
-    "FactorEffect",
-    "FactorSweep",
-    "LoggedReading",
-    "Method",
-    "PairedComparison",
-    "PersonContact",
-    "ReadingLog",
-    "RealPlacement",
-    "Requirement",
-    "RequirementVerdict",
-    "ReturnsOfPeople",
-    "RobotOdometry",
-    "RobotRecording",
-    "RunRow",
-    "SafetyVerdict",
-    "ScanProtocol",
-    "ScanScores",
-    "Statistic",
-    "TrackingRun",
-    "TruePaths",
-    "TruePeople",
-    "VideoForecast",
-    "VideoRun",
-    "WorstRun",
-    "bootstrap_estimate",
-    "check_metrics",
-    "episode_log",
-    "episode_metrics",
-    "estimate_downstream",
-    "estimate_scores",
-    "estimate_strata",
-    "evaluate",
-    "factor_effects",
-    "families_of",
-    "find_ogm_split",
-    "judge_cell",
-    "junit_xml",
-    "load_clearances",
-    "load_evaluation",
-    "load_robot_recording",
-    "log_readings",
-    "metric_unit",
-    "model_digest",
-    "own_method",
-    "paired_comparison",
-    "pareto_front",
-    "parse_factors",
-    "parse_methods",
-    "parse_requirement",
-    "parse_seeds",
-    "parse_statistic",
-    "person_contacts",
-    "place_reality",
-    "plot_scan_scores",
-    "plot_tracks",
-    "plot_video_run",
-    "proportion_interval",
-    "read_camera",
-    "read_drow",
-    "read_frog",
-    "read_lcas",
-    "read_odometry",
-    "read_ogm",
-    "read_readings",
-    "read_true_paths",
-    "realism_notice",
-    "reality_svg",
-    "recorded_trial",
-    "remark_lines",
-    "result_schema",
-    "row_of",
-    "row_values",
-    "runs_without_event",
-    "scan_statistics",
-    "score_detections",
-    "score_positions",
-    "score_scans",
-    "sweep_trials",
-    "track_people",
-    "track_video",
-    "trial_realism",
-    "with_safety",
-    "worst_rows",
-    "worst_runs",
-    "write_report",
-]
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
+
+_MODULES = {
+    "comparison": ("PairedComparison", "paired_comparison"),
+    "decision_metrics": ("DECISION_METRICS",),
+    "episode_metrics": ("PAIRED_FAMILIES", "episode_log", "episode_metrics", "families_of"),
+    "factor_sweep": ("FactorSweep", "parse_factors", "sweep_trials"),
+    "intervals": ("Estimate", "bootstrap_estimate", "proportion_interval"),
+    "job": ("RunRow", "row_of", "row_values"),
+    "junit": ("junit_xml",),
+    "method": ("Method", "own_method", "parse_methods", "with_safety"),
+    "pareto": ("pareto_front",),
+    "plan": ("EvaluationCell", "EvaluationPlan", "parse_seeds"),
+    "prediction": (
+        "DegradedScore",
+        "DegradedTask",
+        "Demo",
+        "FrameResults",
+        "PredictionResult",
+        "PredictorEvaluation",
+        "PredictorJob",
+        "PredictorJobResult",
+        "PredictorResult",
+        "WindowResults",
+        "animate_window",
+        "plot_degradation",
+        "plot_errors",
+        "plot_frames",
+        "predict_windows",
+        "run_demo",
+        "score_predictor",
+        "sweep_degradations",
+        "write_demo_report",
+    ),
+    "realism": (
+        "ClearanceRow",
+        "ClearanceTable",
+        "CrowdRealism",
+        "load_clearances",
+        "model_digest",
+        "realism_notice",
+        "trial_realism",
+    ),
+    "reality": ("FEWEST_RUNS", "RealPlacement", "place_reality", "reality_svg"),
+    "recorded_scans": (
+        "OGM_PERIOD",
+        "AnnotatedScan",
+        "DetectionScores",
+        "find_ogm_split",
+        "read_drow",
+        "read_frog",
+        "read_lcas",
+        "read_ogm",
+        "score_detections",
+        "score_positions",
+    ),
+    "report": ("write_report",),
+    "requirement": ("Requirement", "RequirementVerdict", "parse_requirement"),
+    "result": ("CellResult", "EvaluationResult", "load_evaluation", "remark_lines", "result_schema"),
+    "robot_recording": ("RobotRecording", "load_robot_recording"),
+    "runner": ("evaluate",),
+    "scan_prediction": (
+        "SCAN_SCORES",
+        "SOGMP",
+        "ScanProtocol",
+        "ScanScores",
+        "TruePeople",
+        "plot_scan_scores",
+        "score_scans",
+    ),
+    "statistic": ("Statistic", "check_metrics", "metric_unit", "parse_statistic"),
+    "sweep_effects": ("FactorEffect", "factor_effects"),
+    "tracking": (
+        "BAND_LIMITS",
+        "DOWNSTREAM_INPUTS",
+        "DOWNSTREAM_SCORES",
+        "STRATA",
+        "CameraCalibration",
+        "LoggedReading",
+        "ReadingLog",
+        "ReturnsOfPeople",
+        "RobotOdometry",
+        "TrackingRun",
+        "TruePaths",
+        "VideoForecast",
+        "VideoRun",
+        "estimate_downstream",
+        "estimate_scores",
+        "estimate_strata",
+        "log_readings",
+        "plot_tracks",
+        "plot_video_run",
+        "read_camera",
+        "read_odometry",
+        "read_readings",
+        "read_true_paths",
+        "scan_statistics",
+        "track_people",
+        "track_video",
+    ),
+    "trial_of_recording": ("recorded_trial",),
+    "verdict": ("SafetyVerdict", "judge_cell", "runs_without_event"),
+    "worst_run": ("PersonContact", "WorstRun", "person_contacts", "worst_rows", "worst_runs"),
+}
+__getattr__, __dir__ = lazy_exports(__name__, _MODULES)
+
+__all__ = [name for names in _MODULES.values() for name in names]
+
+
+if TYPE_CHECKING:
+    from .comparison import PairedComparison as PairedComparison
+    from .comparison import paired_comparison as paired_comparison
+    from .decision_metrics import DECISION_METRICS as DECISION_METRICS
+    from .episode_metrics import PAIRED_FAMILIES as PAIRED_FAMILIES
+    from .episode_metrics import episode_log as episode_log
+    from .episode_metrics import episode_metrics as episode_metrics
+    from .episode_metrics import families_of as families_of
+    from .factor_sweep import FactorSweep as FactorSweep
+    from .factor_sweep import parse_factors as parse_factors
+    from .factor_sweep import sweep_trials as sweep_trials
+    from .intervals import Estimate as Estimate
+    from .intervals import bootstrap_estimate as bootstrap_estimate
+    from .intervals import proportion_interval as proportion_interval
+    from .job import RunRow as RunRow
+    from .job import row_of as row_of
+    from .job import row_values as row_values
+    from .junit import junit_xml as junit_xml
+    from .method import Method as Method
+    from .method import own_method as own_method
+    from .method import parse_methods as parse_methods
+    from .method import with_safety as with_safety
+    from .pareto import pareto_front as pareto_front
+    from .plan import EvaluationCell as EvaluationCell
+    from .plan import EvaluationPlan as EvaluationPlan
+    from .plan import parse_seeds as parse_seeds
+    from .prediction import DegradedScore as DegradedScore
+    from .prediction import DegradedTask as DegradedTask
+    from .prediction import Demo as Demo
+    from .prediction import FrameResults as FrameResults
+    from .prediction import PredictionResult as PredictionResult
+    from .prediction import PredictorEvaluation as PredictorEvaluation
+    from .prediction import PredictorJob as PredictorJob
+    from .prediction import PredictorJobResult as PredictorJobResult
+    from .prediction import PredictorResult as PredictorResult
+    from .prediction import WindowResults as WindowResults
+    from .prediction import animate_window as animate_window
+    from .prediction import plot_degradation as plot_degradation
+    from .prediction import plot_errors as plot_errors
+    from .prediction import plot_frames as plot_frames
+    from .prediction import predict_windows as predict_windows
+    from .prediction import run_demo as run_demo
+    from .prediction import score_predictor as score_predictor
+    from .prediction import sweep_degradations as sweep_degradations
+    from .prediction import write_demo_report as write_demo_report
+    from .realism import ClearanceRow as ClearanceRow
+    from .realism import ClearanceTable as ClearanceTable
+    from .realism import CrowdRealism as CrowdRealism
+    from .realism import load_clearances as load_clearances
+    from .realism import model_digest as model_digest
+    from .realism import realism_notice as realism_notice
+    from .realism import trial_realism as trial_realism
+    from .reality import FEWEST_RUNS as FEWEST_RUNS
+    from .reality import RealPlacement as RealPlacement
+    from .reality import place_reality as place_reality
+    from .reality import reality_svg as reality_svg
+    from .recorded_scans import OGM_PERIOD as OGM_PERIOD
+    from .recorded_scans import AnnotatedScan as AnnotatedScan
+    from .recorded_scans import DetectionScores as DetectionScores
+    from .recorded_scans import find_ogm_split as find_ogm_split
+    from .recorded_scans import read_drow as read_drow
+    from .recorded_scans import read_frog as read_frog
+    from .recorded_scans import read_lcas as read_lcas
+    from .recorded_scans import read_ogm as read_ogm
+    from .recorded_scans import score_detections as score_detections
+    from .recorded_scans import score_positions as score_positions
+    from .report import write_report as write_report
+    from .requirement import Requirement as Requirement
+    from .requirement import RequirementVerdict as RequirementVerdict
+    from .requirement import parse_requirement as parse_requirement
+    from .result import CellResult as CellResult
+    from .result import EvaluationResult as EvaluationResult
+    from .result import load_evaluation as load_evaluation
+    from .result import remark_lines as remark_lines
+    from .result import result_schema as result_schema
+    from .robot_recording import RobotRecording as RobotRecording
+    from .robot_recording import load_robot_recording as load_robot_recording
+    from .runner import evaluate as evaluate
+    from .scan_prediction import SCAN_SCORES as SCAN_SCORES
+    from .scan_prediction import SOGMP as SOGMP
+    from .scan_prediction import ScanProtocol as ScanProtocol
+    from .scan_prediction import ScanScores as ScanScores
+    from .scan_prediction import TruePeople as TruePeople
+    from .scan_prediction import plot_scan_scores as plot_scan_scores
+    from .scan_prediction import score_scans as score_scans
+    from .statistic import Statistic as Statistic
+    from .statistic import check_metrics as check_metrics
+    from .statistic import metric_unit as metric_unit
+    from .statistic import parse_statistic as parse_statistic
+    from .sweep_effects import FactorEffect as FactorEffect
+    from .sweep_effects import factor_effects as factor_effects
+    from .tracking import BAND_LIMITS as BAND_LIMITS
+    from .tracking import DOWNSTREAM_INPUTS as DOWNSTREAM_INPUTS
+    from .tracking import DOWNSTREAM_SCORES as DOWNSTREAM_SCORES
+    from .tracking import STRATA as STRATA
+    from .tracking import CameraCalibration as CameraCalibration
+    from .tracking import LoggedReading as LoggedReading
+    from .tracking import ReadingLog as ReadingLog
+    from .tracking import ReturnsOfPeople as ReturnsOfPeople
+    from .tracking import RobotOdometry as RobotOdometry
+    from .tracking import TrackingRun as TrackingRun
+    from .tracking import TruePaths as TruePaths
+    from .tracking import VideoForecast as VideoForecast
+    from .tracking import VideoRun as VideoRun
+    from .tracking import estimate_downstream as estimate_downstream
+    from .tracking import estimate_scores as estimate_scores
+    from .tracking import estimate_strata as estimate_strata
+    from .tracking import log_readings as log_readings
+    from .tracking import plot_tracks as plot_tracks
+    from .tracking import plot_video_run as plot_video_run
+    from .tracking import read_camera as read_camera
+    from .tracking import read_odometry as read_odometry
+    from .tracking import read_readings as read_readings
+    from .tracking import read_true_paths as read_true_paths
+    from .tracking import scan_statistics as scan_statistics
+    from .tracking import track_people as track_people
+    from .tracking import track_video as track_video
+    from .trial_of_recording import recorded_trial as recorded_trial
+    from .verdict import SafetyVerdict as SafetyVerdict
+    from .verdict import judge_cell as judge_cell
+    from .verdict import runs_without_event as runs_without_event
+    from .worst_run import PersonContact as PersonContact
+    from .worst_run import WorstRun as WorstRun
+    from .worst_run import person_contacts as person_contacts
+    from .worst_run import worst_rows as worst_rows
+    from .worst_run import worst_runs as worst_runs

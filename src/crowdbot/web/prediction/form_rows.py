@@ -117,7 +117,7 @@ def _draws(kind: type) -> bool:
 
 
 def _listing(kind: str) -> list[dict[str, Any]]:
-    from crowdbot.benchmark import builtin_names
+    from crowdbot.catalogue import builtin_names
 
     about = builtin_names(kind)[kind]
     rows = []

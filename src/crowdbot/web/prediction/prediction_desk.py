@@ -263,12 +263,12 @@ class PredictionDesk(Desk):
         return window_frame(index, self.board.windows(), 1.0 / self.board.tracks.fps, shown, near)
 
     def _animation(self, path: str, query: dict[str, str]) -> Resource:
-        from crowdbot.benchmark import Evaluation, animate_window
+        from crowdbot.evaluation import PredictorEvaluation, animate_window
 
         setup, members = self._setup, self._members()
         frame = int(self.board.windows()[0].frame[self.board.index(_whole(query, "index")), -1])
         samples = max(one.choice.samples for one in members)
-        evaluation = Evaluation(
+        evaluation = PredictorEvaluation(
             (setup.recording,), tuple(one.spec for one in members), samples, setup.best_of, setup.seed
         )
         with tempfile.TemporaryDirectory() as folder:

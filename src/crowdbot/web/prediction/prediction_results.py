@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.benchmark import FrameResults
 from crowdbot.data import Windows
+from crowdbot.evaluation import FrameResults
 from crowdbot.metrics import PersonErrors, Score
 
 from .prediction_worker import WindowPart

@@ -135,7 +135,7 @@ class PredictionSetup:
         if degradation is None:
             more = f"samples={choice.samples}, best_of={self.best_of!r}, seed={self.seed}, live={self.live}"
             return (
-                f"evaluation = Evaluation((recording,), ({made},), {more})\n"
+                f"evaluation = PredictorEvaluation((recording,), ({made},), {more})\n"
                 "for result in evaluation.results(list(evaluation.run())):\n"
                 "    print(result.score)"
             )
@@ -191,9 +191,9 @@ def recording_of(path: Path, options: Mapping[str, Any]) -> Recording:
 
 def _imports(body: str) -> str:
     rooms = {"crowdbot." + part.split(".")[0] for part in body.split("crowdbot.")[1:] if part[:1].isalpha()}
-    names = "DegradedTask, sweep_degradations" if "DegradedTask" in body else "Evaluation"
+    names = "DegradedTask, sweep_degradations" if "DegradedTask" in body else "PredictorEvaluation"
     if ".data.degrade" in body:
         rooms = {room for room in rooms if room != "crowdbot.data"} | {"crowdbot.data.degrade"}
     lines = [f"import {room}" for room in sorted(rooms)]
-    lines += [f"from crowdbot.benchmark import {names}", "from crowdbot.data import Recording"]
+    lines += [f"from crowdbot.evaluation import {names}", "from crowdbot.data import Recording"]
     return "\n".join([*lines, "from crowdbot.prediction import PredictorSpec"])

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.benchmark import FrameResults, WindowResults, predict_windows
 from crowdbot.calibration import RecordingCalibration
 from crowdbot.core import CrowdbotError, InputError, stream
 from crowdbot.data import Degradation, DegradedTracks, Recording, Windows
+from crowdbot.evaluation import FrameResults, WindowResults, predict_windows
 from crowdbot.metrics import PersonErrors, Score
 from crowdbot.prediction import PredictorSpec, Simulated, degraded_windows
 from crowdbot.web.jobs.job_process import JobPipe
@@ -44,7 +44,7 @@ class PredictionTask:
         recording: the recording, cut into windows.
         members: the predictors.
         degradation: degradation of the observed rows, or None.
-        seed, best_of, live: see :class:`crowdbot.benchmark.Evaluation`.
+        seed, best_of, live: see :class:`crowdbot.evaluation.PredictorEvaluation`.
     """
 
     recording: Recording

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.benchmark import FrameResults
 from crowdbot.core import InputError
 from crowdbot.data import Windows
+from crowdbot.evaluation import FrameResults
 from crowdbot.metrics import PersonErrors, Score
 from crowdbot.web.workspace import Workspace
 

@@ -19,7 +19,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from crowdbot import prediction
-from crowdbot.benchmark import builtin_names
+from crowdbot.catalogue import builtin_names
 from crowdbot.core import CrowdbotError, InputError, builtin_classes, builtin_name, did_you_mean
 from crowdbot.metrics import wall_clearance
 from crowdbot.navigation import ExternalNavigator, Navigator

@@ -11,13 +11,13 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import PersonErrors, Score, person_errors
 from crowdbot.prediction import Predictor
 
-__all__ = ["evaluate"]
+__all__ = ["score_predictor"]
 
 CHUNK_NUMBERS = 4_000_000
 """Approximate number of predicted values in memory at once (32 MB per array)."""
 
 
-def evaluate(
+def score_predictor(
     predictor: Predictor,
     past: Windows,
     future: Windows,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core import InputError, kebab_case
 from crowdbot.recording import run
 
-from .report import PredictionResult, write_report
+from .demo_report import PredictionResult, write_demo_report
 
 if TYPE_CHECKING:
     from crowdbot.calibration import Fit
@@ -89,7 +89,7 @@ def run_demo(
     predicted = _predict(fit, past, future, episode.seed, lambda share: report("3 predict the people", share))
     report("4 write the report", 0.0)
     commands = _commands(out, episode, fit)
-    page = write_report(page, episode, past, future, predicted, commands, _describe_input(trial, fit))
+    page = write_demo_report(page, episode, past, future, predicted, commands, _describe_input(trial, fit))
     report("4 write the report", 1.0)
     scores = tuple(one.score for one in predicted)
     caption = f"protocol {scores[0].protocol}; people within {NEAR:g} m of the robot; means over persons"
@@ -111,12 +111,12 @@ def _predict(
     from crowdbot.core import stream
     from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
 
-    from .prediction import evaluate
+    from .predictor_score import score_predictor
 
     found = []
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))
     for number, predictor in enumerate(predictors, start=1):
-        score = evaluate(predictor, past, future, seed=seed)
+        score = score_predictor(predictor, past, future, seed=seed)
         score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # parameters are listed below
         found.append(PredictionResult(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
         progress(number / 4)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from crowdbot.metrics import Score
     from crowdbot.simulation import Episode
 
-__all__ = ["PredictionResult", "write_report"]
+__all__ = ["PredictionResult", "write_demo_report"]
 
 COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
 """Colours that are distinguishable with colour blindness (Okabe & Ito)."""
@@ -41,7 +41,7 @@ class PredictionResult:
     score: Score
 
 
-def write_report(
+def write_demo_report(
     path: Path,
     episode: Episode,
     past: Windows,
@@ -147,10 +147,9 @@ def _format_value(value: Any) -> str:
 def _environment(episode: Episode) -> str:
     import numba
 
-    from crowdbot import __version__
-
+    version = importlib.import_module("crowdbot").__version__
     return (
-        f"crowdbot {__version__}, Python {platform.python_version()}, numpy {np.__version__},"
+        f"crowdbot {version}, Python {platform.python_version()}, numpy {np.__version__},"
         f" numba {numba.__version__}, {platform.system()} {platform.machine()};"
         f" seed {episode.seed}, digest {episode.digest}"
     )

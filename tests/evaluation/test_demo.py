@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from crowdbot.benchmark import run_demo
 from crowdbot.cli import main
+from crowdbot.evaluation import run_demo
 from crowdbot.recording import replay
 
 

@@ -14,7 +14,7 @@ from crowdbot.data.degrade import Chain, Degradation, EmptyRecordingError
 from crowdbot.metrics import Score
 from crowdbot.prediction import Predictor, degraded_windows
 
-from .predictor_score import evaluate
+from .predictor_score import score_predictor
 
 __all__ = ["DegradedScore", "DegradedTask", "sweep_degradations"]
 
@@ -155,7 +155,7 @@ def _level(
             if seen.predictable == 0:
                 continue
             for predictor, own in zip(predictors, scores, strict=True):
-                score = evaluate(predictor, seen.past, seen.future, task.samples, task.best_of, task.seed)
+                score = score_predictor(predictor, seen.past, seen.future, task.samples, task.best_of, task.seed)
                 own[draw].append(score)
     asked = sum(int(future.scored.sum()) for _, future in cuts)
     return [

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import DegradedTask, plot_degradation, sweep_degradations
-from crowdbot.benchmark.prediction.degraded_plot import _figure
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import GaussianNoise, MissingFrames
+from crowdbot.evaluation import DegradedTask, plot_degradation, sweep_degradations
+from crowdbot.evaluation.prediction.degraded_plot import _figure
 from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman
 
 

@@ -23,7 +23,7 @@ from .window_results import FrameResults, predict_windows
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Evaluation", "EvaluationJob", "JobResult", "PredictorResult"]
+__all__ = ["PredictorEvaluation", "PredictorJob", "PredictorJobResult", "PredictorResult"]
 
 MIN_JOBS = 8
 """Minimum number of jobs per recording."""
@@ -32,7 +32,7 @@ JOB_AGENTS = 4_000
 
 
 @dataclass(frozen=True)
-class EvaluationJob:
+class PredictorJob:
     """One predictor on a range of windows of one recording."""
 
     recording: Recording
@@ -56,7 +56,7 @@ class EvaluationJob:
 
 
 @dataclass(frozen=True)
-class JobResult:
+class PredictorJobResult:
     """Result of a job: errors of each person, results by frame, number of samples in the forecasts."""
 
     errors: PersonErrors
@@ -71,7 +71,7 @@ class JobResult:
             np.savez_compressed(stream_, samples=np.array(self.samples), **arrays)
 
     @classmethod
-    def load(cls, file: Path) -> JobResult:
+    def load(cls, file: Path) -> PredictorJobResult:
         """Read a result from a file."""
         with file.open("rb") as stream_, np.load(stream_, allow_pickle=False) as kept:
             errors = PersonErrors(**{f.name: kept[f"errors.{f.name}"] for f in dataclasses.fields(PersonErrors)})
@@ -91,7 +91,7 @@ class PredictorResult:
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class PredictorEvaluation:
     """Evaluation of every predictor on every recording.
 
     Fields:
@@ -144,7 +144,7 @@ class Evaluation:
         near = ends[np.argmin(np.abs(ends - frame))]
         raise InputError(f"no window of {first.path} ends at frame {frame}; the nearest one ends at {near}")
 
-    def jobs(self) -> list[EvaluationJob]:
+    def jobs(self) -> list[PredictorJob]:
         """Return the jobs, ordered by recording, then predictor."""
         found = []
         for recording in self.recordings:
@@ -157,17 +157,19 @@ class Evaluation:
                 for first in range(0, len(past), size):
                     last = min(first + size, len(past))
                     found.append(
-                        EvaluationJob(recording, spec, first, last, self.samples, self.best_of, self.seed, self.live)
+                        PredictorJob(recording, spec, first, last, self.samples, self.best_of, self.seed, self.live)
                     )
         return found
 
     def run(
         self, workers: int = 1, cluster: str | None = None, keep: Path | None = None
-    ) -> Iterator[tuple[EvaluationJob, JobResult]]:
+    ) -> Iterator[tuple[PredictorJob, PredictorJobResult]]:
         """Yield each job with its result when it is done; results stored in the folder ``keep`` come first."""
         jobs = self.jobs()
         files = [] if keep is None else self._files(keep)
-        for number, part in run_saved_jobs(run_job, jobs, files, JobResult.save, JobResult.load, workers, cluster):
+        for number, part in run_saved_jobs(
+            run_job, jobs, files, PredictorJobResult.save, PredictorJobResult.load, workers, cluster
+        ):
             yield jobs[number], part
 
     def progress(self, keep: Path) -> int:
@@ -178,7 +180,7 @@ class Evaluation:
         content = {recording: recording.digest for recording in self.recordings}
         return [keep / f"{job.key}-{content[job.recording]}.npz" for job in self.jobs()]
 
-    def results(self, done: Sequence[tuple[EvaluationJob, JobResult]]) -> list[PredictorResult]:
+    def results(self, done: Sequence[tuple[PredictorJob, PredictorJobResult]]) -> list[PredictorResult]:
         """Return one result per recording and predictor from the results of all jobs."""
         found, labels = [], self.labels()
         for recording in self.recordings:
@@ -206,7 +208,7 @@ class Evaluation:
         return pd.concat(tables, ignore_index=True)
 
 
-def run_job(job: EvaluationJob) -> JobResult:
+def run_job(job: PredictorJob) -> PredictorJobResult:
     """Run one job."""
     predictor = job.spec.build(job.recording)
     size = 1 if job.live else job.last - job.first
@@ -215,7 +217,7 @@ def run_job(job: EvaluationJob) -> JobResult:
             predictor, *job.recording.windows, job.samples, job.best_of, job.seed, job.live, size, job.first, job.last
         )
     )
-    return JobResult(
+    return PredictorJobResult(
         PersonErrors.concatenate([part.errors for part in parts]),
         FrameResults.concatenate([part.frames for part in parts]),
         max(1, *(part.forecast.samples for part in parts)),

@@ -13,7 +13,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Recording, Windows
 from crowdbot.prediction import PredictorSpec
 
-from .evaluation import Evaluation, PredictorResult
+from .evaluation import PredictorEvaluation, PredictorResult
 
 __all__ = ["animate_window", "plot_errors", "plot_frames"]
 
@@ -88,7 +88,7 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
     _save(figure, file)
 
 
-def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
+def animate_window(evaluation: PredictorEvaluation, frame: int, file: Path) -> Path:
     """Write an animation of one window: observed and true tracks, and the forecasts of each predictor.
 
     Args:
@@ -163,7 +163,7 @@ class _Futures(NamedTuple):
     opacity: list[float]
 
 
-def _paths(spec: PredictorSpec, recording: Recording, past: Windows, evaluation: Evaluation) -> _Futures:
+def _paths(spec: PredictorSpec, recording: Recording, past: Windows, evaluation: PredictorEvaluation) -> _Futures:
     """Return the futures of the people of a window."""
     predictor = spec.build(recording)
     forecast = predictor.predict(past, recording.predict, evaluation.samples, stream(evaluation.seed, "animate"))
