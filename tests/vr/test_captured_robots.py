@@ -11,7 +11,7 @@ from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder, RobotPoseOrder, Simulation
 from crowdbot.trials import parse_trial
 from crowdbot.vr import VR_DESKS, with_captures
-from crowdbot.vr.capture import link_captures
+from crowdbot.vr.trial_seats import link_captures
 
 ROBOT = """<robot name="robot" type="turtlebot2" x="4" y="-1" default-sensors="false" control-period="0.05">
 <goal x="-5" y="-1"/><navigator type="real-robot" driver="straight" parameters="speed=0.4"/></robot>"""

@@ -24,7 +24,7 @@ from crowdbot.world import (
     select_environments,
     step_environments,
 )
-from crowdbot.world.physics.rigid_world import MORE
+from crowdbot.world.physics.world import MORE
 
 BOT, CHAIR = Robot.load("turtlebot2"), Robot.load("wheelchair")
 COUNT = 12

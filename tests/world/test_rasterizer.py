@@ -11,9 +11,9 @@ import pytest
 from crowdbot.core import InputError, Scene
 from crowdbot.humans import People
 from crowdbot.world import PeopleMotion, Renderer, SceneCamera
-from crowdbot.world.rendering.illumination import illumination
 from crowdbot.world.rendering.rasterizer import DrawList, Rasterizer, pack_textures
 from crowdbot.world.rendering.shade_kernels import soften
+from crowdbot.world.rendering.software_visuals import illumination
 from crowdbot.world.stage_appearance import StageAppearance
 
 GREY = np.full((4, 4, 3), 128, dtype=np.uint8)
@@ -133,7 +133,7 @@ sys.path.insert(0, {folder!r})
 import numpy as np
 from test_rasterizer import GREY, GROUND, camera, triangles
 from crowdbot.world.stage_appearance import StageAppearance
-from crowdbot.world.rendering.illumination import illumination
+from crowdbot.world.rendering.software_visuals import illumination
 from crowdbot.world.rendering.rasterizer import Rasterizer, pack_textures
 from crowdbot.world.rendering import rasterizer
 rasterizer.SHADOW_SIZES = 64, 64

@@ -8,7 +8,7 @@ from crowdbot.core import RobotError, parse_xml
 from crowdbot.world import read_urdf
 from crowdbot.world.urdf import parse_robot_file
 from crowdbot.world.urdf.folders import Folders
-from crowdbot.world.urdf.whole_robots import find_whole_robots
+from crowdbot.world.urdf.robot_document import find_whole_robots
 from crowdbot.world.xacro import expand_xacro
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,14 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError
 
 from .activities import ACTIVITIES
-from .asset import LEVELS, shapes
+from .asset import LEVELS, Level, shapes
 from .clips.clip import Clip
 from .limbs import LIMBS, mass_shares
 from .measures import Measures, measures
 from .person import Person, drawable, person, persons
 from .posture import Posture
 from .rigged.body_rows import BodyRows, body_rows
-from .rigged.group_mesh import GroupMesh, group_mesh
 from .rigged.rigged_body import RiggedBody
 from .skin import SkinnedMesh, skin_vertices
 from .wardrobe import Outfit, outfit, region_colors, worn_parts
@@ -269,3 +269,40 @@ def _per_person(name: str, value: ArrayLike, count: int) -> Floats:
             f"{name} has shape {list(array.shape)}, it must be one number or one for each of {count} people"
         )
     return np.broadcast_to(array, (count,))
+
+
+class GroupMesh(NamedTuple):
+    """Triangles of the included bodies, followed by those of each imported body.
+
+    Fields:
+        faces: ``[F, 3]`` indices of vertices.
+        points: first vertex of the included bodies and of each imported one, and the number of vertices ``[K + 2]``.
+        triangles: the same of the triangles ``[K + 2]``.
+        included: the level of detail of the included bodies.
+    """
+
+    faces: Ints
+    points: tuple[int, ...]
+    triangles: tuple[int, ...]
+    included: Level
+
+    def vertex_span(self, own: int) -> slice:
+        """Return the vertices of an imported body by its number, or of the included ones for -1."""
+        return slice(self.points[own + 1], self.points[own + 2])
+
+    def face_span(self, own: int) -> slice:
+        """Return the triangles of an imported body by its number, or of the included ones for -1."""
+        return slice(self.triangles[own + 1], self.triangles[own + 2])
+
+
+def group_mesh(own: tuple[RiggedBody, ...], level: int) -> GroupMesh:
+    """Return the mesh of a group with some imported bodies at a level of detail."""
+    included = shapes().levels[level]
+    faces, points, triangles = [included.faces], [0, included.rest.shape[1]], [0, len(included.faces)]
+    for body in own:
+        mesh = body.levels[level]
+        faces.append(mesh.faces + points[-1])
+        points.append(points[-1] + len(mesh.rest))
+        triangles.append(triangles[-1] + len(mesh.faces))
+    whole = np.concatenate(faces) if own else included.faces
+    return GroupMesh(whole, tuple(points), tuple(triangles), included)

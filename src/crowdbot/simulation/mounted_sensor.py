@@ -25,8 +25,6 @@ from crowdbot.sensors import (
 from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.world import MountPlacement, PlanarWorld, World, wheel_geometry, wheel_rotation
 
-from .readings.old_people import arrival_of, known_people, people_then
-from .readings.reading_names import name_by_id, tracked_columns
 from .world_view import WorldView
 
 __all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "needs_bodies", "spatial"]
@@ -34,6 +32,7 @@ __all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "needs_bodies",
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 LEVEL = 1e-9
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -397,3 +396,62 @@ def _fit(values: NDArray[Any], agents: int) -> NDArray[Any]:
     if values.shape[1] > agents:
         return values[:, :agents]
     return np.concatenate([values, np.zeros((len(values), agents - values.shape[1]), dtype=values.dtype)], axis=1)
+
+
+def arrival_of(sensor: Any, ticks: Ints, due: Ints) -> Ints:
+    """Return ``[N]`` the ticks at which the readings of some environments arrive; late ones arrive in their order."""
+    arrival: Ints = sensor.schedule.arrives(ticks[due])
+    if sensor.lateness is None:
+        return arrival
+    arrival = arrival + sensor.lateness[due]
+    for earlier, readings in sensor.waiting:
+        rows, places = np.nonzero(readings.environments[:, None] == due[None, :])
+        arrival[places] = np.maximum(arrival[places], earlier[rows])
+    return arrival
+
+
+def people_then(sensor: Any, around: WorldView, due: Ints) -> Floats | None:
+    """Return ``[N, A, 4]`` positions [m] and velocities [m/s] of agents now, None for a sensor that keeps none."""
+    if not sensor.keeps_people:
+        return None
+    scene = around.world.scene
+    return np.concatenate([scene.position[due], scene.velocity[due]], axis=-1)
+
+
+def known_people(readings: Any, row: int) -> Floats | None:
+    """Return ``[A, 4]`` positions and velocities in a row of readings, None without a reading."""
+    if readings is None or readings.people is None:
+        return None
+    known: Floats = readings.people[row]
+    return known
+
+
+def name_by_id(reading: Reading, ids: Ints) -> Reading:
+    """Return a reading of one environment with person ids instead of agent indices."""
+    if np.array_equal(ids, np.arange(len(ids))):
+        return reading
+    if isinstance(reading, TrackedPeople):
+        return _tracked(reading, ids)
+    hit = getattr(reading, "hit", None)
+    if hit is None:
+        return reading
+    return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[np.maximum(hit, 0)], hit))  # type: ignore[call-arg]
+
+
+def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
+    """Return the rows ordered by id: row k belongs to person k."""
+    there = np.flatnonzero(ids >= 0)
+    count = int(ids.max(initial=-1)) + 1
+    rows: dict[str, Any] = {}
+    for part in ("present", "position", "velocity", "radius", "heading"):
+        value = getattr(reading, part)
+        wide = np.full((len(value), count, *value.shape[2:]), False if part == "present" else np.nan)
+        wide[:, ids[there]] = value[:, there]
+        rows[part] = wide
+    return dataclasses.replace(reading, **rows)
+
+
+def tracked_columns(reading: TrackedPeople, agents: Ints) -> TrackedPeople:
+    """Return the rows of some agents."""
+    parts = ("present", "position", "velocity", "radius", "heading")
+    return dataclasses.replace(reading, **{part: getattr(reading, part)[:, agents] for part in parts})

@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, TickSchedule, Twist
+from crowdbot.core import Clock, InputError, MissingExtra, TickSchedule, Twist, Walls
 from crowdbot.navigation import (
+    AgentsInView,
     DriveLimits,
     ExternalNavigator,
     Observation,
@@ -22,15 +23,14 @@ from crowdbot.navigation import (
     TrackBatch,
     copy_memory,
 )
+from crowdbot.perception import CloudClusters, Detector, GlobalNearestNeighbor, LidarClusters, Tracks
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import Twists, World, free_joints
+from crowdbot.world import Doors, Twists, World, add_rings, free_joints, worlds_of
 
 from .decision_timer import DecisionTimer
-from .door_paths import next_waypoints
 from .faults.fault_state import FaultState
 from .mounted_sensor import MountedSensor, mounted_sensors
-from .tracking.people_tracking import PerceivedPeople, begin_tracking, track_readings, view_tracks
 from .world_builder import limits_of
 from .world_view import WorldView
 
@@ -48,6 +48,12 @@ SAME = 1e-6
 """Tolerance of a number of rows."""
 NEVER = -1
 """Tick of the latest order before there is one."""
+PerceivedPeople = tuple[Any, Tracks]
+"""State of the tracker and its latest tracks, in one environment."""
+RADIUS = 0.25
+"""Radius of a tracked person [m], which a scanner does not measure."""
+DETECTORS: tuple[Detector, ...] = (LidarClusters(), CloudClusters())
+TRACKER = GlobalNearestNeighbor()
 
 
 class _Known(NamedTuple):
@@ -395,3 +401,72 @@ def _empty_tracks(robot: RobotSpec, count: int) -> TrackBatch:
 def decision_schedule(robot: RobotSpec, clock: Clock) -> TickSchedule:
     """Return the ticks at which the navigator decides; the timeout of an external one is judged at each tick."""
     return clock.schedule(clock.dt if isinstance(robot.navigator, ExternalNavigator) else robot.control_period)
+
+
+def next_waypoints(
+    planner: PathPlanner, world: World, environments: NDArray[np.int64], place: Floats, goal: Floats, path: Floats
+) -> tuple[Any, Floats]:
+    """Return the next points of the paths of a robot, around doors that are closed now, and its goals.
+
+    With doors, paths are planned anew, since a door may have opened or closed. A robot whose goal is behind a closed
+    door has its own place as the goal until the door opens.
+
+    Args:
+        planner: planner among walls without doors.
+        world: the world.
+        environments: ``[N]`` indices of the environments; with doors, N = 1.
+        place, goal: ``[N, 2]`` [m].
+        path: ``[N, 9]`` states of the paths.
+    """
+    worlds = worlds_of(world)
+    doors: Doors | None = worlds[int(environments[0]) if len(worlds) > 1 else 0].doors
+    if doors is None:
+        return planner.next_waypoints(place, goal, path), goal
+    lines = doors.path_lines()
+    walls = add_rings(planner.walls, lines) if lines else planner.walls
+    found = PathPlanner.for_stage(walls, planner.radius, planner.margin).next_waypoints(place, goal)
+    if not any(doors.blocked) or not found.failures:
+        return found, goal
+    point, own = found.point.copy(), goal.copy()
+    for k in found.failures:
+        point[k], own[k] = place[k], place[k]
+    return found._replace(point=point, failures={}), own
+
+
+def begin_tracking(count: int) -> list[PerceivedPeople]:
+    """Return the states of ``count`` environments before the first reading."""
+    return [(TRACKER.begin(), Tracks.none(0.0)) for _ in range(count)]
+
+
+def track_readings(before: PerceivedPeople, sensors: Sequence[MountedSensor], environment: int, walls: Walls) -> Any:
+    """Return the state and the tracks after the latest readings of the laser scanners in an environment.
+
+    Args:
+        before: state and tracks until now.
+        sensors: sensors of the robot.
+        environment: the environment.
+        walls: map of the stage.
+    """
+    state, tracks = before
+    last = state.time
+    new: list[tuple[float, Detector, Reading]] = []
+    for sensor in sensors:
+        reading = sensor.reading(environment)
+        detector = next((one for one in DETECTORS if isinstance(reading, one.reads)), None)
+        if reading is not None and detector is not None and not float(np.max(reading.time)) <= last:
+            new.append((float(np.max(reading.time)), detector, reading))
+    for time, detector, reading in sorted(new, key=lambda row: row[0]):
+        tracks, state = TRACKER.update(detector.detect(reading, walls), time, state)
+    return state, tracks
+
+
+def view_tracks(perceived: Sequence[PerceivedPeople], times: Floats) -> AgentsInView:
+    """Return the tracked people of N environments at times ``[N]`` [s], where constant velocities take them."""
+    N, A = len(perceived), max((len(tracks) for _, tracks in perceived), default=0)
+    position, velocity = np.zeros((N, A, 2)), np.zeros((N, A, 2))
+    seen, ids = np.zeros((N, A), dtype=np.bool_), np.zeros((N, A), dtype=np.int64)
+    for k, (_, tracks) in enumerate(perceived):
+        count = len(tracks)
+        position[k, :count], velocity[k, :count] = tracks.at(float(times[k])), tracks.velocity
+        seen[k, :count], ids[k, :count] = True, tracks.ids
+    return AgentsInView(position, velocity, np.full((N, A), RADIUS), seen, ids)

@@ -19,27 +19,24 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, Twist
+from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Clock, Disc, InputError, Path2D, Twist, draw_svg
 from crowdbot.metrics import HOLD
 from crowdbot.navigation import Observation
 from crowdbot.sensors import Reading
-from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import put_environments, select_environments, step_environments
+from crowdbot.trials import Mount, RobotSpec, Trial, floor_plan
+from crowdbot.world import World, put_environments, select_environments, step_environments, worlds_of
 
 from .failure import RunFailure
-from .mounted_sensor import shows_avatars
-from .phases.decision import let_decide
-from .phases.drawing import simulation_svg
-from .phases.evaluation import new_events, note_arrivals, robot_contacts
-from .phases.sensing import RobotReadings, read_sensors
+from .mounted_sensor import SensorReadings, shows_avatars
 from .robot_control import RobotControl
-from .step_record import RobotContact, StepRecord
-from .termination import end_condition_numbers, goal_zones, leave_goal_zones, note_events, run_outcome
+from .robot_joints import follow_joint_targets, move_wanted_joints
+from .step_record import WALL, RobotContact, StepRecord
+from .termination import end_condition_numbers, goal_zones, leave_goal_zones, may_be_near, note_events, run_outcome
 from .world_builder import check_clock, environment_index
 from .world_template import WorldTemplate
 from .world_view import WorldView
@@ -59,6 +56,8 @@ NONE, COLLISION, SUCCESS = 0, 1, 2
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 Seeds = int | Sequence[int]
+RobotReadings = list[tuple[RobotControl, SensorReadings]]
+"""Readings of several environments that arrived in one step, with their robots."""
 
 
 class Simulation:
@@ -392,3 +391,141 @@ class Simulation:
         agents = {robot.robot.name: robot.agent for robot in self.robots}
         if (met := end_condition_numbers(self.trial, self.world, self.people, agents)) is not None:
             self.ended = np.where(self.ended == 0, met, self.ended)
+
+
+def let_decide(robots: Sequence[RobotControl], around: WorldView, live: NDArray[np.bool_]) -> dict[int, Exception]:
+    """Let the navigators decide that are due, move joints, and return the exceptions by environment.
+
+    Joints follow the targets of the trial first, then those of the navigator.
+
+    Args:
+        robots: the robots.
+        around: the world as sensors see it.
+        live: ``[E]`` environments that decide.
+    """
+    ticks, common = around.world.ticks, around.world.environment_time.common_tick
+    errors: dict[int, Exception] = {}
+    live = live.copy()
+    for robot in robots:
+        if robot.robot.joints:
+            failures = follow_joint_targets(robot, around.world, live)
+            errors |= failures
+            live[list(failures)] = False
+        if common is not None and not robot.control.is_due(common):
+            continue
+        due = np.flatnonzero(live if common is not None else live & robot.control.is_due(ticks))
+        failures = robot.decide(around, due) if len(due) else {}
+        if robot.wanted:
+            failures |= move_wanted_joints(robot, around.world)
+        errors |= failures
+        live[list(failures)] = False
+    return errors
+
+
+def read_sensors(
+    robots: Sequence[RobotControl], around: WorldView, live: Bools
+) -> tuple[RobotReadings, dict[int, Exception]]:
+    """Return the readings that arrive now, and the exceptions by environment, whose readings are left out.
+
+    Args:
+        robots: the robots.
+        around: the world as sensors see it.
+        live: ``[E]`` environments that sense.
+    """
+    ticks, common = around.world.ticks, around.world.environment_time.common_tick
+    found: RobotReadings = []
+    errors: dict[int, Exception] = {}
+    if not live.any():
+        return found, errors
+    live = live.copy()
+    for robot in robots:
+        for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
+            able = live if robot.faults is None else robot.faults.measuring(sensor, around.world, live)
+            arrived, failures = sensor.work(ticks, able, robot.agent, around)
+            found += [(robot, readings) for readings in arrived]
+            for e, error in failures:
+                errors[e], live[e] = error, False
+        if robot.faults is not None:
+            robot.faults.clear_blind(robot.sensors, around.world.times)
+    if errors:
+        failed = ~live
+        rest = ((robot, readings.without(failed)) for robot, readings in found)
+        found = [(robot, readings) for robot, readings in rest if readings is not None]
+    return found, errors
+
+
+class _Ended(Protocol):
+    @property
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+
+
+Ended = TypeVar("Ended", bound=_Ended)
+
+
+def robot_contacts(
+    world: World, robots: Sequence[RobotControl], ids: NDArray[np.int64]
+) -> dict[int, tuple[RobotContact, ...]]:
+    """Return the contacts of robots in the last step by environment, with people and robots first, then with walls.
+
+    Args:
+        world: the world after the step.
+        robots: the robots.
+        ids: ``[E, A]`` identities before the step, since an index may be reused.
+    """
+    found: dict[int, list[RobotContact]] = {}
+    for one in world.contacts:
+        robot, other = ids[one.environment, [one.robot, one.other]].tolist()
+        found.setdefault(one.environment, []).append(RobotContact(robot, other, one.clearance))
+    for control in robots:
+        gap = world.wall_clearance(control.agent)
+        for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
+            found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
+    return {e: tuple(contacts) for e, contacts in found.items()}
+
+
+def note_arrivals(world: World, robots: Sequence[RobotControl]) -> None:
+    """Note which robots are at their goals."""
+    position = world.scene.position
+    for control in robots:
+        if not control.arrived.all() and may_be_near(position, control.agent, control.goal, control.tolerance):
+            control.arrive(position[:, control.agent])
+
+
+def new_events(events: Sequence[Ended], told: NDArray[np.int64], environment: int, until: float) -> tuple[Ended, ...]:
+    """Return the events of an environment that ended before ``until`` [s] and were not returned before, by end.
+
+    Args:
+        events: all events so far.
+        told: ``[E]`` number of events returned so far; it is updated.
+        environment: index of the environment.
+        until: time [s].
+    """
+    if not events:
+        return ()
+    over = sorted((one for one in events if one.end < until), key=lambda one: (one.end, one.begin))
+    new, told[environment] = over[int(told[environment]) :], len(over)
+    return tuple(new)
+
+
+def simulation_svg(simulation: Any, environment: int = 0) -> str:
+    """Return an SVG drawing of an environment: stage with ground, doors at their current angle, people and robots."""
+    worlds, stage = worlds_of(simulation.world), simulation.trial.stage
+    doors = worlds[environment if len(worlds) > 1 else 0].doors
+    shares = {}
+    if doors is not None:
+        shares = {leaf.name: float(share) for leaf, share in zip(doors.leaves, doors.signed_share, strict=True)}
+    lines = floor_plan(stage, shares)
+    lines += [Path2D(np.concatenate([ring, ring[:1]]), WALL_COLOR, 1.5) for ring in stage.rings]
+    scene, discs = simulation.world.environment_scene(environment), list[Disc]()
+    robots = {robot.agent for robot in simulation.robots}
+    for agent in np.flatnonzero(scene.active[0]).tolist():
+        color = ROBOT_COLOR if agent in robots else PERSON_COLOR
+        x, y = scene.position[0, agent].tolist()
+        radius, heading = float(scene.radius[0, agent]), float(scene.heading[0, agent])
+        discs.append(Disc(x, y, radius, color))
+        ahead = radius * np.array([np.cos(heading), np.sin(heading)])
+        lines.append(Path2D(np.array([[x, y], [x, y]]) + np.stack([ahead, 1.6 * ahead]), color, 1.5))
+    seconds = float(simulation.world.times[environment])
+    return draw_svg(lines, discs, f"{simulation.trial.name}, seed {simulation.seeds[environment]}, {seconds:.2f} s")

@@ -3,7 +3,7 @@
 from .avatar_contacts import AvatarContacts
 from .body_estimate import BodyEstimator, BodySize
 from .calibration_pose import BodyMeasure, measure_pose
-from .capture import CapturesDesk, Suit
+from .capture import Suit
 from .certificate import certificate_files, local_addresses, tls_context
 from .headset_access import session_of_token, token_of_session
 from .headset_recording import (
@@ -34,7 +34,6 @@ __all__ = [
     "BodyEstimator",
     "BodyMeasure",
     "BodySize",
-    "CapturesDesk",
     "ClockSync",
     "HeadsetClock",
     "HeadsetLatency",

@@ -1,4 +1,4 @@
-"""TrialSeats: the participants of a trial of an experiment, as one source of orders."""
+"""TrialSeats: the participants of a trial of an experiment, as one source of orders, and places for new avatars."""
 
 from __future__ import annotations
 
@@ -9,24 +9,35 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.bridges import MotionCapture
+import numpy as np
+
+from crowdbot.bridges import MotionCapture, RealRobotLink
 from crowdbot.core import InputError
 from crowdbot.experiments import write_trial_latency
+from crowdbot.metrics import wall_clearance
 from crowdbot.simulation import Order, OwnSource, Simulation, open_own_sources
 from crowdbot.trials import Trial
 
 from .calibration_pose import BodyMeasure
-from .capture import StreamTap, link_captures
+from .capture import StreamTap
 from .headset_recording import HeadsetRecorder
 from .latency import read_headset_latency
 from .robot_stop import RobotStop, hold_sources
 from .vr_participant import VrParticipant
 
-__all__ = ["TrialSeats", "external_avatars", "with_bodies"]
+__all__ = ["TrialSeats", "external_avatars", "free_place", "link_captures", "with_bodies"]
 
 CAPTURES = "motion-capture"
 """Name of the file of the raw samples of motion capture, as that of an avatar."""
 Watch = Callable[[Simulation], bool]
+RADIUS = 0.3
+"""Radius [m] of the person who is placed."""
+ENOUGH = 1.5
+"""Clearance [m] above which another place is not better."""
+REACH, SPACING = 6.0, 0.5
+"""Extent and spacing [m] of the places that are compared."""
+NEARNESS = 0.05
+"""Clearance [m] that is worth one metre of distance."""
 
 
 class TrialSeats:
@@ -147,3 +158,46 @@ def _free_file(folder: Path, avatar: str) -> Path:
         if not file.exists():
             return file
     raise InputError(f"{folder} has 999 recordings of a headset")
+
+
+def link_captures(captures: Sequence[MotionCapture], links: Sequence[object]) -> list[MotionCapture]:
+    """Give motion capture of real robots to their connections, and return what moves everybody else."""
+    rest = []
+    for one in captures:
+        targets = [binding.target for binding in one.bindings]
+        own = [link for link in links if isinstance(link, RealRobotLink) and link.robot in targets]
+        for link in own:
+            link.use_capture(MotionCapture(one.stream, [b for b in one.bindings if b.target == link.robot]))
+        others = [b for b in one.bindings if b.target not in {link.robot for link in own}]
+        if others:
+            rest.append(MotionCapture(one.stream, others))
+    return rest
+
+
+def free_place(simulation: Simulation) -> tuple[float, float]:
+    """Return x, y [m] of a place with clearance to walls and everybody, that is seen by a robot or person.
+
+    Places near the middle of all are preferred.
+
+    >>> from crowdbot.trials import load_trial
+    >>> x, y = free_place(Simulation(load_trial("frontal")))
+    >>> abs(x) < 20.0 and abs(y) < 20.0
+    True
+    """
+    scene = simulation.world.environment_scene(0)
+    others, walls = scene.position[0, scene.active[0]], scene.walls.segments()
+    middle = others.mean(axis=0) if len(others) else np.zeros(2)
+    start = others[np.argmin(np.linalg.norm(others - middle, axis=1))] if len(others) else middle
+    steps = np.arange(-REACH, REACH + SPACING, SPACING)
+    best, found = -np.inf, start
+    for place in np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2) + middle:
+        gap = float(np.min(np.linalg.norm(others - place, axis=1), initial=np.inf)) - 2.0 * RADIUS
+        gap = min(gap, float(wall_clearance(np.stack([start, place]), 0.01, walls)[1]), _gap(place, walls), ENOUGH)
+        score = gap - NEARNESS * float(np.linalg.norm(place - middle))
+        if score > best:
+            best, found = score, place
+    return round(float(found[0]), 3), round(float(found[1]), 3)
+
+
+def _gap(place: np.ndarray, walls: np.ndarray) -> float:
+    return float(wall_clearance(place[None], RADIUS, walls)[0])

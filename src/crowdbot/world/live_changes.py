@@ -13,8 +13,8 @@ from crowdbot.core import InputError
 from .crowd.journey import JOURNEY, STOP
 from .crowd.routing import WAY, fresh
 from .crowd.source import TOP
-from .phases.pushes import PUSH, push_memory
 from .planar_live_changes import rest_robot, widen
+from .pushes import PUSH, push_memory
 from .world import World
 
 __all__ = [

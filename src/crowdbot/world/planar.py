@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -30,15 +31,34 @@ from .crowd.source import PeopleSource
 from .crowd.waypoint import PolygonZone
 from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
-from .phases.crowd_motion import contact_surfaces, move_people, resolve_overlaps, show_robots, step_models
-from .phases.people_exchange import exchange_people
-from .phases.pushes import without_drift
-from .phases.robot_contacts import find_contacts
-from .phases.robot_motion import check_commands, initial_twist, move_robots
-from .planar_checks import check_arguments
-from .planar_live_changes import PlanarLiveChanges, keep_added_robots
+from .planar_live_changes import (
+    check_robot_place,
+    chosen_environments,
+    keep_added_robots,
+    new_prop_name,
+    prop_number,
+    props_of,
+    put_robot_at,
+    remove_robot_at,
+    replace_walls,
+    robot_environments,
+    without_last,
+)
+from .planar_phases import (
+    check_commands,
+    contact_surfaces,
+    exchange_people,
+    find_contacts,
+    initial_twist,
+    move_people,
+    move_robots,
+    resolve_overlaps,
+    show_robots,
+    step_models,
+)
+from .pushes import drift_people, without_drift
 from .robots.mount import MountPlacement
-from .world import Contact
+from .world import Contact, World
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
@@ -46,7 +66,7 @@ if TYPE_CHECKING:
     from .crowd.avatars import Avatars
     from .doors.doors import Doors
     from .physics.kinematic_bodies import KinematicBodies
-    from .physics.stage import PhysicsStage
+    from .physics.stage import PhysicsStage, PropBody
     from .reactions.robot_reactions import RobotReactions
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
@@ -63,7 +83,7 @@ CHANGEABLE = (
 
 
 @dataclass
-class PlanarWorld(PlanarLiveChanges):
+class PlanarWorld(World):
     """People and robots as discs in the plane, E environments at once.
 
     People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
@@ -104,6 +124,7 @@ class PlanarWorld(PlanarLiveChanges):
         slots: ``[E]`` number of agents of each environment; further ones only pad the arrays.
         contacts: pairs of a robot and another agent with negative clearance during the last step (straight motion).
         ids: current identities ``[E, A]``; new people have new identities.
+        added_robots: agents of robots that were added while the world runs.
 
     Raises:
         InputError: a drive has no agent or its agent is not external, a goal is unreachable, or a value is not
@@ -120,6 +141,7 @@ class PlanarWorld(PlanarLiveChanges):
 
     people_shape: ClassVar[str] = "discs"
     walls_fixed: ClassVar[bool] = False
+    added_robots = frozenset[int]()
 
     scene: Scene
     model: CrowdModel
@@ -396,3 +418,99 @@ class PlanarWorld(PlanarLiveChanges):
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         return find_contacts(before, after, list(self.twists), self.ghosts)
+
+    def add_robot(
+        self,
+        robot: Robot,
+        x: float,
+        y: float,
+        heading: float = 0.0,
+        *,
+        ghost: bool = False,
+        environments: Sequence[int] | None = None,
+    ) -> int:
+        """Add a robot, at rest; see :meth:`World.add_robot`."""
+        check_robot_place(robot, x, y, heading)
+        chosen, agent = chosen_environments(len(self.slots), environments), int(self.slots.max())
+        put_robot_at(self, agent, robot, (x, y, heading), ghost, chosen)
+        for bodies in self._bodies or ():
+            bodies.robots = {**bodies.robots, agent: robot}
+            bodies.forget_renderer()
+        return agent
+
+    def _push_people(self, crowd: Scene) -> Scene:
+        """Return the scene after the motion by pushes in a step of the crowd."""
+        return drift_people(crowd, self.ids, self.dt)
+
+    def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
+        """Remove a robot; see :meth:`World.remove_robot`."""
+        remove_robot_at(self, agent, robot_environments(self, agent, environments))
+
+    def place_robot(
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, present: bool
+    ) -> None:
+        """Make an agent a robot of a world with one environment, which is present or absent."""
+        put_robot_at(self, agent, robot, place, ghost, [0] if present else [])
+        for bodies in self._bodies or ():
+            bodies.robots = {**bodies.robots, agent: robot}
+            bodies.forget_renderer()
+
+    def embody_person(self, agent: int, environment: int) -> None:
+        """Give a new person a body, in a world with bodies."""
+        for bodies in (self._bodies or [])[environment : environment + 1]:
+            bodies.people.grow(self.scene.shape[1], [agent])
+            bodies.forget_renderer()
+
+    def add_prop(self, prop: PropBody, name: str = "") -> str:
+        """Add a prop, as an outline that does not move; see :meth:`World.add_prop`."""
+        from .physics.scenery import add_rings, prop_outline
+
+        names, outlines = props_of(self)
+        name, ring = new_prop_name(names, name), prop_outline(prop)
+        for bodies in self._bodies or ():
+            bodies.walls = self.scene.walls if bodies.walls is None else bodies.walls
+            bodies.stage = dataclasses.replace(bodies.stage, props=(*bodies.stage.props, prop))
+            bodies.forget_renderer()
+        self._prop_outlines = ([*names, name], [*outlines, ring])
+        replace_walls(self, add_rings(self.scene.walls, (ring,)))
+        return name
+
+    def remove_prop(self, name: str) -> None:
+        """Remove a prop; see :meth:`World.remove_prop`."""
+        from .physics.scenery import remove_ring
+        from .physics.stage import without_prop
+
+        names, outlines = props_of(self)
+        number = prop_number(names, name)
+        walls = remove_ring(self.scene.walls, outlines[number])
+        for bodies in self._bodies or ():
+            bodies.stage = without_prop(bodies.stage, number)
+            bodies.forget_renderer()
+        left = without_last([*names[:number], "", *names[number + 1 :]])
+        self._prop_outlines = (left, outlines[: len(left)])
+        replace_walls(self, walls)
+
+
+def check_arguments(
+    scene: Scene,
+    drives: Mapping[int, Drive],
+    robot_margin: float,
+    leave_radius: float | None,
+    heading_jitter: float,
+    substeps: int,
+) -> None:
+    """Raise :class:`InputError` if an argument of a planar world is not allowed."""
+    agents = scene.shape[1]
+    for robot in drives:
+        if not 0 <= robot < agents:
+            raise InputError(f"a drive is given for agent {robot}, but the scene has agents 0 to {agents - 1}")
+        if not np.all(scene.external[:, robot]):
+            raise InputError(f"agent {robot} has a drive but is not external: set external=True for robots")
+    if not 0.0 <= robot_margin < math.inf:
+        raise InputError(f"robot_margin {robot_margin} m must be finite and at least 0")
+    if leave_radius is not None and not 0.0 < leave_radius < math.inf:
+        raise InputError(f"leave_radius {leave_radius} m must be finite and above 0, or None")
+    if not 0.0 <= heading_jitter <= math.pi:
+        raise InputError(f"heading_jitter {heading_jitter} rad must be from 0 to pi")
+    if isinstance(substeps, bool) or not isinstance(substeps, int) or not 1 <= substeps <= 10_000:
+        raise InputError(f"substeps = {substeps!r} must be a whole number from 1 to 10000")

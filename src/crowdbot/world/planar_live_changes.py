@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Twist, Walls, did_you_mean
+from crowdbot.core import InputError, Twist, Walls, did_you_mean
 from crowdbot.world.robots.drives.drive import Drive, Twists
 
 from .crowd.environment_rows import pad_ids, pad_scene, set_models
-from .phases.pushes import drift_people
 from .robots.robot import Robot
 from .world import World
 
-if TYPE_CHECKING:
-    from .physics.stage import PropBody
-
 __all__ = [
-    "PlanarLiveChanges",
     "check_robot_place",
     "chosen_environments",
     "keep_added_robots",
@@ -31,8 +25,10 @@ __all__ = [
     "match_robots",
     "new_prop_name",
     "prop_number",
+    "props_of",
     "put_robot_at",
     "remove_robot_at",
+    "replace_walls",
     "rest_robot",
     "robot_environments",
     "widen",
@@ -208,99 +204,13 @@ def without_last(names: list[str]) -> list[str]:
     return names[:count]
 
 
-class PlanarLiveChanges(World):
-    """Robots and props are added to and removed from a planar world.
-
-    Attributes:
-        added_robots: agents of robots that were added while the world runs.
-    """
-
-    added_robots: frozenset[int] = frozenset()
-
-    def add_robot(
-        self,
-        robot: Robot,
-        x: float,
-        y: float,
-        heading: float = 0.0,
-        *,
-        ghost: bool = False,
-        environments: Sequence[int] | None = None,
-    ) -> int:
-        """Add a robot, at rest; see :meth:`World.add_robot`."""
-        world: Any = self
-        check_robot_place(robot, x, y, heading)
-        chosen, agent = chosen_environments(len(self.slots), environments), int(self.slots.max())
-        put_robot_at(world, agent, robot, (x, y, heading), ghost, chosen)
-        for bodies in world._bodies or ():
-            bodies.robots = {**bodies.robots, agent: robot}
-            bodies.forget_renderer()
-        return agent
-
-    def _push_people(self, crowd: Scene) -> Scene:
-        """Return the scene after the motion by pushes in a step of the crowd."""
-        return drift_people(crowd, self.ids, self.dt)
-
-    def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        """Remove a robot; see :meth:`World.remove_robot`."""
-        remove_robot_at(self, agent, robot_environments(self, agent, environments))
-
-    def place_robot(
-        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, present: bool
-    ) -> None:
-        """Make an agent a robot of a world with one environment, which is present or absent."""
-        world: Any = self
-        put_robot_at(world, agent, robot, place, ghost, [0] if present else [])
-        for bodies in world._bodies or ():
-            bodies.robots = {**bodies.robots, agent: robot}
-            bodies.forget_renderer()
-
-    def embody_person(self, agent: int, environment: int) -> None:
-        """Give a new person a body, in a world with bodies."""
-        world: Any = self
-        for bodies in (world._bodies or [])[environment : environment + 1]:
-            bodies.people.grow(self.scene.shape[1], [agent])
-            bodies.forget_renderer()
-
-    def add_prop(self, prop: PropBody, name: str = "") -> str:
-        """Add a prop, as an outline that does not move; see :meth:`World.add_prop`."""
-        from .physics.scenery import add_rings, prop_outline
-
-        world: Any = self
-        names, outlines = _props(world)
-        name, ring = new_prop_name(names, name), prop_outline(prop)
-        for bodies in world._bodies or ():
-            bodies.walls = self.scene.walls if bodies.walls is None else bodies.walls
-            bodies.stage = dataclasses.replace(bodies.stage, props=(*bodies.stage.props, prop))
-            bodies.forget_renderer()
-        world._prop_outlines = ([*names, name], [*outlines, ring])
-        _replace_walls(world, add_rings(self.scene.walls, (ring,)))
-        return name
-
-    def remove_prop(self, name: str) -> None:
-        """Remove a prop; see :meth:`World.remove_prop`."""
-        from .physics.scenery import remove_ring
-        from .physics.stage import without_prop
-
-        world: Any = self
-        names, outlines = _props(world)
-        number = prop_number(names, name)
-        walls = remove_ring(self.scene.walls, outlines[number])
-        for bodies in world._bodies or ():
-            bodies.stage = without_prop(bodies.stage, number)
-            bodies.forget_renderer()
-        left = without_last([*names[:number], "", *names[number + 1 :]])
-        world._prop_outlines = (left, outlines[: len(left)])
-        _replace_walls(world, walls)
-
-
 def live_prop_names(world: Any) -> list[str]:
     """Return the names of the props of a planar or physics world by number; that of a removed one is empty."""
-    names: list[str] = world._prop_names if world.walls_fixed else _props(world)[0]
+    names: list[str] = world._prop_names if world.walls_fixed else props_of(world)[0]
     return names
 
 
-def _props(world: Any) -> tuple[list[str], list[Any]]:
+def props_of(world: Any) -> tuple[list[str], list[Any]]:
     """Return names and outlines of the props of a planar world; the name of a removed one is empty."""
     from .physics.scenery import prop_outline
 
@@ -311,7 +221,8 @@ def _props(world: Any) -> tuple[list[str], list[Any]]:
     return found
 
 
-def _replace_walls(world: Any, walls: Walls) -> None:
+def replace_walls(world: Any, walls: Walls) -> None:
+    """Replace the walls of a planar world, in the scenes before and after its last step."""
     world.scene, world._previous = world.scene.replace(walls=walls), world._previous.replace(walls=walls)
 
 

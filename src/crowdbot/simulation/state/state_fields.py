@@ -44,8 +44,8 @@ HOLDERS = {
     "crowdbot.world.physics.world.PhysicsWorld": (
         "stage physics_dt _steps _outlined _plane _renderers _prop_names _slots_fixed"
     ),
-    "crowdbot.world.physics.batch.PhysicsBatch": "dt _stacked",
-    "crowdbot.world.doors.batch.PlanarBatch": "dt _stacked",
+    "crowdbot.world.environments.PhysicsBatch": "dt _stacked",
+    "crowdbot.world.environments.PlanarBatch": "dt _stacked",
     "crowdbot.world.physics.world_bodies.WorldBodies": "walls step stage starts slots reader links model",
     "crowdbot.world.physics.rigid_bodies.RigidBodies": "compiled data",
     AVATARS: "agents names sources delay robots _latest",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,14 +13,14 @@ from crowdbot.humans import LEVELS, People, RiggedBody, body_uv, paint_body, sha
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion
-from crowdbot.world.physics.stage import PhysicsStage
+from crowdbot.world.physics.stage import LightSource, PhysicsStage
+from crowdbot.world.stage_appearance import StageAppearance
 
 from .camera import CameraImages, CameraView
 from .carried_objects import carried_parts, holds
-from .illumination import illumination
 from .labels import FLOOR, WALL, geom_code
 from .raster_kernels import place_shapes, vertex_normals
-from .rasterizer import DrawList, Rasterizer, TexturePool, pack_textures
+from .rasterizer import DrawList, Illumination, Rasterizer, TexturePool, pack_textures
 from .shape_meshes import ShapeMesh, box_mesh, flat_mesh, geom_mesh
 from .surfaces import FLOOR_SIZE, clouds, floor_texture, grain, wall_texture
 
@@ -37,6 +38,20 @@ SMALL = (240.0, 110.0)
 """Heights [pixels] of a person below which level 1 and level 2 is fine enough."""
 FACE_SOFT = 0.25
 """Softness of the light on skin and cloth."""
+GRID = 1e-9
+"""Step of directions: libraries differ in the last digit of a sine."""
+SKIES = {
+    "clear": ((1.05, 0.97, 0.84), (0.36, 0.42, 0.52), (0.62, 0.74, 0.88), (0.16, 0.36, 0.72), (0.35, 0.30, 0.20),
+              (0.9, 0.56, 3.4), (1.0, 1.0, 1.0), 0.0),
+    "cloudy": ((0.80, 0.77, 0.72), (0.46, 0.50, 0.56), (0.70, 0.77, 0.85), (0.28, 0.45, 0.70), (0.20, 0.18, 0.14),
+               (1.0, 0.40, 3.0), (0.93, 0.94, 0.96), 0.04),
+    "overcast": ((0.38, 0.38, 0.38), (0.62, 0.64, 0.67), (0.76, 0.78, 0.80), (0.58, 0.61, 0.65), (0.0, 0.0, 0.0),
+                 (0.8, 0.30, 1.6), (0.72, 0.74, 0.77), 0.30),
+    "dusk": ((0.85, 0.52, 0.28), (0.26, 0.26, 0.36), (0.90, 0.56, 0.36), (0.13, 0.17, 0.34), (0.55, 0.30, 0.12),
+             (0.8, 0.45, 3.0), (0.62, 0.38, 0.36), 0.02),
+}  # fmt: skip
+"""Colour of the light, light from above, horizon, zenith, glow, clouds (share, lower limit, slope), their colour, and
+the radius [m] of the edge of shadows."""
 
 
 class _FixedRows(NamedTuple):
@@ -351,3 +366,34 @@ def _stored_texture(model: Any, texture: int) -> NDArray[np.uint8]:
     image = np.repeat(image[..., :1], 3, axis=-1) if channels < 3 else image
     across, down = (1 << min(10, max(0, (side - 1).bit_length())) for side in (wide, high))
     return np.asarray(Image.fromarray(np.ascontiguousarray(image)).resize((across, down), Image.Resampling.BILINEAR))
+
+
+def illumination(appearance: StageAppearance, lights: tuple[LightSource, ...]) -> Illumination:
+    """Return the light of a stage: daylight, or lamps with soft shadows straight below.
+
+    >>> illumination(StageAppearance(), ()).sun.shape
+    (4, 3)
+    """
+    light, above, horizon, zenith, glow, cloud, white, soft = SKIES[appearance.sky]
+    flat = math.cos(appearance.sun_elevation)
+    direction = (
+        flat * math.cos(appearance.sun_heading),
+        flat * math.sin(appearance.sun_heading),
+        -math.sin(appearance.sun_elevation),
+    )
+    lamps = np.zeros((0, 4))
+    if lights:
+        lamps = np.array([(lamp.x, lamp.y, lamp.z, 0.9 * lamp.brightness) for lamp in lights])
+        light, above, direction, soft = (0.22, 0.22, 0.21), (0.30, 0.30, 0.29), (0.02, 0.03, -1.0), 0.15
+    elif appearance.sky == "overcast":
+        direction = (0.12, 0.16, -1.0)
+    rounded = np.round(np.array(direction) / GRID) * GRID
+    rounded = rounded / math.sqrt(float(np.sum(rounded * rounded)))
+    ground = 0.45 * np.array(above) * (1.0, 0.96, 0.9)
+    return Illumination(
+        np.array([rounded, light, above, ground]),
+        np.array([horizon, zenith, glow, cloud, rounded, white]),
+        lamps,
+        soft,
+        haze=140.0,
+    )

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from collections.abc import Mapping
 from pathlib import Path
+
+import numpy as np
 
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, format_xml
 
 from .elements import UrdfReader
-from .joints import read_joint
+from .inertia import DENSITY, solid_of
 from .links import read_link
-from .masses import add_missing_mass
 from .materials import read_materials
-from .model import Joint, Link, Remark, RobotModel
+from .model import JOINT_KINDS, Joint, Link, LinkInertia, Mimic, Motor, Remark, RobotModel
 from .robot_document import parse_robot_file
 
 __all__ = ["read_urdf"]
 
 MOST_LINKS = 2000
+TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
+"""Inertial of a moving link without mass and shape: a ball of 1 gram with a diameter of 16 mm."""
+SMALL = 0.1
+"""Maximum mass [kg] of a moving link with a shape but without mass."""
 
 
 def read_urdf(
@@ -166,3 +173,160 @@ def _sort_outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:
             ordered[joint.name] = joint
             waiting.append(joint.child)
     return ordered
+
+
+def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
+    """Return the joint that an element describes, or None after an error."""
+    before = len(reader.found)
+    name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
+    if not name:
+        reader.say(element, "needs the attribute 'name'")
+    if kind not in JOINT_KINDS:
+        reader.say(element, f"type={kind[:40]!r} must be {', '.join(JOINT_KINDS)}{did_you_mean(kind, JOINT_KINDS)}")
+        return None
+    parent, child = _link(reader, element, "parent"), _link(reader, element, "child")
+    if parent and parent == child:
+        reader.say(element, f"connects the link {parent!r} to itself")
+    origin, axis = reader.origin(element), _axis(reader, element, kind)
+    lower, upper, motor = _limits(reader, element, name, kind)
+    spring = reader.springs.get(name, {})
+    dynamics = reader.one(element, "dynamics") or Element("dynamics")
+    values = {key: reader.value(dynamics, key, 0.0, 0.0) or 0.0 for key in ("damping", "friction")}
+    values |= {
+        key: reader.optional_value(dynamics, key, least)
+        for key, least in (("spring_stiffness", 0.0), ("spring_reference", -1e6))
+    }
+    mimic = _mimic(reader, element, kind)
+    if len(reader.found) > before:
+        return None
+    return Joint(
+        name, kind, parent, child, origin, axis, lower, upper, motor,
+        damping=values["damping"],
+        friction=values["friction"],
+        stiffness=values["spring_stiffness"] or spring.get("springStiffness", 0.0),
+        rest=values["spring_reference"] or spring.get("springReference", 0.0),
+        mimic=mimic,
+    )  # fmt: skip
+
+
+def _link(reader: UrdfReader, element: Element, role: str) -> str:
+    inner = reader.one(element, role)
+    name = inner.attributes.get("link", "") if inner else ""
+    if not name:
+        reader.say(element, f'needs <{role} link="...">')
+    return name
+
+
+def _axis(reader: UrdfReader, element: Element, kind: str) -> np.ndarray:
+    inner = reader.one(element, "axis")
+    values = None if inner is None else reader.row(inner, "xyz", 3, (1.0, 0.0, 0.0))
+    if inner is None or values is None:
+        return np.array([1.0, 0.0, 0.0])
+    length = float(np.linalg.norm(values))
+    if length < 1e-9:
+        if kind not in ("fixed", "floating"):  # exporters write a zero axis for joints without an axis
+            reader.say(inner, f'xyz="{inner.attributes["xyz"][:40]}" has no direction')
+        return np.array([1.0, 0.0, 0.0])
+    return np.asarray(values / length)
+
+
+def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple[float, float, Motor]:
+    """Return the lower and upper limit of the position, and the motor."""
+    inner = reader.one(element, "limit")
+    commanded = reader.motors.get(name, "")
+    if inner is None:
+        if kind in ("revolute", "prismatic"):
+            unit = "rad" if kind == "revolute" else "m"
+            reader.say(element, f"({kind}) needs <limit lower= upper= effort= velocity=> [{unit}]")
+        return -math.inf, math.inf, Motor(kind=commanded)
+    effort = reader.value(inner, "effort", math.inf, 0.0)
+    velocity = reader.value(inner, "velocity", math.inf, 0.0)
+    motor = Motor(math.inf if effort is None else effort, math.inf if velocity is None else velocity, commanded)
+    lower, upper = reader.value(inner, "lower", 0.0) or 0.0, reader.value(inner, "upper", 0.0) or 0.0
+    if kind not in ("revolute", "prismatic"):
+        return -math.inf, math.inf, motor
+    if lower > upper:
+        reader.say(inner, f"lower = {lower:g} is above upper = {upper:g}")
+    elif lower == upper:
+        reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which allow no motion")
+    return lower, upper, motor
+
+
+def _mimic(reader: UrdfReader, element: Element, kind: str) -> Mimic | None:
+    inner = reader.one(element, "mimic")
+    if inner is None:
+        return None
+    if kind == "fixed":
+        reader.remark("ignored", inner, "is ignored: a fixed joint does not move")
+        return None
+    joint = inner.attributes.get("joint", "")
+    if not joint:
+        reader.say(inner, "needs the attribute 'joint'")
+    multiplier, offset = reader.value(inner, "multiplier", 1.0), reader.value(inner, "offset", 0.0)
+    return Mimic(joint, 1.0 if multiplier is None else multiplier, offset or 0.0)
+
+
+def add_missing_mass(
+    reader: UrdfReader, links: Mapping[str, Link], joints: Mapping[str, Joint], elements: Mapping[str, Element]
+) -> dict[str, Link]:
+    """Return the links, with a small inertial for each moving part that has no mass.
+
+    In URDF a link without ``<inertial>`` has no mass. A part is a link with all links fixed to it; if one of them has
+    mass, nothing is added. If no link of the file has mass, every link with a shape gets the mass of its shape at the
+    density of water, since forces need masses and only their ratio is known. Each addition is a remark.
+
+    Args:
+        reader: collects the remarks.
+        links, joints: by name; parents come before their children.
+        elements: the elements of the links, for line numbers.
+    """
+    if not any(link.inertial for link in links.values()):
+        found = {name: _at_water_density(reader, link, elements[name]) for name, link in links.items()}
+    else:
+        found = dict(links)
+    above = {joint.child: joint for joint in joints.values()}
+    part: dict[str, str] = {}
+    members: dict[str, list[str]] = {}
+    for name in found:
+        joint = above.get(name)
+        part[name] = part[joint.parent] if joint is not None and joint.kind == "fixed" else name
+        members.setdefault(part[name], []).append(name)
+    for first, names in members.items():
+        if not any(found[name].inertial for name in names):
+            shown = next((name for name in names if found[name].collisions or found[name].visuals), None)
+            if shown is not None or first in above:
+                name = shown or first
+                found[name] = _with_small_mass(reader, found[name], elements[name])
+    return found
+
+
+def _at_water_density(reader: UrdfReader, link: Link, element: Element) -> Link:
+    solid = solid_of(link.collisions or link.visuals)
+    if solid is None:
+        return link
+    mass = DENSITY * solid.volume
+    reader.remark(
+        "repaired",
+        element,
+        f"has no inertial, like all links of the file; mass {mass:.3g} kg and inertia are computed from its shape at"
+        f" {DENSITY:g} kg/m3",
+    )
+    return dataclasses.replace(link, inertial=LinkInertia(mass, solid.center, solid.inertia(mass)))
+
+
+def _with_small_mass(reader: UrdfReader, link: Link, element: Element) -> Link:
+    """Return a moving link with at most 0.1 kg, or 1 gram without a shape."""
+    solid = solid_of(link.collisions or link.visuals)
+    if solid is None:
+        reader.remark(
+            "repaired", element, f"moves but has neither mass nor shape; its mass is set to {TOKEN.mass:g} kg"
+        )
+        return dataclasses.replace(link, inertial=TOKEN)
+    mass = min(SMALL, DENSITY * solid.volume)
+    reader.remark(
+        "repaired",
+        element,
+        f"moves but neither it nor a link fixed to it has a mass; its mass is set to {mass:.3g} kg, add <inertial> if"
+        " it is heavier",
+    )
+    return dataclasses.replace(link, inertial=LinkInertia(mass, solid.center, solid.inertia(mass)))

@@ -11,7 +11,6 @@ from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_x
 
 from .evaluation import Budget
 from .files import FileSource, SourceElement, with_place
-from .macros import Macro, parse_parameters
 from .scope import Scope, boolean
 from .texts import Texts
 
@@ -23,6 +22,10 @@ MOST_INCLUDES = 20
 MOST_FILES = 300
 PREFIX = "xacro:"
 NAME = re.compile(r"[A-Za-z_]\w*")
+DEFAULT = r"""\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|"[^"]*"|[^\s'"]+)+|"""
+PARAMETER = re.compile(rf"\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?({DEFAULT})(?:\s+|$)", re.DOTALL)
+BARE = re.compile(r"\s*(\S+)(?:\s+|$)")
+MOST_PARAMETERS = 200
 
 
 class Expansion(NamedTuple):
@@ -317,3 +320,45 @@ def _advice(name: str) -> str:
         package = name.removeprefix("package://").partition("/")[0]
         return f" (give --package {package[:60]}=FOLDER if you have it)"
     return ""
+
+
+class MacroParameter(NamedTuple):
+    """A parameter: name, whether the value of the caller is taken (``^``), and the default text or None."""
+
+    name: str
+    forward: bool = False
+    default: str | None = None
+
+
+class Macro(NamedTuple):
+    """A macro: its element, parameters, the prefix of its name space and the folder of its file."""
+
+    body: SourceElement
+    parameters: tuple[MacroParameter, ...]
+    prefix: str
+
+
+def parse_parameters(text: str) -> tuple[MacroParameter, ...]:
+    """Return the parameters of a macro.
+
+    Raises:
+        InputError: there are too many.
+
+    >>> parse_parameters("side radius:=0.1 *origin")[1]
+    MacroParameter(name='radius', forward=False, default='0.1')
+    """
+    found: list[MacroParameter] = []
+    place, text = 0, text.strip()
+    while place < len(text):
+        match = PARAMETER.match(text, place)
+        if match is not None:
+            name, forward, default = match.groups()
+            found.append(MacroParameter(name, bool(forward), default or ("" if not forward else None)))
+        else:
+            match = BARE.match(text, place)
+            assert match is not None
+            found.append(MacroParameter(match.group(1)))
+        place = match.end()
+        if len(found) > MOST_PARAMETERS:
+            raise InputError(f"a macro has more than {MOST_PARAMETERS} parameters")
+    return tuple(found)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.world.phases.pushes import FORCE, LEFT, PUSH, acting_pushes
+from crowdbot.world.pushes import FORCE, LEFT, PUSH, acting_pushes
 
 from .balance import Balance
 
