@@ -117,8 +117,8 @@ class AnchorNet(Predictor):
     Fields:
         fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
             ``all`` places, ``open``: with data whose terms allow it (UCY, corridors and bottlenecks of the Jülich
-            archive, simulated crowds with and without robots; ``python studies/train_anchor_net.py train DATA OUT --fold
-            open`` makes them), or ``auto``: without the place of the recording, by its name, else ``open``.
+            archive, simulated crowds with and without robots; made by ``python studies/train_anchor_net.py train DATA
+            OUT --fold open``), or ``auto``: without the place of the recording, by its name, else ``open``.
         sample: ``set``: the weighted futures, at most 20, and the single trajectory for K = 1; ``draws``: any number
             of independent random draws.
         file: own weights from ``crowdbot train anchor-net``, instead of the shipped ones.
