@@ -62,7 +62,7 @@ CREDITED = ("crowds_", "students", "uni_examples")
 """Recordings of UCY, free for use with credit to the authors. ETH states no terms, SDD forbids commercial use."""
 SOURCES = {"ucy": 30000, "hermes": 8000, "juelich": 8000, "simulated": 4000, "robots": 2000, "sdd": 8000}
 """Data of the fold `open` -> largest number of futures; `sdd` with --research only."""
-ARCHIVE = {
+ARCHIVE: dict[str, tuple[str, dict[str, Any]]] = {
     "hermes": ("hermes/Corridor-*/*.txt", {"fps": 16.0, "units": "cm"}),
     "juelich": ("juelich/b*/*.txt", {}),
 }
@@ -84,7 +84,7 @@ def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajecto
 
 def open_samples(options: argparse.Namespace) -> tuple[Samples, Samples]:
     """Return the balanced training and validation samples of the fold `open`."""
-    found = {}
+    found: dict[str, list[Samples]] = {}
     for name, limit in SOURCES.items():
         if name in options.leave_out or (name == "sdd" and options.research is None):
             continue
