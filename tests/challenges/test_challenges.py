@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from crowdbot.challenges import (
     write_board,
 )
 from crowdbot.challenges.board import sort_entries
+from crowdbot.cli import main
 from crowdbot.core import CrowdbotError, InputError, UnknownName
 from crowdbot.evaluation import RunRow
 from crowdbot.navigation.process.sandbox import sandbox_problem
@@ -77,21 +79,33 @@ def write_description(place: Path, **values: str) -> None:
     (place / "submission.toml").write_text(text, encoding="utf-8")
 
 
-def crowdbot(*words: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "crowdbot", "challenge", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+@pytest.fixture
+def challenge_command(capsys: pytest.CaptureFixture[str]) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Return a function that runs ``crowdbot challenge`` in this process."""
+
+    def call(*words: object) -> subprocess.CompletedProcess[str]:
+        status = main(["challenge", *map(str, words)])
+        return subprocess.CompletedProcess(words, status, *capsys.readouterr())
+
+    return call
 
 
 @pytest.mark.live
-def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: Path) -> None:
+def test_a_submission_is_run_packed_verified_and_ranked(
+    folder: Path, tmp_path: Path, challenge_command: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
     file = tmp_path / "small.toml"
     own = () if SANDBOX else ("--no-sandbox",)
-    done = crowdbot("run", file, folder, "--out", tmp_path / "entry", *own)
+    program = [sys.executable, "-m", "crowdbot", "challenge", "run", str(file), str(folder)]
+    program += ["--out", str(tmp_path / "entry"), *own]
+    done = subprocess.run(program, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0, done.stderr
     assert "1 [0.158, 1]" in done.stdout
-    done = crowdbot("pack", file, folder, "--entry", tmp_path / "entry" / "entry.json", "--out", tmp_path / "s.zip")
+    done = challenge_command(
+        "pack", file, folder, "--entry", tmp_path / "entry" / "entry.json", "--out", tmp_path / "s.zip"
+    )
     assert done.returncode == 0, done.stderr
-    done = crowdbot("verify", file, tmp_path / "s.zip", "--out", tmp_path / "again")
+    done = challenge_command("verify", file, tmp_path / "s.zip", "--out", tmp_path / "again")
     if not SANDBOX:
         assert (done.returncode, "sandbox=false runs the code without one" in done.stderr) == (2, True)
         return
@@ -99,13 +113,13 @@ def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: 
     assert "verified  yes: all digests are equal" in done.stdout
     assert load_entry(tmp_path / "again" / "entry.json").verified
     assert "worst" in (tmp_path / "again" / "report.html").read_text().lower()
-    done = crowdbot(
+    done = challenge_command(
         "verify", file, tmp_path / "s.zip", "--secret", tmp_path / "secret.json", "--out", tmp_path / "held"
     )
     assert done.returncode == 0, done.stderr
     held = load_entry(tmp_path / "held" / "entry.json")
     assert (held.seeds, len(held.runs["frontal"])) == ("held back", 3)
-    done = crowdbot(
+    done = challenge_command(
         "board", file, *(tmp_path / one / "entry.json" for one in ("again", "held")), "--out", tmp_path / "b.html"
     )
     assert done.returncode == 0, done.stderr
@@ -115,7 +129,9 @@ def test_a_submission_is_run_packed_verified_and_ranked(folder: Path, tmp_path: 
 
 
 @pytest.mark.live
-def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
+def test_a_false_entry_is_found(
+    folder: Path, tmp_path: Path, challenge_command: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
     challenge = load_challenge(tmp_path / "small.toml")
     entry, _, _ = enter(challenge, load_submission(folder), sandbox=SANDBOX)
     values = json.loads(entry.text())
@@ -126,7 +142,7 @@ def test_a_false_entry_is_found(folder: Path, tmp_path: Path) -> None:
     pack_submission(load_submission(folder), tmp_path / "s.zip", {"entry.json": json.dumps(values).encode()})
     if not SANDBOX:
         return
-    done = crowdbot("verify", tmp_path / "small.toml", tmp_path / "s.zip", "--out", tmp_path / "again")
+    done = challenge_command("verify", tmp_path / "small.toml", tmp_path / "s.zip", "--out", tmp_path / "again")
     assert done.returncode == 1
     assert "differs   frontal, seed 0: success 000000000000 claimed" in done.stdout
     assert not load_entry(tmp_path / "again" / "entry.json").verified
