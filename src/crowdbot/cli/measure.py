@@ -110,9 +110,12 @@ def _corners(option: str, values: Sequence[float]) -> list[tuple[float, float]]:
 
 
 def _tracks(source: str, options: argparse.Namespace, report: Progress) -> list[Trajectories]:
-    """Return the recording of a file, or one for each run of a trial."""
+    """Return the recording of a file or a folder, or one for each run of a trial."""
+    from crowdbot.trials import builtin_trials
+
     path = Path(source)
-    if path.suffix.lower() != ".xml" and path.exists():
+    folder = path.is_dir() and source not in builtin_trials()  # `run frontal --out frontal` makes such a folder
+    if path.suffix.lower() != ".xml" and (path.is_file() or folder):
         return [recording(options, path).original]
     return _run(source, options, report)
 

@@ -41,9 +41,9 @@ __all__ = ["FORMATS", "TIME_BASES", "detect_format", "load"]
 
 _READERS: tuple[Reader, ...] = (
     episode.READER,
+    tables.PARQUET,
     episode.SQLITE,
     episode.ROS1,
-    tables.PARQUET,
     juelich.HDF5,
     juelich.SQLITE,
     socialways.READER,
