@@ -3,7 +3,6 @@
 import dataclasses
 import json
 import math
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,6 @@ from crowdbot.benchmark import (
     speed_grid,
     trace_physics,
     trace_planar,
-    write_drives_page,
 )
 from crowdbot.benchmark.drives.trace_store import TraceStore, drive_runs
 from crowdbot.cli import main
@@ -106,20 +104,6 @@ def test_qolo_keeps_its_wheels_on_the_floor():
     assert trace.tilt.max() < 0.01
 
 
-def test_a_page_has_its_tables_and_plots(tmp_path):
-    report = measure_drives(["differential"], quick=True)
-    files = write_drives_page(report, tmp_path / "drives.md", "crowdbot bench drives --quick")
-    assert [file.name for file in files] == ["drives.md", "steps.png", "paths.png", "slip.png", "time-steps.png"]
-    assert all(file.stat().st_size > 1000 for file in files)
-    text = files[0].read_text(encoding="utf-8")
-    assert "| differential | wheels | 5 |" in text
-    assert "All figures of 1 robot are within the bars." in text
-    worse = dataclasses.replace(report.rows[0], grid=DriveFigures(overshoot=0.5, tilt=1.0))
-    write_drives_page(dataclasses.replace(report, rows=(worse,)), tmp_path / "drives.md")
-    text = files[0].read_text(encoding="utf-8")
-    assert "Not within the bars: differential at 5 ms (overshoot, fall)." in text
-
-
 def test_the_command_prints_a_table_or_json(capsys, tmp_path):
     assert main(["bench", "drives", "--robot", "differential", "--quick", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -128,33 +112,11 @@ def test_the_command_prints_a_table_or_json(capsys, tmp_path):
     assert found["bars"] == dict(DRIVE_BARS)
 
 
-def test_the_page_has_robots_of_other_makers(tmp_path, capsys):
-    cart, page = tmp_path / "cart.urdf", tmp_path / "drives.md"
-    shutil.copyfile(ROBOTS / "turtlebot2" / "turtlebot2.urdf", cart)
-    words = ["bench", "drives", "--robot", "differential", "--quick", "--page", str(page), "--makers", str(cart)]
-    assert main([*words, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert [(row["robot"], row["base"], row["step"]) for row in found["makers"]] == [("cart", "differential", 0.005)]
-    text = page.read_text(encoding="utf-8")
-    assert f"--page drives.md --makers \\\n    {cart}\n" in text
-    assert "## Robots of other makers" in text
-    assert "| cart | differential | 5 |" in text
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cart.urdf", "drives", "drives.md"]
-
-
-def test_figures_beyond_the_bars_are_named_for_other_makers(tmp_path):
-    report = measure_drives(["differential"], quick=True)
-    worse = dataclasses.replace(report.rows[0], robot="cart", grid=DriveFigures(overshoot=0.5, tilt=1.0))
-    report = dataclasses.replace(report, makers=(worse, report.rows[0]))
-    text = write_drives_page(report, tmp_path / "drives.md")[0].read_text(encoding="utf-8")
-    assert "Within all bars at all steps: 1 robot. Beyond a bar at some step: cart: overshoot, fall." in text
-
-
 @pytest.mark.parametrize(
     ("words", "says"),
     [
         (["bench", "drives", "environments"], "is measured alone"),
-        (["bench", "--robot", "qolo"], "--robot, --makers, --page and --keep belong to crowdbot bench drives"),
+        (["bench", "--robot", "qolo"], "--robot, --makers and --keep belong to crowdbot bench drives"),
         (["bench", "drives", "--quick", "--robot", "qolo", "--makers", "no.urdf"], "there is no URDF file no.urdf"),
         (["bench", "drives", "--robot", "turtlebot9"], "there is no robot 'turtlebot9'"),
     ],

@@ -71,7 +71,6 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_path: Path, capsys) -> None:
     out = tmp_path / "engines.json"
     words = ["bench", "engines", "--quick", "--repeats", "2", "--rvo2", str(source), "--json", "--out", str(out)]
-    words += ["--page", str(tmp_path / "page.md")]
     assert main(words) == 0
     printed = capsys.readouterr()
     found = json.loads(printed.out)
@@ -89,10 +88,6 @@ def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_pa
     assert logging.root.manager.disable == logging.NOTSET  # messages of others are silent only while one is imported
     assert "crowdbot: the comparison with JuPedSim needs the extra [peers]" in printed.err
     assert "alternate" in found["protocol"]
-    page = (tmp_path / "page.md").read_text(encoding="utf-8")
-    assert "crowdbot bench engines --repeats 2 --quick --rvo2 RVO2 --page engines.md" in page
-    assert page.count("| orca | RVO2 | 1000 | sorted |") == len(found["rows"]) // 2
-    assert str(source) not in page
     assert any("from source" in engine for engine in found["protocols"])
 
 

@@ -24,9 +24,8 @@ _MODULES = {
         "speed_grid",
         "trace_physics",
         "trace_planar",
-        "write_drives_page",
     ),
-    "engines": ("EngineReport", "EngineRow", "EngineSizes", "MillionRow", "measure_engines", "write_engines_page"),
+    "engines": ("EngineReport", "EngineRow", "EngineSizes", "MillionRow", "measure_engines"),
     "environments": ("BenchmarkSizes", "EnvironmentReport", "EnvironmentRow", "PeerRate", "measure_environments"),
     "speed": ("Gauge", "Measurement", "SpeedRow", "measure", "measurements"),
 }
@@ -60,13 +59,11 @@ if TYPE_CHECKING:
     from .drives import speed_grid as speed_grid
     from .drives import trace_physics as trace_physics
     from .drives import trace_planar as trace_planar
-    from .drives import write_drives_page as write_drives_page
     from .engines import EngineReport as EngineReport
     from .engines import EngineRow as EngineRow
     from .engines import EngineSizes as EngineSizes
     from .engines import MillionRow as MillionRow
     from .engines import measure_engines as measure_engines
-    from .engines import write_engines_page as write_engines_page
     from .environments import BenchmarkSizes as BenchmarkSizes
     from .environments import EnvironmentReport as EnvironmentReport
     from .environments import EnvironmentRow as EnvironmentRow

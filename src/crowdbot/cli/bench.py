@@ -64,12 +64,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help=f"URDF, xacro or SDF files for {DRIVES}, imported as by crowdbot new robot FILE --yes (default: none)",
     )
     parser.add_argument(
-        "--page",
-        type=Path,
-        metavar="FILE.md",
-        help=f"page for {ENGINES}, or for {DRIVES} with its plots in a folder of the same name",
-    )
-    parser.add_argument(
         "--keep",
         type=Path,
         metavar="FOLDER",
@@ -91,15 +85,15 @@ def main(options: argparse.Namespace) -> int:
             raise InputError(f"{ENGINES} is measured alone, without other measurements and without --data")
         return _measure_engines(options)
     if ENVIRONMENTS in options.names:
-        if len(options.names) > 1 or options.data is not None or options.robot or options.makers or options.page:
+        if len(options.names) > 1 or options.data is not None or options.robot or options.makers:
             raise InputError(f"{ENVIRONMENTS} is measured alone, without other measurements and without --data")
         return _measure_environments(options)
     if DRIVES in options.names:
         if len(options.names) > 1 or options.data is not None:
             raise InputError(f"{DRIVES} is measured alone, without other measurements and without --data")
         return _measure_drives(options)
-    if options.robot or options.makers or options.page is not None or options.keep is not None:
-        raise InputError(f"--robot, --makers, --page and --keep belong to crowdbot bench {DRIVES}")
+    if options.robot or options.makers or options.keep is not None:
+        raise InputError(f"--robot, --makers and --keep belong to crowdbot bench {DRIVES}")
     if options.quick:
         raise InputError(f"--quick belongs to crowdbot bench {ENVIRONMENTS}, {ENGINES} or {DRIVES}; use --repeats 1")
     with progress(options.json) as report:
@@ -139,16 +133,12 @@ def _measure_environments(options: argparse.Namespace) -> int:
 
 
 def _measure_engines(options: argparse.Namespace) -> int:
-    from crowdbot.benchmark import EngineSizes, measure_engines, write_engines_page
+    from crowdbot.benchmark import EngineSizes, measure_engines
 
     sizes = EngineSizes.quick(options.repeats) if options.quick else EngineSizes(options.repeats)
     with progress(options.json) as report:
         found = measure_engines(sizes, options.rvo2, report)
     _write(options.out, found.as_dict())
-    if options.page is not None:
-        words = [f"--repeats {options.repeats}", *(["--quick"] if options.quick else [])]
-        words += ["--rvo2 RVO2"] if options.rvo2 is not None else []
-        write_engines_page(found, options.page, " ".join(["crowdbot bench", ENGINES, *words, "--page", "engines.md"]))
     for sentence in found.missing.values():
         note(f"crowdbot: {sentence}")
     if options.json:
@@ -174,28 +164,18 @@ def _print_engines(found: EngineReport) -> None:
 
 
 def _measure_drives(options: argparse.Namespace) -> int:
-    from crowdbot.benchmark import measure_drives, write_drives_page
+    from crowdbot.benchmark import measure_drives
 
     with progress(options.json) as report:
         found = measure_drives(
             options.robot or None, quick=options.quick, makers=options.makers, keep=options.keep, report=report
         )
     _write(options.out, found.as_dict())
-    if options.page is not None:
-        write_drives_page(found, options.page, _command(options))
     if options.json:
         print_json(found.as_dict())
     else:
         _print_drives(found)
     return 0
-
-
-def _command(options: argparse.Namespace) -> str:
-    """Return the command of the drive laboratory, with a file of a maker on each line."""
-    words = ["crowdbot bench", DRIVES, *(["--robot", *options.robot] if options.robot else [])]
-    words += ["--quick"] if options.quick else []
-    text = " ".join([*words, "--page", options.page.name])
-    return " \\\n    ".join([text + (" --makers" if options.makers else ""), *map(str, options.makers)])
 
 
 def _print_drives(found: DriveReport) -> None:

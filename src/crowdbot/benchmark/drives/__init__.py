@@ -1,9 +1,8 @@
 """The drive laboratory: how robots follow velocity commands in the physics world, beside the planar world."""
 
-from .figures import DriveFigures, compare_traces
+from .figures import DRIVE_COLUMNS, DriveFigures, compare_traces, grid_cells
 from .laboratory import DRIVE_BARS, DriveReport, DriveRow, measure_drives
 from .manoeuvre import Manoeuvre, manoeuvres, speed_grid
-from .page import DRIVE_COLUMNS, grid_cells, write_drives_page
 from .traces import DriveTrace, trace_physics, trace_planar
 
 __all__ = [
@@ -21,5 +20,4 @@ __all__ = [
     "speed_grid",
     "trace_physics",
     "trace_planar",
-    "write_drives_page",
 ]

@@ -14,7 +14,7 @@ from crowdbot.world import Drive
 from .manoeuvre import Manoeuvre
 from .traces import SAMPLE, DriveTrace
 
-__all__ = ["FALLEN", "DriveFigures", "compare_traces"]
+__all__ = ["DRIVE_COLUMNS", "FALLEN", "DriveFigures", "compare_traces", "grid_cells"]
 
 Floats = NDArray[np.float64]
 SLOPE = 2
@@ -27,6 +27,17 @@ NOISE = 0.05
 """Accelerations [m/s2], [rad/s2] are compared with at least this: a car that drives straight turns by rounding only."""
 FALLEN = math.radians(30.0)
 """A robot that leans more has fallen [rad]."""
+
+
+DRIVE_COLUMNS = (
+    ("overshoot", "overshoot [%]"), ("steady_error", "steady [%]"), ("acceleration", "acc. [%]"),
+    ("turn_acceleration", "turn acc. [%]"), ("path_error", "path [%]"), ("heading_error", "heading [rad/rad]"),
+    ("stop_error", "stop [mm]"), ("tilt", "tilt [rad]"),
+)  # fmt: skip
+"""Figures of the grid with their headers in tables."""
+SCALES = {"overshoot": 100.0, "steady_error": 100.0, "acceleration": 100.0, "turn_acceleration": 100.0,
+          "path_error": 100.0, "stop_error": 1000.0}  # fmt: skip
+DIGITS = {"acceleration": 0, "turn_acceleration": 0, "heading_error": 4, "stop_error": 1, "tilt": 4}
 
 
 @dataclass(frozen=True)
@@ -75,6 +86,15 @@ class DriveFigures:
     def as_dict(self) -> dict[str, Any]:
         """Return the figures by name."""
         return asdict(self)
+
+
+def grid_cells(figures: DriveFigures) -> list[str]:
+    """Return the figures of a grid as cells for :data:`DRIVE_COLUMNS`.
+
+    >>> grid_cells(DriveFigures(overshoot=0.0123, tilt=0.001))
+    ['1.23', '0.00', '0', '0', '0.00', '0.0000', '0.0', '0.0010']
+    """
+    return [f"{SCALES.get(name, 1.0) * getattr(figures, name):.{DIGITS.get(name, 2)}f}" for name, _ in DRIVE_COLUMNS]
 
 
 def compare_traces(drive: Drive, manoeuvre: Manoeuvre, physics: DriveTrace, plane: DriveTrace) -> DriveFigures:
