@@ -299,21 +299,25 @@ def test_other_mcap_files_are_refused(tmp_path: Path) -> None:
             writer.finish()
         with pytest.raises(EpisodeError, match=sentence):
             read_episode(path)
-    keys = dict.fromkeys(RecordedEpisode.__dataclass_fields__, "") | dict.fromkeys(
-        (
-            "trial",
-            "trial_name",
-            "seed",
-            "version",
-            "digest",
-            "outcome",
-            "steps",
-            "people",
-            "metrics",
-            "walls",
-            "robots",
-        ),
-        "nonsense",
+    keys = (
+        {"format": "3"}
+        | dict.fromkeys(RecordedEpisode.__dataclass_fields__, "")
+        | dict.fromkeys(
+            (
+                "trial",
+                "trial_name",
+                "seed",
+                "version",
+                "digest",
+                "outcome",
+                "steps",
+                "people",
+                "metrics",
+                "walls",
+                "robots",
+            ),
+            "nonsense",
+        )
     )
     with path.open("wb") as stream:
         writer = Writer(stream)
