@@ -12,7 +12,7 @@ from crowdbot.lazy import lazy_exports
 _MODULES = {
     "comparison": ("PairedComparison", "paired_comparison"),
     "decision_metrics": ("DECISION_METRICS",),
-    "episode_metrics": ("PAIRED_FAMILIES", "episode_log", "episode_metrics", "families_of"),
+    "run_metrics": ("PAIRED_FAMILIES", "episode_log", "episode_metrics", "families_of"),
     "factor_sweep": ("FactorSweep", "parse_factors", "sweep_trials"),
     "intervals": ("Estimate", "bootstrap_estimate", "proportion_interval"),
     "job": ("RunRow", "row_of", "row_values"),
@@ -120,10 +120,6 @@ if TYPE_CHECKING:
     from .comparison import PairedComparison as PairedComparison
     from .comparison import paired_comparison as paired_comparison
     from .decision_metrics import DECISION_METRICS as DECISION_METRICS
-    from .episode_metrics import PAIRED_FAMILIES as PAIRED_FAMILIES
-    from .episode_metrics import episode_log as episode_log
-    from .episode_metrics import episode_metrics as episode_metrics
-    from .episode_metrics import families_of as families_of
     from .factor_sweep import FactorSweep as FactorSweep
     from .factor_sweep import parse_factors as parse_factors
     from .factor_sweep import sweep_trials as sweep_trials
@@ -193,6 +189,10 @@ if TYPE_CHECKING:
     from .result import result_schema as result_schema
     from .robot_recording import RobotRecording as RobotRecording
     from .robot_recording import load_robot_recording as load_robot_recording
+    from .run_metrics import PAIRED_FAMILIES as PAIRED_FAMILIES
+    from .run_metrics import episode_log as episode_log
+    from .run_metrics import episode_metrics as episode_metrics
+    from .run_metrics import families_of as families_of
     from .runner import evaluate as evaluate
     from .scan_prediction import SCAN_SCORES as SCAN_SCORES
     from .scan_prediction import SOGMP as SOGMP

@@ -15,7 +15,7 @@ from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
 from crowdbot.trials import Trial, parse_trial
 
 from .decision_metrics import decision_metrics
-from .episode_metrics import episode_metrics, paired_variants
+from .run_metrics import episode_metrics, paired_variants
 
 __all__ = ["RunJob", "RunRow", "append_rows", "read_rows", "run_job"]
 

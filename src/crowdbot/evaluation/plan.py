@@ -16,8 +16,8 @@ from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
 from crowdbot.trials import Trial, expand_sweeps, passage_remarks, remarks_at_end, trial_xml
 
-from .episode_metrics import check_families
 from .method import Method, own_method
+from .run_metrics import check_families
 
 __all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
 

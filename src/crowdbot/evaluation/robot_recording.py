@@ -14,7 +14,7 @@ from crowdbot.core import DataError, check_number
 from crowdbot.data import Trajectories, load
 from crowdbot.metrics import AgentLog, NavigationMetrics, RobotLog, log_metrics
 
-from .episode_metrics import REGIONS
+from .run_metrics import REGIONS
 
 __all__ = ["RobotRecording", "load_robot_recording"]
 
