@@ -13,7 +13,7 @@ import pytest
 from crowdbot.prediction.anchor_net.network_shapes import wrong_array
 from crowdbot.prediction.pretrained_weights import read_weights
 
-TOOL = Path(__file__).parents[2] / "tools" / "train_anchor_net.py"
+TOOL = Path(__file__).parents[2] / "studies" / "train_anchor_net.py"
 
 
 @pytest.fixture

@@ -6,8 +6,6 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from crowdbot.core import InputError
-
 __all__ = ["FILE_OPTIONS", "FileOption", "parse_columns", "split_columns"]
 
 NEXT_COLUMN = re.compile(r"\s+(?=[a-z_]+=)")
@@ -58,6 +56,8 @@ def parse_columns(words: Iterable[str]) -> tuple[tuple[str, str], ...]:
     >>> parse_columns(["id=who", "x=3"])
     (('id', 'who'), ('x', '3'))
     """
+    from crowdbot.core import InputError  # loads NumPy, and the help of commands lists these options without it
+
     pairs = []
     for word in words:
         quantity, sign, column = word.partition("=")

@@ -1,6 +1,6 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
-from .attachments import AttachedFile, SkippedAttachmentWarning
+from .attachments import AttachedFile, SkippedAttachmentWarning, named_files
 from .episode_branch import branch
 from .episode_export import export
 from .episode_reader import RecordedEpisode, iterate_steps, read_episode
@@ -40,6 +40,7 @@ __all__ = [
     "folder_of",
     "iterate_steps",
     "keyframe_ticks",
+    "named_files",
     "open_rerun",
     "open_run",
     "read_episode",
