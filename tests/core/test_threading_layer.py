@@ -11,7 +11,9 @@ from crowdbot.core import threading_layer
 from samples import sample
 
 PROGRAM = Path(__file__).with_name("parallel_work.py")
-STEPS = ["work", "fork", "threads", "fork-threads", "fork-during", "fork-from-thread"]
+STEPS = ["work", "fork", "threads", "fork-threads"]
+RESTING = ["work", "fork-during", "fork-from-thread"]
+"""Steps in which a fork waits until the threads of the layer sleep."""
 LAYERS = ["tbb", "workqueue"]
 
 NESTED = """
@@ -65,15 +67,26 @@ def results(*words, **environment):
     return {word: value for _, word, *value in lines}
 
 
+def assert_same_bytes(steps, layer):
+    found = results(*steps, "layer", NUMBA_THREADING_LAYER=layer)
+    assert found.pop("layer") == [layer]
+    assert set(found) == set(steps)
+    assert len(found["work"]) == 1
+    assert {step: value for step, value in found.items() if value != found["work"]} == {}
+
+
 @pytest.mark.program
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 @pytest.mark.parametrize("layer", LAYERS)
 def test_forks_and_threads_get_the_same_bytes(layer):
-    found = results(*STEPS, "layer", NUMBA_THREADING_LAYER=layer)
-    assert found.pop("layer") == [layer]
-    assert set(found) == set(STEPS)
-    assert all(value == found["work"] for value in found.values()), found
-    assert len(found["work"]) == 1
+    assert_same_bytes(STEPS, layer)
+
+
+@pytest.mark.live
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
+@pytest.mark.parametrize("layer", LAYERS)
+def test_forks_beside_and_in_other_threads_get_the_same_bytes(layer):
+    assert_same_bytes(RESTING, layer)
 
 
 @pytest.mark.sweep

@@ -33,6 +33,8 @@ _entry = threading.RLock()
 _compiling: Any = compiler_lock.global_compiler_lock
 _layer: Any = parallel.threading_layer
 _running: set[object] = set()
+_callers: set[int] = set()
+"""Threads that have called a kernel."""
 
 
 def prefer_safe_layers() -> None:
@@ -72,6 +74,7 @@ def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
         call = object()
         with _entry:  # waits while another thread forks
             _running.add(call)
+            _callers.add(threading.get_ident())
         try:
             return compiled(*arguments)
         finally:
@@ -95,9 +98,10 @@ def _before_fork() -> None:
     while _running and time.monotonic() < end:
         time.sleep(0.0005)
     _compiling.acquire()
-    if threading.current_thread() is not threading.main_thread() and _is_thread_safe():
-        # numba ends the threads of oneTBB before a fork in the main thread only. In other threads, the child gets a
-        # copy of their state, which works if they sleep and may hang if they hold a lock.
+    main = threading.main_thread()
+    if _is_thread_safe() and (threading.current_thread() is not main or _callers - {main.ident}):
+        # numba ends the threads of oneTBB before a fork in the main thread, unless other threads have called kernels.
+        # Otherwise the child gets a copy of their state, which works if they sleep and may hang if they hold a lock.
         time.sleep(REST)
 
 
@@ -108,6 +112,7 @@ def _after_fork_in_parent() -> None:
 
 def _after_fork_in_child() -> None:
     _running.clear()
+    _callers.clear()
     _after_fork_in_parent()
 
 
