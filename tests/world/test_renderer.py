@@ -1,5 +1,6 @@
 """Images of scenes in the plane, and of cameras with a lens."""
 
+import gc
 import math
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from crowdbot.world import (
     Robot,
     SceneCamera,
 )
+from crowdbot.world.rendering.visuals import Visuals
 
 
 def plain(name="turtlebot2"):
@@ -150,3 +152,26 @@ def test_what_cannot_be_shown_is_said():
         renderer.render(Optics(Lens.of(8, 8, 1.0)), SpatialPose.of([[0.0, 0.0, 1.0]] * 2))
     with pytest.raises(InputError, match="width = 5000 pixels must be from 1 to 1920"):
         renderer.render(Optics(Lens.of(5000, 8, 1.0)), SpatialPose.of((0.0, 0.0, 1.0)))
+
+
+@pytest.mark.usefixtures("drawing")
+def test_a_renderer_that_is_freed_while_another_draws_does_not_change_its_image(monkeypatch):
+    """The garbage collector frees renderers at any time, between any two lines of another one."""
+    scene, robot = plain()
+    camera = SceneCamera((0.1, 0.0, 0.6), (1.0, 0.0, 0.7), width=100, height=60, robot=0, detail=2)
+    renderer = Renderer(scene, {0: robot})
+    expected = renderer.images(camera, depth=True)
+    freed = [Renderer(scene, {0: robot})]
+    freed[0].images(camera)
+    arrange = Visuals._arranged
+
+    def free_and_arrange(self, view, active):
+        freed.clear()
+        gc.collect()
+        return arrange(self, view, active)
+
+    monkeypatch.setattr(Visuals, "_arranged", free_and_arrange)
+    images = renderer.images(camera, depth=True)
+    assert len(freed) == 0
+    np.testing.assert_array_equal(images.depth, expected.depth)
+    np.testing.assert_array_equal(images.rgb, expected.rgb)

@@ -8,12 +8,13 @@ import importlib
 import os
 import subprocess
 import sys
+import threading
 from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["backend", "close_gl_context", "create_gl_context", "graphics_library"]
+__all__ = ["backend", "close_gl_context", "create_gl_context", "graphics_library", "use_gl_context"]
 
 KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
@@ -23,6 +24,8 @@ LIBRARIES: set[str] = set()
 """Names of the libraries of all contexts of this program."""
 BUSY: list[Any] = []
 """Renderers whose context is current in another thread."""
+CURRENT = threading.local()
+"""The context that this thread draws in, as ``CURRENT.context``."""
 LONGEST = 60.0
 """Timeout of the test of a backend [s]."""
 
@@ -63,7 +66,7 @@ def create_gl_context(width: int, height: int) -> Any:
     name = backend()
     try:
         made = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
-        made.make_current()
+        use_gl_context(made)
     except Exception as error:  # each backend raises its own errors
         raise InputError(
             f"rendering with {name} does not work ({str(error).strip() or type(error).__name__});"
@@ -76,12 +79,20 @@ def create_gl_context(width: int, height: int) -> Any:
     return made
 
 
+def use_gl_context(context: Any) -> None:
+    """Make a context current in this thread."""
+    context.make_current()
+    CURRENT.context = context
+
+
 def close_gl_context(context: Any, drawn_by: Any) -> None:
     """Free a context and the renderer that uses it.
 
-    A context that is current in another thread stays until the program ends: no other thread can free it.
+    A context that is current in another thread stays until the program ends: no other thread can free it. The garbage
+    collector may call this while another renderer of this thread draws, so its context becomes current again.
     """
     if context in OPEN:
+        drawn_in = getattr(CURRENT, "context", None)
         try:
             context.make_current()
         except Exception:  # each backend raises its own errors
@@ -90,6 +101,10 @@ def close_gl_context(context: Any, drawn_by: Any) -> None:
         OPEN.remove(context)
         drawn_by.free()
         context.free()
+        if drawn_in in OPEN:
+            use_gl_context(drawn_in)
+        else:
+            CURRENT.context = None
 
 
 def graphics_library() -> tuple[str, ...]:

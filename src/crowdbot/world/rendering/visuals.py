@@ -17,7 +17,7 @@ from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import PhysicsStage
 
 from .camera import LARGEST, CameraImages, CameraView
-from .gl_context import close_gl_context, create_gl_context
+from .gl_context import close_gl_context, create_gl_context, use_gl_context
 from .labels import NOTHING, WALL, geom_code
 
 __all__ = ["Visuals"]
@@ -75,7 +75,7 @@ class Visuals:
     ) -> CameraImages:
         """Return images of the current state, with the people in ``active`` ``[A]``."""
         mj = self._mj
-        self._canvas.make_current()
+        use_gl_context(self._canvas)
         codes = self._arranged(view, active)
         area = mj.MjrRect(0, 0, view.width, view.height)
         colors = np.empty((view.height, view.width, 3), dtype=np.uint8)
