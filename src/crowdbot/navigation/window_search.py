@@ -3,12 +3,24 @@
 The cost of a twist is its difference from the desired velocity plus penalties that are never negative. Twists are
 tried in order of the difference; a twist is given up as soon as its partial cost exceeds the best cost. People and
 walls that no twist reaches are left out. Neither changes a bit of the result.
+
+Working memory of the search with S steps, which the kernels share:
+
+* ``forwards [FORWARD]`` and ``turns [TURNS]``: candidate speeds [m/s] and turn rates [rad/s];
+* ``speeds [S, FORWARD]``: speed in each step [m/s];
+* ``course [TURNS, 3]``: heading [rad] and turn rate [rad/s] after the computed steps, and their number;
+* ``path [TURNS, S + 1, 2, FORWARD]``: positions x and y before each step and after the last one [m];
+* ``miss [TURNS, FORWARD]``: difference from the desired velocity [m/s], inf for candidates that were tried;
+* ``passing [S, A, 6]`` and ``count [S]``: people within reach in each step, see :func:`_list_people`;
+* ``wall [M, 4]``: walls within reach, relative to the robot [m];
+* ``fades [S]``: weight of each step.
+
+They are passed one by one, without slices and tuples: each access to an array of a tuple counts references.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,35 +50,6 @@ MARGIN, NEAR, SKIN, CONTACT, WALL_MARGIN, WALL, FACING = 0, 1, 2, 3, 4, 5, 6
 """Indices of the weights."""
 
 
-class _Work(NamedTuple):
-    """Working memory of the search for one robot, with S steps."""
-
-    forwards: Floats
-    """``[FORWARD]`` candidate speeds [m/s]."""
-    turns: Floats
-    """``[TURNS]`` candidate turn rates [rad/s]."""
-    speeds: Floats
-    """``[S, FORWARD]`` speed in each step."""
-    course: Floats
-    """``[TURNS, S, 2]`` cosine and sine of the direction of each step."""
-    ends: Floats
-    """``[TURNS, 2]`` heading [rad] and turn rate [rad/s] after the computed steps."""
-    known: Counts
-    """``[TURNS]`` number of computed steps of the course."""
-    miss: Floats
-    """``[TURNS, FORWARD]`` difference from the desired velocity [m/s]; inf for tried candidates."""
-    passing: Floats
-    """``[S, A, 6]`` people within reach in each step: x, y before it and after it [m], radius, squared reach."""
-    number: Counts
-    """``[S]`` number of these people."""
-    walls: Floats
-    """``[M, 4]`` walls within reach, relative to the robot [m]."""
-    fades: Floats
-    """``[S]`` weight of each step."""
-    reached: Floats
-    """``[MATCH, 4]`` box x, y, x, y around all candidates before each of the first steps [m]."""
-
-
 @kernel
 def _fill(out: Floats, start: float, stop: float) -> None:
     """Write evenly spaced numbers with the bits of ``numpy.linspace``."""
@@ -88,62 +71,78 @@ def _smaller(a: float, b: float) -> float:
 
 
 @kernel
-def _extend(work: _Work, j: int, change: float, steps: int) -> None:
-    """Compute the course of turn rate j up to a number of steps."""
-    course, ends = work.course, work.ends
-    heading, w, turn = ends[j, 0], ends[j, 1], work.turns[j]
-    for k in range(work.known[j], steps):
-        w += min(max(turn - w, -change), change)
-        course[j, k, 0] = math.cos(heading + 0.5 * w * STEP)
-        course[j, k, 1] = math.sin(heading + 0.5 * w * STEP)
-        heading += w * STEP
-    ends[j, 0], ends[j, 1] = heading, w
-    work.known[j] = steps
-
-
-@kernel
-def _stretch(box: Floats, x: Floats, y: Floats) -> None:
-    """Extend a box to the points of all speeds."""
+def _accelerate(forwards: Floats, forward: float, change: float, speeds: Floats) -> None:
+    """Write the speed of each candidate in each step."""
     for i in range(FORWARD):
-        box[0], box[1] = min(box[0], x[i]), min(box[1], y[i])
-        box[2], box[3] = max(box[2], x[i]), max(box[3], y[i])
-
-
-@kernel
-def _compare(work: _Work, forward: float, change: float, wish_x: float, wish_y: float, facing: float) -> None:
-    """Compute speeds, and the difference of each candidate from the desired velocity after :data:`MATCH` steps."""
-    speeds, course, ends, miss = work.speeds, work.course, work.ends, work.miss
-    for i in range(FORWARD):
-        v, wanted = forward, work.forwards[i]
+        v, wanted = forward, forwards[i]
         for k in range(len(speeds)):
             v += min(max(wanted - v, -change), change)
             speeds[k, i] = v
+
+
+@kernel(inline=True)
+def _extend(j: int, steps: int, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats) -> None:
+    """Compute the positions of all speeds at turn rate j, up to a number of steps."""
+    heading, w, turn = course[j, 0], course[j, 1], turns[j]
+    for k in range(int(course[j, 2]), steps):
+        w += min(max(turn - w, -change), change)
+        cos, sin = math.cos(heading + 0.5 * w * STEP), math.sin(heading + 0.5 * w * STEP)
+        heading += w * STEP
+        for i in range(FORWARD):  # vector instructions: one number for each speed
+            path[j, k + 1, 0, i] = path[j, k, 0, i] + speeds[k, i] * cos * STEP
+            path[j, k + 1, 1, i] = path[j, k, 1, i] + speeds[k, i] * sin * STEP
+    course[j, 0], course[j, 1], course[j, 2] = heading, w, steps
+
+
+@kernel
+def _begin(
+    heading: float, rate: float, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats
+) -> None:
+    """Compute the positions of all candidates in the first :data:`MATCH` steps, from a heading and a turn rate.
+
+    As long as two turn rates are out of reach on the same side, their courses are equal.
+    """
+    course[:, 0], course[:, 1], course[:, 2] = heading, rate, MATCH
+    for k in range(MATCH):
+        cos, sin, last, origin = 0.0, 0.0, math.nan, math.nan
+        for j in range(TURNS):
+            w, start = course[j, 1], course[j, 0]
+            w += min(max(turns[j] - w, -change), change)
+            if w != last or start != origin:
+                cos, sin, last, origin = math.cos(start + 0.5 * w * STEP), math.sin(start + 0.5 * w * STEP), w, start
+            course[j, 0], course[j, 1] = start + w * STEP, w
+            for i in range(FORWARD):
+                path[j, k + 1, 0, i] = path[j, k, 0, i] + speeds[k, i] * cos * STEP
+                path[j, k + 1, 1, i] = path[j, k, 1, i] + speeds[k, i] * sin * STEP
+
+
+@kernel
+def _compare(wish_x: float, wish_y: float, facing: float, course: Floats, path: Floats, miss: Floats) -> None:
+    """Write the difference of each candidate from the desired velocity after :data:`MATCH` steps."""
     length = math.sqrt(wish_x**2 + wish_y**2)
     span = MATCH * STEP
-    x, y = np.empty(FORWARD), np.empty(FORWARD)
-    work.reached[0] = 0.0
-    work.reached[1:, :2], work.reached[1:, 2:] = math.inf, -math.inf
     for j in range(TURNS):
-        aside = length - wish_x * math.cos(ends[j, 0]) - wish_y * math.sin(ends[j, 0])
-        x[:], y[:] = 0.0, 0.0
-        for k in range(MATCH):
-            cos, sin = course[j, k, 0], course[j, k, 1]
-            for i in range(FORWARD):  # vector instructions: one number for each speed
-                x[i] += speeds[k, i] * cos * STEP
-                y[i] += speeds[k, i] * sin * STEP
-            if k + 1 < MATCH:
-                _stretch(work.reached[k + 1], x, y)
+        aside = facing * (length - wish_x * math.cos(course[j, 0]) - wish_y * math.sin(course[j, 0]))
         for i in range(FORWARD):
-            miss[j, i] = math.sqrt((x[i] / span - wish_x) ** 2 + (y[i] / span - wish_y) ** 2) + facing * aside
+            dx, dy = path[j, MATCH, 0, i] / span - wish_x, path[j, MATCH, 1, i] / span - wish_y
+            miss[j, i] = math.sqrt(dx**2 + dy**2) + aside
 
 
 @kernel
 def _list_people(
-    work: _Work, x: float, y: float, radius: float, fastest: float, reach: float,
-    position: Floats, velocity: Floats, size: Floats, seen: NDArray[np.bool_],
+    x: float, y: float, radius: float, fastest: float, reach: float,
+    position: Floats, velocity: Floats, size: Floats, seen: NDArray[np.bool_], passing: Floats, count: Counts,
 ) -> None:  # fmt: skip
-    """List the people whom the robot may come closer to than ``reach``, for each step."""
-    passing, count = work.passing, work.number
+    """List the people whom the robot may come closer to than ``reach``, for each step.
+
+    Args:
+        x, y, radius, fastest: robot.
+        reach: clearance [m].
+        position, velocity, size, seen: people.
+        passing: receives the people of each step: x, y before it and after it, relative to the robot, radius, and the
+            distance before the step up to which they may touch the robot during it [m].
+        count: receives their number.
+    """
     count[:] = 0
     for a in range(len(size)):
         if not seen[a]:
@@ -151,22 +150,23 @@ def _list_people(
         rx, ry, vx, vy = position[a, 0] - x, position[a, 1] - y, velocity[a, 0], velocity[a, 1]
         if not math.hypot(rx, ry) < SIGHT:
             continue
-        far = radius + size[a] + reach + (math.sqrt(vx * vx + vy * vy) + fastest) * STEP * (1.0 + SLACK) + SLACK
+        touching = radius + size[a] + (math.sqrt(vx * vx + vy * vy) + fastest) * STEP * (1.0 + SLACK) + SLACK
         for k in range(len(count)):
             t = k * STEP
             px, py = rx + vx * t, ry + vy * t
-            farthest = far + fastest * t * (1.0 + SLACK)
+            farthest = touching + reach + fastest * t * (1.0 + SLACK)
             if px * px + py * py > farthest * farthest:
                 continue
-            row = passing[k, count[k]]
-            row[0], row[1], row[2], row[3] = px, py, px + vx * STEP, py + vy * STEP
-            row[4], row[5] = size[a], far * far
+            n = count[k]
+            passing[k, n, 0], passing[k, n, 1] = px, py
+            passing[k, n, 2], passing[k, n, 3] = px + vx * STEP, py + vy * STEP
+            passing[k, n, 4], passing[k, n, 5] = size[a], touching
             count[k] += 1
 
 
 @kernel
-def _list_walls(work: _Work, x: float, y: float, reach: float, segments: Floats) -> int:
-    """List the walls that the robot may come closer to than ``reach``; return their number."""
+def _list_walls(x: float, y: float, reach: float, segments: Floats, walls: Floats) -> int:
+    """Write the walls that the robot may come closer to than ``reach``, relative to it; return their number."""
     near = int(np.int64(0))
     for m in range(len(segments)):
         ax, ay, bx, by = segments[m, 0] - x, segments[m, 1] - y, segments[m, 2] - x, segments[m, 3] - y
@@ -174,87 +174,70 @@ def _list_walls(work: _Work, x: float, y: float, reach: float, segments: Floats)
         share = _smaller(_larger(-(ax * ex + ay * ey) / _larger(ex * ex + ey * ey, 1e-300), 0.0), 1.0)
         away = math.hypot(ax + share * ex, ay + share * ey)
         if away < SIGHT and away <= reach:
-            row = work.walls[near]
-            row[0], row[1], row[2], row[3] = ax, ay, bx, by
+            walls[near, 0], walls[near, 1], walls[near, 2], walls[near, 3] = ax, ay, bx, by
             near += 1
     return near
 
 
 @kernel
-def _cost(work: _Work, i: int, j: int, miss: float, bound: float, radius: float, walls: int, weights: Floats) -> float:
-    """Return the cost of a candidate, or a part of it that exceeds the bound."""
-    speeds, course, passing, count, wall, fades = (
-        work.speeds, work.course, work.passing, work.number, work.walls, work.fades
-    )  # fmt: skip
-    margin, skin, wall_margin = weights[MARGIN], weights[SKIN], weights[WALL_MARGIN]
-    x, y, near, contact, touch, total = 0.0, 0.0, 0.0, 0.0, 0.0, miss
-    for k in range(len(count)):
-        before_x, before_y, changed = x, y, False
-        x += speeds[k, i] * course[j, k, 0] * STEP
-        y += speeds[k, i] * course[j, k, 1] * STEP
-        for n in range(count[k]):
-            px, py = passing[k, n, 0] - before_x, passing[k, n, 1] - before_y
-            if px * px + py * py > passing[k, n, 5]:
-                continue
-            nx, ny = nearest_on_segment(0.0, 0.0, px, py, passing[k, n, 2] - x, passing[k, n, 3] - y)
-            gap = math.sqrt(nx * nx + ny * ny) - radius - passing[k, n, 4]
-            if gap < margin:
-                near, changed = max(near, fades[k] * (margin - gap) / margin), True
-            if gap < skin:
-                contact, changed = max(contact, fades[k]), True
-        for n in range(walls):
-            nx, ny = nearest_on_segment(x, y, wall[n, 0], wall[n, 1], wall[n, 2], wall[n, 3])
-            gap = math.sqrt((nx - x) ** 2 + (ny - y) ** 2) - radius
-            excess = (wall_margin - gap) / wall_margin
-            if excess > touch:
-                touch, changed = excess, True
-        if changed:
-            total = miss + weights[NEAR] * near + weights[CONTACT] * contact + weights[WALL] * touch
-            if total > bound:
-                break
-    return total
-
-
-@kernel
-def _certain_cost(work: _Work, radius: float, weights: Floats) -> float:
+def _certain_cost(radius: float, weights: Floats, fades: Floats, passing: Floats, count: Counts, path: Floats) -> float:
     """Return a cost that every candidate has, since none can avoid the people in the first steps.
 
-    The clearance in a step is at most that at its beginning, from the farthest corner of the box of all candidates.
+    The clearance in a step is at most that at its beginning, from the farthest corner of the box around all candidates.
     """
-    near, contact, passing = 0.0, 0.0, work.passing
+    near, contact, margin, skin = 0.0, 0.0, weights[MARGIN], weights[SKIN]
     for k in range(MATCH):
-        box, fade = work.reached[k], work.fades[k]
-        for n in range(work.number[k]):
-            dx = max(abs(passing[k, n, 0] - box[0]), abs(passing[k, n, 0] - box[2]))
-            dy = max(abs(passing[k, n, 1] - box[1]), abs(passing[k, n, 1] - box[3]))
+        if count[k] == 0:
+            continue
+        left, below, right, above = math.inf, math.inf, -math.inf, -math.inf
+        for j in range(TURNS):
+            for i in range(FORWARD):
+                x, y = path[j, k, 0, i], path[j, k, 1, i]
+                left, right = x if x < left else left, x if x > right else right
+                below, above = y if y < below else below, y if y > above else above
+        for n in range(count[k]):
+            dx = max(abs(passing[k, n, 0] - left), abs(passing[k, n, 0] - right))
+            dy = max(abs(passing[k, n, 1] - below), abs(passing[k, n, 1] - above))
             gap = math.sqrt(dx * dx + dy * dy) - radius - passing[k, n, 4] + SLACK
-            if gap < weights[MARGIN]:
-                near = max(near, fade * (weights[MARGIN] - gap) / weights[MARGIN])
-            if gap < weights[SKIN]:
-                contact = max(contact, fade)
+            if gap < margin:
+                near = max(near, fades[k] * (margin - gap) / margin)
+            if gap < skin:
+                contact = max(contact, fades[k])
     certain: float = (weights[NEAR] * near + weights[CONTACT] * contact) * (1.0 - SLACK)
     return certain
 
 
-@kernel
-def _row_minimum(row: Floats) -> tuple[float, int]:
-    """Return the smallest difference of a turn rate, and the first speed that has it; inf if all are tried."""
-    least, place = math.inf, int(np.int64(0))
-    for n in range(FORWARD):
-        if row[n] < least:
-            least, place = row[n], n
-    return least, place
+@kernel(inline=True)
+def _clearance(i: int, j: int, k: int, n: int, radius: float, passing: Floats, path: Floats) -> float:
+    """Return the clearance [m] to a person during a step of a candidate."""
+    px, py = passing[k, n, 0] - path[j, k, 0, i], passing[k, n, 1] - path[j, k, 1, i]
+    qx, qy = passing[k, n, 2] - path[j, k + 1, 0, i], passing[k, n, 3] - path[j, k + 1, 1, i]
+    nx, ny = nearest_on_segment(0.0, 0.0, px, py, qx, qy)
+    return math.sqrt(nx * nx + ny * ny) - radius - passing[k, n, 4]
 
 
 @kernel
-def _search(work: _Work, change: float, radius: float, walls: int, weights: Floats, prune: bool) -> tuple[int, int]:
-    """Return speed and turn rate of the first candidate with the smallest cost, -1 if no cost is finite."""
-    miss = work.miss
-    best, speed, turn, steps = math.inf, int(np.int64(-1)), int(np.int64(-1)), len(work.number)
-    certain = _certain_cost(work, radius, weights) if prune else 0.0
+def _search(
+    turns: Floats, speeds: Floats, change: float, radius: float, weights: Floats, prune: bool, fades: Floats,
+    passing: Floats, count: Counts, wall: Floats, walls: int, course: Floats, path: Floats, miss: Floats,
+) -> tuple[int, int]:  # fmt: skip
+    """Return speed and turn rate of the first candidate with the smallest cost, -1 if no cost is finite.
+
+    Candidates of similar difference are close to each other, and the same person decides about them. The person who
+    raised a cost last is therefore tried first; most candidates are given up after this comparison.
+    """
+    margin, skin, wall_margin = weights[MARGIN], weights[SKIN], weights[WALL_MARGIN]
+    to_near, to_contact, to_wall = weights[NEAR], weights[CONTACT], weights[WALL]
+    steps = len(count)
+    best, speed, turn = math.inf, int(np.int64(-1)), int(np.int64(-1))
+    certain = _certain_cost(radius, weights, fades, passing, count, path) if prune else 0.0
+    step, person = int(np.int64(-1)), int(np.int64(0))
     least, place = np.empty(TURNS), np.empty(TURNS, np.int64)
-    for m in range(TURNS):
-        least[m], place[m] = _row_minimum(miss[m])
+    for j in range(TURNS):
+        least[j], place[j] = miss[j, 0], 0
+        for i in range(1, FORWARD):
+            if miss[j, i] < least[j]:
+                least[j], place[j] = miss[j, i], i
     for _ in range(miss.size):
         j, difference = int(np.int64(0)), math.inf
         for m in range(TURNS):
@@ -263,13 +246,54 @@ def _search(work: _Work, change: float, radius: float, walls: int, weights: Floa
         if not difference < math.inf or (prune and difference + certain > best):
             break
         i = place[j]
-        miss[j, i] = math.inf
-        least[j], place[j] = _row_minimum(miss[j])
-        if work.known[j] < steps:
-            _extend(work, j, change, steps)
-        cost = _cost(work, i, j, difference, best if prune else math.inf, radius, walls, weights)
-        if cost < best or (cost == best and (i < speed or (i == speed and j < turn))):
-            best, speed, turn = cost, i, j
+        miss[j, i] = least[j] = math.inf
+        for n in range(FORWARD):
+            if miss[j, n] < least[j]:
+                least[j], place[j] = miss[j, n], n
+        bound = best if prune else math.inf
+        near, contact, touch, total = 0.0, 0.0, 0.0, difference
+        if step >= 0:
+            if course[j, 2] <= step:
+                _extend(j, step + 1, turns, speeds, change, course, path)
+            gap = _clearance(i, j, step, person, radius, passing, path)
+            if gap < margin:
+                near = fades[step] * (margin - gap) / margin
+            if gap < skin:
+                contact = fades[step]
+            total = difference + to_near * near + to_contact * contact + to_wall * touch
+            if total > bound:
+                continue
+        if course[j, 2] < steps:
+            _extend(j, steps, turns, speeds, change, course, path)
+        for k in range(steps):
+            changed = False
+            reach = margin * (1.0 - near / fades[k]) + SLACK
+            if fades[k] > contact:
+                reach = max(reach, skin)
+            for n in range(count[k]):
+                px, py = passing[k, n, 0] - path[j, k, 0, i], passing[k, n, 1] - path[j, k, 1, i]
+                far = passing[k, n, 5] + reach
+                if far < 0.0 or px * px + py * py > far * far:
+                    continue
+                gap = _clearance(i, j, k, n, radius, passing, path)
+                closer = fades[k] * (margin - gap) / margin
+                if gap < margin and closer > near:
+                    near, changed, step, person = closer, True, k, n
+                if gap < skin and fades[k] > contact:
+                    contact, changed, step, person = fades[k], True, k, n
+            x, y = path[j, k + 1, 0, i], path[j, k + 1, 1, i]
+            for n in range(walls):
+                nx, ny = nearest_on_segment(x, y, wall[n, 0], wall[n, 1], wall[n, 2], wall[n, 3])
+                gap = math.sqrt((nx - x) ** 2 + (ny - y) ** 2) - radius
+                excess = (wall_margin - gap) / wall_margin
+                if excess > touch:
+                    touch, changed = excess, True
+            if changed:
+                total = difference + to_near * near + to_contact * contact + to_wall * touch
+                if total > bound:
+                    break
+        if total < best or (total == best and (i < speed or (i == speed and j < turn))):
+            best, speed, turn = total, i, j
     return speed, turn
 
 
@@ -294,33 +318,34 @@ def choose_twists(
         out: ``[N, 3]``.
     """
     A = size.shape[1]
-    work = _Work(
-        np.empty(FORWARD), np.empty(TURNS), np.empty((steps, FORWARD)), np.empty((TURNS, steps, 2)),
-        np.empty((TURNS, 2)), np.empty(TURNS, np.int64), np.empty((TURNS, FORWARD)),
-        np.empty((steps, A, 6)), np.empty(steps, np.int64), np.empty((len(segments), 4)),
-        np.empty(steps), np.empty((MATCH, 4)),
-    )  # fmt: skip
+    forwards, turns, fades = np.empty(FORWARD), np.empty(TURNS), np.empty(steps)
+    speeds, course, miss = np.empty((steps, FORWARD)), np.empty((TURNS, 3)), np.empty((TURNS, FORWARD))
+    path = np.zeros((TURNS, steps + 1, 2, FORWARD))
+    passing, count, wall = np.empty((steps, A, 6)), np.empty(steps, np.int64), np.empty((len(segments), 4))
     for k in range(steps):
-        work.fades[k] = 1.0 - k / steps
+        fades[k] = 1.0 - k / steps
     top, most, push, spin = limits[0], limits[1], limits[2], limits[3]
     for e in range(len(pose)):
         if not asking[e]:
             continue
         x, y, forward, turn = pose[e, 0], pose[e, 1], twist[e, 0], twist[e, 1]
         low, high = forward - push * WINDOW, _larger(0.0, forward + push * WINDOW)
-        _fill(work.forwards, _larger(0.0, _smaller(low, top)), _smaller(top, high))
-        _fill(work.turns, _larger(-most, turn - spin * WINDOW), _smaller(most, turn + spin * WINDOW))
-        work.known[:] = 0
-        work.ends[:, 0], work.ends[:, 1] = pose[e, 2], turn
-        for j in range(TURNS):
-            _extend(work, j, spin * STEP, MATCH)
-        _compare(work, forward, push * STEP, wish[e, 0], wish[e, 1], weights[FACING])
-        fastest = max(abs(forward), work.forwards[0], work.forwards[FORWARD - 1])
+        _fill(forwards, _larger(0.0, _smaller(low, top)), _smaller(top, high))
+        _fill(turns, _larger(-most, turn - spin * WINDOW), _smaller(most, turn + spin * WINDOW))
+        _accelerate(forwards, forward, push * STEP, speeds)
+        _begin(pose[e, 2], turn, turns, speeds, spin * STEP, course, path)
+        _compare(wish[e, 0], wish[e, 1], weights[FACING], course, path, miss)
+        fastest = max(abs(forward), forwards[0], forwards[FORWARD - 1])
         reach = max(weights[MARGIN], weights[SKIN])
-        _list_people(work, x, y, radius[e], fastest, reach, position[e], velocity[e], size[e], seen[e])
+        _list_people(
+            x, y, radius[e], fastest, reach, position[e], velocity[e], size[e], seen[e], passing, count
+        )  # fmt: skip
         wall_reach = (radius[e] + weights[WALL_MARGIN] + fastest * STEP * steps) * (1.0 + SLACK) + SLACK
-        walls = _list_walls(work, x, y, wall_reach if prune else math.inf, segments)
-        i, j = _search(work, spin * STEP, radius[e], walls, weights, prune)
-        out[e, 0] = work.forwards[i] if i >= 0 else 0.0
-        out[e, 1] = work.turns[j] if j >= 0 else 0.0
+        walls = _list_walls(x, y, wall_reach if prune else math.inf, segments, wall)
+        i, j = _search(
+            turns, speeds, spin * STEP, radius[e], weights, prune, fades, passing, count, wall, walls, course, path,
+            miss,
+        )  # fmt: skip
+        out[e, 0] = forwards[i] if i >= 0 else 0.0
+        out[e, 1] = turns[j] if j >= 0 else 0.0
         out[e, 2] = 0.0
