@@ -48,9 +48,10 @@ record-calls: $(VENV)/installed-dev
 flaky: $(VENV)/installed-dev
 	$(BIN)/python tools/flaky.py $(TESTS)
 
-# In one process beside the linters: the examples compile most kernels, which the workers of the tests would compile twice.
+# Before the tests: the examples compile most kernels, nine tenths of their time on an empty cache. A module goes to one
+# worker as a whole, so that two workers rarely compile the same kernel.
 doctests: $(VENV)/installed-dev
-	$(PYTEST) --cache-clear -o cache_dir=.pytest_cache/doctests --doctest-modules src/crowdbot
+	$(PYTEST) $(PARALLEL) --dist loadfile --cache-clear -o cache_dir=.pytest_cache/doctests --doctest-modules src/crowdbot
 
 live: $(VENV)/installed-dev
 	tests/system-packages live

@@ -48,6 +48,15 @@ def test_help_and_version_do_not_import_numpy(word: str) -> None:
     assert modules_of_numpy(imported(word)) == set()
 
 
+@pytest.mark.program
+def test_the_app_starts_without_what_its_results_need() -> None:
+    code = "import sys\nfrom crowdbot.vr import *\nfrom crowdbot.web import *\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    modules = set(done.stdout.split())
+    assert {"crowdbot.web.app_server", "crowdbot.vr.vr_server"} <= modules
+    assert modules & {"scipy.stats", "scipy.optimize", "matplotlib", "pandas", "h5py", "mujoco", "torch"} == set()
+
+
 def modules_of_numpy(modules: set[str]) -> set[str]:
     """Return the modules of NumPy and of the core room."""
     return {name for name in modules if name.split(".")[0] == "numpy" or name.startswith("crowdbot.core")}

@@ -160,15 +160,15 @@ def meet_wall(o, d, wall, height):
     return t if t >= 0 and 0 <= s <= 1 and 0 <= o[2] + t * d[2] <= height else math.inf
 
 
-def meet_triangle(o, d, corners):
-    a, b, c = corners - o
+def meet_triangles(o, d, corners):
+    """Return how far along the beam each triangle ``[F, 3, 3]`` is met, infinite where it is not."""
+    a, b, c = np.moveaxis(corners - o, 1, 0)
     n = np.cross(b - a, c - a)
-    if d @ n == 0.0:
-        return math.inf
-    t = (a @ n) / (d @ n)
-    signs = [d @ np.cross(p, q) for p, q in ((b, c), (c, a), (a, b))]
-    inside = all(s >= 0 for s in signs) or all(s <= 0 for s in signs)
-    return t if t >= 0 and inside else math.inf
+    signs = np.array([np.cross(p, q) @ d for p, q in ((b, c), (c, a), (a, b))])
+    inside = np.all(signs >= 0, axis=0) | np.all(signs <= 0, axis=0)
+    way = n @ d
+    t = np.divide(np.sum(a * n, axis=1), way, out=np.full(len(corners), math.inf), where=way != 0.0)
+    return np.where(inside & (t >= 0), t, math.inf)
 
 
 def brute_force(scene, pose, directions, skins=False):
@@ -204,9 +204,8 @@ def brute_force(scene, pose, directions, skins=False):
                     met.append((meet_post(o, d, np.append(scene.position[e, a], 0.0), scene.radius[e, a], tall), a))
             met += [(meet_wall(o, d, wall, scene.wall_height), -2) for wall in scene.walls.segments()]
             if skins:
-                for f, owner in zip(bodies.skins.faces, bodies.skins.owner, strict=True):
-                    if here(owner):
-                        met.append((meet_triangle(o, d, bodies.skins.vertices[e, f]), owner))
+                times = meet_triangles(o, d, bodies.skins.vertices[e, bodies.skins.faces])
+                met += [(t, owner) for t, owner in zip(times, bodies.skins.owner, strict=True) if here(owner)]
             best = min(met, key=lambda pair: pair[0])
             if best[0] < math.inf:
                 distance[e, k], hit[e, k] = best[0], -4 if best[1] == -1 else best[1]

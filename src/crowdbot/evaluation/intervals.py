@@ -8,7 +8,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from crowdbot.core import InputError, stream
 from crowdbot.metrics import corrected_interval
@@ -68,6 +67,8 @@ def proportion_interval(
         raise InputError(f"successes = {successes} must be from 0 to the number of runs, {count}")
     if count == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
+    from scipy import stats  # takes longer to import than the app to start
+
     low, high = stats.binomtest(successes, count).proportion_ci(confidence, method=method)
     return Estimate(successes / count, float(low), float(high), count)
 
