@@ -119,16 +119,15 @@ def front_door() -> str:
         "# Python reference",
         "",
         "`import crowdbot as cb` gives the names below; each is loaded on first use.",
-        "",
-        "| name | room | meaning |",
-        "|---|---|---|",
     ]
-    for name in sorted((n for n in crowdbot.__all__ if not n.startswith("_")), key=str.lower):
-        thing = getattr(crowdbot, name)
-        room = ".".join(thing.__module__.split(".")[:2])
-        known = name in getattr(importlib.import_module(room), "__all__", ())
-        link = f"[`cb.{name}`][{_path(importlib.import_module(room), name)}]" if known else f"`cb.{name}`"
-        lines.append(f"| {link} | `{room}` | {_sentence(thing)} |")
+    for job, modules in crowdbot.JOBS.items():
+        lines += ["", f"## {job}", "", "| name | room | meaning |", "|---|---|---|"]
+        for module, names in modules.items():
+            room = importlib.import_module(f"crowdbot.{module}")
+            for name in names:
+                known = name in getattr(room, "__all__", ()) and hasattr(room, "__path__")
+                link = f"[`cb.{name}`][{_path(room, name)}]" if known else f"`cb.{name}`"
+                lines.append(f"| {link} | `crowdbot.{module}` | {_sentence(getattr(crowdbot, name))} |")
     lines += ["", "## Rooms", "", "| package | content |", "|---|---|"]
     lines += [f"| [`{room.__name__}`]({_title(room)}.md) | {_sentence(room)} |" for room in faces()]
     return "\n".join(lines) + "\n"

@@ -230,9 +230,9 @@ if TYPE_CHECKING:
     from .tracking import read_odometry as read_odometry
     from .tracking import read_readings as read_readings
     from .tracking import read_true_paths as read_true_paths
-    from .tracking import scan_statistics as scan_statistics
     from .tracking import track_people as track_people
     from .tracking import track_video as track_video
+    from .tracking.scan_statistics import scan_statistics as scan_statistics
     from .trial_of_recording import recorded_trial as recorded_trial
     from .verdict import SafetyVerdict as SafetyVerdict
     from .verdict import judge_cell as judge_cell
