@@ -19,7 +19,7 @@ _MODULES = {
     "junit": ("junit_xml",),
     "method": ("Method", "own_method", "parse_methods", "with_safety"),
     "pareto": ("pareto_front",),
-    "plan": ("EvaluationCell", "EvaluationPlan", "parse_seeds"),
+    "plan": ("EvaluationCell", "EvaluationPlan", "parse_robots", "parse_seeds"),
     "prediction": (
         "DegradedScore",
         "DegradedTask",
@@ -137,6 +137,7 @@ if TYPE_CHECKING:
     from .pareto import pareto_front as pareto_front
     from .plan import EvaluationCell as EvaluationCell
     from .plan import EvaluationPlan as EvaluationPlan
+    from .plan import parse_robots as parse_robots
     from .plan import parse_seeds as parse_seeds
     from .prediction import DegradedScore as DegradedScore
     from .prediction import DegradedTask as DegradedTask
