@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import crowdbot as cb
-from crowdbot import navigation
+from crowdbot import navigation, prediction
 from crowdbot.benchmark import measure
 from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
@@ -170,13 +170,13 @@ def _predictors(splits: Path) -> None:
         " (`--samples 20 --best-of person` for the sampled one)"
     )
     cut = {fold: _windows(splits / "all_data", fold) for fold in FOLDS}
-    plain = [cb.ConstantVelocity(), cb.ConstantVelocity(displacements=2), cb.LeastSquares()]
-    plain += [cb.ConstantAcceleration(), cb.Kalman(), cb.KalmanAcceleration()]
+    plain = [cb.ConstantVelocity(), cb.ConstantVelocity(displacements=2), prediction.LeastSquares()]
+    plain += [prediction.ConstantAcceleration(), cb.Kalman(), prediction.KalmanAcceleration()]
     rows = [_row(_label(p), [_scored(p, cut[f]) for f in FOLDS]) for p in [*plain, cb.Simulated(cb.ORCA())]]
     rows.append(_row("simulated (social-force)", [_scored(cb.Simulated(cb.SocialForce()), cut[f]) for f in FOLDS]))
     fitted = [_scored(_calibrated(splits / "train", fold), cut[fold]) for fold in FOLDS]
     rows.append(_row("simulated (orca, calibrated)", fitted))
-    sampled = [_scored(cb.SampledConstantVelocity(), cut[fold], samples=20) for fold in FOLDS]
+    sampled = [_scored(prediction.SampledConstantVelocity(), cut[fold], samples=20) for fold in FOLDS]
     rows.append(_row("sampled-constant-velocity, best of 20 per person", sampled))
     _table(["predictor", *FOLDS, "mean of scenes", "collisions [%]"], rows)
 

@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crowdbot.cli.output import json_text, number, print_table, progress
-from crowdbot.cli.schemes import assignments
+from crowdbot.cli.settings import parse_settings
 from crowdbot.core import CrowdbotError, InputError, UnknownName, each, explain_write_errors, from_attributes, stream
 from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, nearest_neighbor_accuracy
 from crowdbot.prediction import (
@@ -402,7 +402,7 @@ def main(words: Sequence[str] | None = None) -> int:
         torch_device(options.device)
         methods, seeds = tuple(options.methods), tuple(range(options.seeds))
         study = GanComparison(methods, seeds, options.updates, options.check_every, device=options.device)
-        study = with_settings(study, assignments(options.set))
+        study = with_settings(study, parse_settings(options.set))
         runs: list[GanRun] = []
         with progress() as report:
             for run in study.run(options.out / "trainings", options.workers):

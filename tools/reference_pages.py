@@ -24,6 +24,7 @@ from mkdocs.structure.files import File, Files
 
 import crowdbot
 from crowdbot.cli import COMMAND_GROUPS, COMMANDS
+from crowdbot.cli.parser import CommandParser
 from crowdbot.trials import schema
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -119,16 +120,15 @@ def front_door() -> str:
         "# Python reference",
         "",
         "`import crowdbot as cb` gives the names below; each is loaded on first use.",
-        "",
-        "| name | room | meaning |",
-        "|---|---|---|",
     ]
-    for name in sorted((n for n in crowdbot.__all__ if not n.startswith("_")), key=str.lower):
-        thing = getattr(crowdbot, name)
-        room = ".".join(thing.__module__.split(".")[:2])
-        known = name in getattr(importlib.import_module(room), "__all__", ())
-        link = f"[`cb.{name}`][{_path(importlib.import_module(room), name)}]" if known else f"`cb.{name}`"
-        lines.append(f"| {link} | `{room}` | {_sentence(thing)} |")
+    for job, modules in crowdbot.JOBS.items():
+        lines += ["", f"## {job}", "", "| name | room | meaning |", "|---|---|---|"]
+        for module, names in modules.items():
+            room = importlib.import_module(f"crowdbot.{module}")
+            for name in names:
+                known = name in getattr(room, "__all__", ()) and hasattr(room, "__path__")
+                link = f"[`cb.{name}`][{_path(room, name)}]" if known else f"`cb.{name}`"
+                lines.append(f"| {link} | `crowdbot.{module}` | {_sentence(getattr(crowdbot, name))} |")
     lines += ["", "## Rooms", "", "| package | content |", "|---|---|"]
     lines += [f"| [`{room.__name__}`]({_title(room)}.md) | {_sentence(room)} |" for room in faces()]
     return "\n".join(lines) + "\n"
@@ -139,8 +139,18 @@ def all_commands() -> str:
     lines = [
         "# Command line",
         "",
-        "`crowdbot COMMAND --help` prints the same. The exit status is 0 when a command is done, 1 when a check",
-        "failed, 2 when the input is wrong, and 130 after Ctrl-C.",
+        "`crowdbot COMMAND --help-all` prints the same. The exit status is 0 when a command is done, 1 when a check",
+        "failed, 2 when the input is wrong, and 130 after Ctrl-C. `--help` lists rare options by name only.",
+        "",
+        "These options have one form in all commands:",
+        "",
+        "| option | form |",
+        "|---|---|",
+        "| `--set NAME=VALUE ...` | one or several values; repeatable. The name is a parameter (`density=0.5`) or, in a"
+        " trial, a path (`spawner[1]/count=20`). The arguments of the command come before it |",
+        "| `--seeds SEEDS` | numbers and ranges, separated by commas: `7` is one seed, `0:100` are 0 to 99, `3,5,10:20`"
+        " are twelve seeds |",
+        "| `--robots LIST` | types or folders of robots, separated by commas; an empty name: the robot of the trial |",
     ]
     for title, group in COMMAND_GROUPS.items():
         lines += ["", f"## {title[0].upper()}{title[1:]}", "", "| command | task |", "|---|---|"]
@@ -152,7 +162,7 @@ def command(name: str) -> str:
     """Return the page of one command and of its own commands, such as ``crowdbot experiment run``."""
     line = COMMANDS[name]
     os.environ["COLUMNS"] = "100"
-    parser = argparse.ArgumentParser(prog=f"crowdbot {name}", description=f"{line[0].upper()}{line[1:]}.")
+    parser = CommandParser(prog=f"crowdbot {name}", description=f"{line[0].upper()}{line[1:]}.")
     importlib.import_module(f"crowdbot.cli.{name}").arguments(parser)
     return "\n".join([f"# crowdbot {name}", "", *_sections(parser)]) + "\n"
 
@@ -163,7 +173,11 @@ def _sections(parser: argparse.ArgumentParser) -> Iterator[str]:
     yield from ["```text", parser.format_usage().removeprefix("usage: ").rstrip(), "```", ""]
     below: list[argparse._SubParsersAction[Any]] = []
     for group in parser._action_groups:
-        actions = [a for a in group._group_actions if a.help != argparse.SUPPRESS and a.dest != "help"]
+        actions = [
+            a
+            for a in group._group_actions
+            if a.help != argparse.SUPPRESS and "--help-all" not in a.option_strings and a.dest != "help"
+        ]
         below += [a for a in actions if isinstance(a, argparse._SubParsersAction)]
         rows = [a for a in actions if not isinstance(a, argparse._SubParsersAction)]
         if rows:

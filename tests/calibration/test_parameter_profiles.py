@@ -1,6 +1,5 @@
 """Profiles of shared parameters: data that identify one of two parameters, and bad input."""
 
-import argparse
 import dataclasses
 
 import numpy as np
@@ -9,6 +8,7 @@ from made_crowds import Drifting
 
 from crowdbot.calibration import Calibrator, plot_profiles, profile_parameters
 from crowdbot.cli import calibrate as command
+from crowdbot.cli.parser import CommandParser
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 
@@ -81,7 +81,7 @@ def test_individual_parameters_and_few_points_are_refused(profiled):
         profile_parameters(own, own.fit(past), past)
     with pytest.raises(InputError, match="at least 3 points and a budget of 1, not 2 and 50"):
         profile_parameters(calibrator, fit, past, points=2)
-    parser = argparse.ArgumentParser()
+    parser = CommandParser()
     command.arguments(parser)
     with pytest.raises(InputError, match="--profile requires --shared"):
         command.main(parser.parse_args(["--data", "nowhere.txt", "--profile", "5"]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import gzip
 import importlib
@@ -14,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot import cli
+from crowdbot.cli.parser import CommandParser
 from crowdbot.core import DataError, InputError
 from crowdbot.data import FILE_OPTIONS, Recording, load, read_homography, save
 from crowdbot.trials import RecordedPeople
@@ -243,9 +243,9 @@ def test_boxes_with_a_homography_and_without(tmp_path):
 def test_commands_and_trials_have_all_options_of_files():
     names = set(FILE_OPTIONS)
     for command in ("predict", "measure", "calibrate", "train", "degrade", "new"):
-        parser = argparse.ArgumentParser()
+        parser = CommandParser()
         importlib.import_module(f"crowdbot.cli.{command}").arguments(parser)
-        text = parser.format_help()
+        text = parser.format_full_help()
         assert [name for name in names if f"--{name.replace('_', '-')} " not in text] == [], command
     fields = {field.name for field in dataclasses.fields(RecordedPeople)}
     assert names <= fields

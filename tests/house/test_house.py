@@ -1,6 +1,7 @@
 """The house rules that a machine can check: names, public lists, light imports, tests that assert."""
 
 import ast
+import doctest
 import importlib
 import json
 import pkgutil
@@ -114,6 +115,33 @@ def test_the_front_door_opens_on_every_name():
     assert set(crowdbot.__all__) <= set(dir(crowdbot))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         crowdbot.nothing  # noqa: B018
+
+
+FRONT_DOOR = """
+load_trial Trial run Episode Simulation Robot | read_episode replay branch | evaluate EvaluationPlan parse_methods
+| load save Trajectories Windows | ConstantVelocity Kalman Simulated AnchorNet Live Forecast score
+| Calibrator ORCA SocialForce
+| CrowdModel Predictor Navigator Observation Sensor LogMetric Scene Pose Twist | CrowdbotError cite
+"""
+
+
+def test_the_front_door_has_these_names_by_job_each_with_an_example():
+    jobs = [[name for names in modules.values() for name in names] for modules in crowdbot.JOBS.values()]
+    assert jobs == [job.split() for job in FRONT_DOOR.split("|")]
+    assert {*crowdbot.__all__} == {name for job in jobs for name in job} | {"__version__"}
+    examples = {
+        name: doctest.DocTestParser().get_examples(getattr(crowdbot, name).__doc__) for job in jobs for name in job
+    }
+    assert [name for name, found in examples.items() if not found] == []  # the doctests run them
+
+
+def test_the_tour_lists_the_front_door_by_job():
+    text = (ROOT / "docs/getting-started/tour.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([A-Z][^|]*) \| (`cb\.[^|]*) \|$", text, re.MULTILINE)
+    listed = {job: re.findall(r"`cb\.(\w+)`", names) for job, names in rows}
+    assert listed == {
+        job: [name for names in modules.values() for name in names] for job, modules in crowdbot.JOBS.items()
+    }
 
 
 @pytest.mark.program

@@ -23,14 +23,14 @@ TEXT = """<trial name="file" duration="4" step="0.1">
 OWN = '''
 from dataclasses import dataclass
 import crowdbot as cb
-from crowdbot.core import PerAgent, parameter
+from crowdbot.core import Paper, PerAgent, parameter
 from crowdbot.models.model import desired_velocity
 
 @dataclass(frozen=True)
 class Straight(cb.CrowdModel):
     """People walk straight ahead."""
 
-    paper = cb.Paper("Nobody", 2026, "Straight", "Nowhere")
+    paper = Paper("Nobody", 2026, "Straight", "Nowhere")
     factor: PerAgent = parameter(1.0, low=0.5, high=2.0, unit="1", source="own choice")
 
     def velocity(self, scene, dt, rng=None):

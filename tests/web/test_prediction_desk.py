@@ -319,12 +319,11 @@ def test_the_words_of_a_choice_make_the_same_predictor():
         "values": {"radius": 0.3, "time_horizon": 1.0},
     }
     choice = PredictorChoice.of(settings)
-    from argparse import ArgumentParser
-
     from crowdbot.cli import predict
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.cli.schemes import predictor_specs
 
-    parser = ArgumentParser()
+    parser = CommandParser()
     predict.arguments(parser)
     (spec,) = predictor_specs(parser.parse_args(["--data", "x", *choice.words()]))
     assert spec == choice.spec()

@@ -59,6 +59,14 @@ class Calibrator:
 
     Raises:
         InputError: a name is unknown, or the budget is below 1.
+
+    >>> from crowdbot.data import Trajectories
+    >>> rows = range(20)
+    >>> tracks = Trajectories([7] * 20, rows, [0.5 * row for row in rows], [0.0] * 20, row_rate=2.5)
+    >>> past, _ = tracks.windows(observe=8, predict=12)
+    >>> fit = Calibrator("orca", budget=4, shared=True).fit(past, seed=0)
+    >>> fit.shared, fit.persons, "time_horizon" in fit.table()
+    (True, 1, True)
     """
 
     model: CrowdModel | str = "orca"

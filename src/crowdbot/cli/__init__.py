@@ -15,6 +15,8 @@ import textwrap
 import traceback
 from collections.abc import Iterator, Sequence
 
+from .parser import CommandParser
+
 __all__ = ["main"]
 
 COMMAND_GROUPS = {
@@ -236,10 +238,14 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"crowdbot {__version__}")
-    trace = "print the traceback of an error (also: CROWDBOT_DEBUG=1)"
-    parser.add_argument("--debug", action="store_true", help=trace)
+    parser.add_argument("--debug", action="store_true", help="print the traceback of an error (also: CROWDBOT_DEBUG=1)")
     commands = parser.add_subparsers(
-        prog="crowdbot", metavar="COMMAND", help=argparse.SUPPRESS, required=True, dest="command"
+        prog="crowdbot",
+        metavar="COMMAND",
+        help=argparse.SUPPRESS,
+        required=True,
+        dest="command",
+        parser_class=CommandParser,
     )
     _list_commands(parser)
     wanted = next((word for word in words if not word.startswith("-")), None)
@@ -249,10 +255,12 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         meant = did_you_mean(wanted, COMMANDS)
         parser.exit(2, f"crowdbot: error: {wanted!r} is not a command{meant}; crowdbot --help lists them\n")
     for name, line in COMMANDS.items():
-        command = commands.add_parser(name, description=line[0].upper() + line[1:] + ".", allow_abbrev=False)
+        command = commands.add_parser(name, description=line[0].upper() + line[1:] + ".")
         if name == wanted:  # only the chosen command is imported, so that --help stays fast
             module = importlib.import_module(f"crowdbot.cli.{name}")
-            command.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=trace)
+            command.add_argument(
+                "--debug", action="store_true", default=argparse.SUPPRESS, help="print the traceback of an error"
+            )
             module.arguments(command)
             command.set_defaults(main=module.main)
     return parser

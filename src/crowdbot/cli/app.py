@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from crowdbot.vr import VrServer
     from crowdbot.web import SessionLimits
 
+    from .parser import CommandParser
+
 LIMITS: dict[str, tuple[type, int, str, str]] = {
     "jobs": (int, 1, "N", "jobs that run at the same time (default: 2; 1)"),
     "waiting": (int, 1, "N", "jobs that may wait (default: 20; 5)"),
@@ -32,7 +34,7 @@ LIMITS: dict[str, tuple[type, int, str, str]] = {
 EVERYWHERE = "0.0.0.0"  # noqa: S104 - asked for with --vr; every request then needs the token
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     parser.add_argument("--port", type=int, default=8700, metavar="N", help="port (default: 8700; 0 takes a free one)")
     parser.add_argument(
@@ -64,7 +66,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     _stream_arguments(parser)
 
 
-def _server_arguments(parser: argparse.ArgumentParser) -> None:
+def _server_arguments(parser: CommandParser) -> None:
     parser.add_argument("--certificate", type=Path, metavar="FILE", help="certificate for HTTPS, PEM")
     parser.add_argument("--key", type=Path, metavar="FILE", help="private key of the certificate, PEM")
     parser.add_argument(
@@ -80,14 +82,14 @@ def _server_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME,...",
         help="print an address for each of these sessions, which opens no other session",
     )
-    group = parser.add_argument_group(
+    group = parser.add_rare_group(
         "limits of each session", "the second default is that of a server for other machines (--host)"
     )
     for name, (kind, _, word, text) in LIMITS.items():
         group.add_argument(f"--{name}", type=kind, metavar=word, help=text)
 
 
-def _stream_arguments(parser: argparse.ArgumentParser) -> None:
+def _stream_arguments(parser: CommandParser) -> None:
     parser.add_argument(
         "--lsl",
         action="store_true",

@@ -9,7 +9,7 @@ from pathlib import Path
 from .output import add_json, print_warnings, progress
 from .replay import add_places
 from .run import print_run
-from .schemes import assignments
+from .settings import add_settings, parse_settings
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,13 +17,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("episode", metavar="EPISODE.mcap", type=Path, help="recorded episode")
     add("--at", type=float, required=True, metavar="T", help="time to continue from, in s")
-    add(
-        "--set",
-        nargs="+",
-        default=[],
-        metavar="PATH=VALUE",
-        help="values by path in the trial file: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
-    )
+    add_settings(parser, "values by path: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3")
     add("--seed", type=int, help="seed of new random streams (default: continue the recorded streams)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     add("--force", action="store_true", help="overwrite an existing file")
@@ -41,7 +35,7 @@ def main(options: argparse.Namespace) -> int:
             options.episode,
             options.at,
             seed=options.seed,
-            changes=assignments(options.set),
+            changes=parse_settings(options.set),
             out=None if options.out is None else options.out / "episode.mcap",
             force=options.force,
             folder=options.folder,

@@ -8,25 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, number, print_json, print_table, progress
 from .recordings import add_recordings, print_notes, recordings
-from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
+from .schemes import add_scheme, crowd_model, frame_line, named_search, prior
+from .settings import add_settings, parse_settings
 
 if TYPE_CHECKING:
     from crowdbot.calibration import CalibrationChunk, Calibrator, Fit, ParameterProfile
     from crowdbot.data import Recording, Windows
 
+    from .parser import CommandParser
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add_recordings(parser)
     add_scheme(parser, many=False)
     add = parser.add_argument
-    add(
-        "--set",
-        nargs="+",
-        default=[],
-        metavar="NAME=VALUE",
-        help="initial parameters of the crowd model (default: none)",
-    )
+    add_settings(parser, "initial parameters of the crowd model")
     add("--shared", action="store_true", help="one common set of parameters instead of individual ones")
     add(
         "--profile",
@@ -123,7 +120,7 @@ def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
     parts |= {"cost": options.cost} if options.cost else {}
     parts["search"] = named_search(options.search or "genetic", options)
     calibrator = Calibrator(
-        crowd_model(options.model or "orca", assignments(options.set)),
+        crowd_model(options.model or "orca", parse_settings(options.set)),
         budget=options.budget,
         shared=options.shared,
         free=tuple(options.free),

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
 from .recordings import add_recordings, horizon, print_notes, recordings
-from .schemes import add_scheme, assignments, predictor_specs
+from .schemes import add_scheme, predictor_specs
+from .settings import add_settings, parse_settings
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
@@ -18,10 +19,12 @@ if TYPE_CHECKING:
     from crowdbot.evaluation import DegradedScore, DegradedTask
     from crowdbot.prediction import Predictor
 
+    from .parser import CommandParser
+
 ALL = "all"
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add_recordings(parser)
     add = parser.add_argument
@@ -37,38 +40,26 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--predictor",
         nargs="+",
         metavar="NAME",
-        help="predictors, by name or file.py:Name (default: all that do not require PyTorch)",
+        help="predictors (default: all that do not require PyTorch)",
     )
     add_scheme(parser, many=True)
-    add(
-        "--set",
-        nargs="+",
-        default=[],
-        metavar="NAME=VALUE",
-        help="parameters of the degradation, such as occlusion.eye=3,1.5 (default: none)",
-    )
-    add(
-        "--set-predictor",
-        nargs="+",
-        default=[],
-        metavar="NAME=VALUE",
-        help="parameters of the predictor or its crowd model, as --set of `crowdbot predict` (default: none)",
-    )
+    add_settings(parser, "parameters of the degradation, such as occlusion.eye=3,1.5")
+    add_settings(parser, "parameters of the predictor or its crowd model", "--set-predictor")
     add(
         "--out",
         type=Path,
         metavar="DIR",
-        help="folder for degraded.json, degraded.png and degraded.svg (default: none)",
+        help="folder for degraded.json, .png and .svg",
     )
-    add("--write", type=Path, metavar="FILE", help="output file for the degraded recording, without evaluation")
+    add("--write", type=Path, metavar="FILE", help="write the degraded recording, without evaluation")
     add("--draws", type=int, default=3, metavar="N", help="random draws per level (default: 3)")
-    add("--carry", type=int, default=0, metavar="ROWS", help="rows for which lost tracks are extrapolated (default: 0)")
+    add("--carry", type=int, default=0, metavar="ROWS", help="rows to extrapolate lost tracks (default: 0)")
     add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
     add(
         "--best-of",
         default="person",
         metavar="RULE",
-        help="selection of the best of K futures: person, scene or same (default: person)",
+        help="best of K by person, scene or same (default: person)",
     )
     add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
@@ -76,7 +67,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Evaluate the predictors level by level, or write the degraded recording."""
-    values = assignments(options.set)
+    values = parse_settings(options.set)
     degradations = read_degradations(options.by, values)
     if options.write is not None:
         return _write(options, degradations)

@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from crowdbot.data import Trajectories
     from crowdbot.measurement import MeasurementPlan, Measurements
 
+    from .parser import CommandParser
+
 METHOD_NAMES = "individual, area, diagram, line, passing, profiles, encounters, pairs, lanes, stops, headways"
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("source", nargs="+", metavar="PATH", help="recording, episode (.mcap), trial file or name of a built-in trial")
@@ -47,7 +49,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--steady", nargs=2, type=float, metavar=("FIRST", "LAST"), help="reference of the steady state in seconds"
         " (default: none)")  # fmt: skip
     add("--dt", type=float, default=0.1, metavar="SECONDS", help="time step of people of a trial (default: 0.1)")
-    add_file_options(parser, agents="all")
+    add_file_options(parser.add_rare_group("reading of recordings"), agents="all")
     add("--seed", type=int, default=0, metavar="N", help="seed of shuffles and intervals (default: 0)")
     add("--trust", action="store_true", help="allow code outside the folder of a trial")
     add("--out", type=Path, metavar="DIR", help="folder for tables (CSV), measurements.json and plots (default: none)")

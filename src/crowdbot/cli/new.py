@@ -26,10 +26,12 @@ from .templates.people_files import add_body_options, write_body_file, write_cli
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
+    from .parser import CommandParser
+
 KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "clip", "body", "schema")
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     parser.add_argument("kind", metavar="KIND", choices=KINDS, help=f"one of {', '.join(KINDS)}")
     parser.add_argument(
@@ -72,7 +74,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
     add_robot_options(parser)
     add_body_options(parser)
-    group = parser.add_argument_group("trial from a recording")
+    group = parser.add_rare_group("trial from a recording")
     add_file_options(group, agents="all")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
     group.add_argument("--replace", type=int, metavar="ID", help="id of the person that the robot replaces")

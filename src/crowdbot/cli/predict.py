@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from .output import Progress, add_json, note, print_json, print_table, progress
 from .recordings import add_recordings, horizon, print_notes, recordings
 from .schemes import add_scheme, frame_line, predictor_specs
+from .settings import add_settings
 from .track import add_perception, predict_perception
 
 if TYPE_CHECKING:
@@ -20,8 +21,10 @@ if TYPE_CHECKING:
     from crowdbot.metrics import Score
     from crowdbot.prediction import PredictorSpec
 
+    from .parser import CommandParser
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add_recordings(parser, required=False)
     add_perception(parser)
@@ -31,12 +34,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="predictors: names from `crowdbot list predictors`, or file.py:Name (default: constant-velocity)",
     )  # fmt: skip
     add_scheme(parser, many=True)
+    add_settings(parser, "parameters of the predictor or its crowd model")
+    _add_output(parser)
+    add("--seed", type=int, metavar="N", help="random seed (default: 0, or that of the trial)")
+    add_json(parser)
+
+
+def _add_output(parser: CommandParser) -> None:
+    """Declare the options of samples, forecasts and files."""
+    add = parser.add_argument
+    add("--out", type=Path, metavar="DIR", help="folder for tables, plots and resumable results")
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
+    add = parser.add_rare_group("forecasts, animations and clusters").add_argument
     add(
-        "--set",
-        nargs="+",
-        default=[],
-        metavar="NAME=VALUE",
-        help="parameters of the predictor or its crowd model (default: none)",
+        "--live",
+        action="store_true",
+        help="frame-by-frame prediction; each calibration starts from the fit of the previous frame",
     )
     add(
         "--forecasts", nargs="+", default=[], type=Path, metavar="FILE",
@@ -49,21 +63,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="file for the forecasts: .ndjson, .npz or .parquet; with several recordings or predictors one file each,"
         " with their names before the suffix",
     )
-    add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
     add(
         "--best-of",
         default="person",
         metavar="RULE",
         help="selection of the best of K futures: person, scene or same (default: person)",
     )
-    add(
-        "--live",
-        action="store_true",
-        help="frame-by-frame prediction; each calibration starts from the fit of the previous frame",
-    )
-    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
     add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
-    add("--out", type=Path, metavar="DIR", help="folder for tables, plots and resumable results (default: none)")
     add("--animate", type=int, metavar="FRAME", help="frame to animate; requires --out")
     add(
         "--animate-format",
@@ -71,8 +77,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         choices=("gif", "mp4", "webp"),
         help="format of the animation: gif, mp4 (requires PyAV) or webp (default: gif)",
     )
-    add("--seed", type=int, metavar="N", help="random seed (default: 0; with --perception: first seed of the trial)")
-    add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:

@@ -12,6 +12,8 @@ from .output import note
 if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
+    from .parser import CommandParser
+
 __all__ = [
     "add_file_options",
     "add_recordings",
@@ -32,9 +34,10 @@ PER_FILE = (
 )
 
 
-def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required: bool = True) -> None:
+def add_recordings(parser: CommandParser, predict: int = 12, required: bool = True) -> None:
     """Add the options for files, their time base and their windows."""
-    add = parser.add_argument
+    group = parser.add_argument_group("recordings")
+    add = group.add_argument
     add("--data", nargs="+", type=Path, required=required, metavar="PATH", help="recordings")
     add("--observe", type=int, default=8, metavar="ROWS", help="observed rows of a window (default: 8)")
     add("--predict", type=int, default=predict, metavar="ROWS", help=f"predicted rows of a window (default: {predict})")
@@ -42,17 +45,19 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
         "--protocol",
         default="all",
         metavar="NAME",
-        help="evaluation protocol, see `crowdbot list protocols` (default: all)",
+        help="protocol, see `crowdbot list protocols` (default: all)",
     )
+    add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
+    group = parser.add_rare_group("reading of recordings")
+    add_file_options(group)
+    add = group.add_argument
+    _add_stage(group)
     add(
         "--near",
         type=float,
         metavar="METRES",
         help="maximum distance of scored people from a recorded robot (default: none)",
     )
-    add("--step", type=float, metavar="SECONDS", help="time step after resampling (default: from the file)")
-    add_file_options(parser)
-    _add_stage(parser)
     add(
         "--late",
         default="skip",
@@ -66,7 +71,7 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12, required:
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
-def _add_stage(parser: argparse.ArgumentParser) -> None:
+def _add_stage(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--stage",
         metavar="FILE",

@@ -28,22 +28,29 @@ if TYPE_CHECKING:
     from crowdbot.simulation import OrderSchedule, OrderSource, RunSummary
     from crowdbot.trials import Trial
 
+    from .parser import CommandParser
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     parser.add_argument("trial", metavar="TRIAL", help="trial file or built-in name, such as crossing-flows")
     parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
-    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument("--pace", type=float, metavar="X", help="speed relative to real time (default: unlimited)")
     parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
-    add_world(parser)
-    add_settings(parser)
-    parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
-    parser.add_argument("--orders", type=Path, metavar="FILE", help="file of orders with times, one JSON object a line")
-    add_bridge(parser)
-    add_mocap(parser)
     add_json(parser)
+    changes = parser.add_argument_group("changes of the trial")
+    add_world(changes)
+    add_settings(changes)
+    changes.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
+    recording = parser.add_argument_group("recording")
+    recording.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
+    recording.add_argument("--force", action="store_true", help="overwrite an existing file")
+    steering = parser.add_argument_group("steering from outside")
+    steering.add_argument(
+        "--orders", type=Path, metavar="FILE", help="file of orders with times, one JSON object a line"
+    )
+    add_mocap(steering)
+    add_bridge(parser)
 
 
 def main(options: argparse.Namespace) -> int:

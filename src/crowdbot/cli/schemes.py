@@ -8,14 +8,17 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from .settings import parse_settings
+
 if TYPE_CHECKING:
     from crowdbot.calibration import PopulationPrior, Search
     from crowdbot.models import CrowdModel
     from crowdbot.prediction import Predictor, PredictorSpec
 
+    from .parser import CommandParser
+
 __all__ = [
     "add_scheme",
-    "assignments",
     "build_predictor",
     "crowd_model",
     "frame_line",
@@ -28,29 +31,32 @@ SCHEME = ("model", "cost", "search", "goal", "free", "prior", "shared")
 """Options that apply to simulated predictors only."""
 
 
-def add_scheme(parser: argparse.ArgumentParser, many: bool) -> None:
+def add_scheme(parser: CommandParser, many: bool) -> None:
     """Declare the options of a scheme; with ``many``, options accept lists and all combinations are evaluated."""
     several: dict[str, Any] = {"nargs": "+"} if many else {}
-    add = parser.add_argument
-    add("--model", **several, metavar="NAME", help="crowd model, see `crowdbot list models` (default: orca)")
+    add = parser.add_argument_group(
+        "simulated people", "names are in `crowdbot list models`, costs, searches and goals"
+    ).add_argument
+    add("--model", **several, metavar="NAME", help="crowd model (default: orca)")
     add(
         "--cost",
         **several,
         metavar="NAME",
-        help="calibration cost, see `crowdbot list costs` (default: progressive with --search, else none)",
+        help="calibration cost (default: progressive with --search)",
     )
     add(
         "--search",
         **several,
         metavar="NAME",
-        help="calibration search, see `crowdbot list searches` (default: genetic with --cost, else none)",
+        help="calibration search (default: genetic with --cost)",
     )
     add(
         "--goal",
         **several,
         metavar="NAME",
-        help="goals of people, see `crowdbot list goals` (default: current-direction)",
+        help="goals of people (default: current-direction)",
     )
+    add = parser.add_rare_group("search of parameters").add_argument
     add("--budget", type=int, default=500, metavar="N", help="evaluations per window (default: 500)")
     add("--tolerance", type=float, metavar="METRES", help="cost at which a search stops (default: 0)")
     add(
@@ -75,7 +81,7 @@ def predictor_specs(options: argparse.Namespace) -> tuple[PredictorSpec, ...]:
     from crowdbot import prediction
     from crowdbot.core import InputError, find_class
 
-    values = assignments(options.set)
+    values = parse_settings(options.set)
     found: list[PredictorSpec] = []
     used = False
     for name in options.predictor:
@@ -142,16 +148,6 @@ def prior(file: str | None) -> PopulationPrior | None:
     from crowdbot.calibration import PopulationPrior
 
     return None if file is None else PopulationPrior.load(file)
-
-
-def assignments(words: list[str]) -> dict[str, str]:
-    """Return ``name=value`` words as a mapping."""
-    from crowdbot.core import InputError
-
-    wrong = next((word for word in words if "=" not in word), None)
-    if wrong is not None:
-        raise InputError(f"--set {wrong!r} must be NAME=VALUE")
-    return {name: value for name, _, value in (word.partition("=") for word in words)}
 
 
 def build_predictor(

@@ -1,30 +1,70 @@
-"""``--set NAME=VALUE``: parameters of built-in trials, and values in any trial by their paths."""
+"""Options that several commands share: ``--set``, ``--seeds``, ``--robots`` and ``--world``, declared once."""
 
 from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_robots", "add_settings", "add_world", "load_settings_trial", "load_variant", "robots", "settings"]
+__all__ = [
+    "add_robots",
+    "add_seeds",
+    "add_settings",
+    "add_world",
+    "load_settings_trial",
+    "load_variant",
+    "parse_settings",
+    "settings",
+]
 
 WORLDS = ("planar", "physics")
+TRIAL_VALUES = "parameters of a built-in trial (density=0.5) or values by path (spawner[1]/count=20)"
 
 
-def add_settings(parser: argparse._ActionsContainer) -> None:
-    """Add the option ``--set``."""
+def add_settings(parser: argparse._ActionsContainer, values: str = TRIAL_VALUES, option: str = "--set") -> None:
+    """Add the option ``--set``, see :func:`parse_settings`.
+
+    Args:
+        parser: parser or group.
+        values: what the command sets.
+        option: name of the option.
+    """
     parser.add_argument(
-        "--set",
-        dest="settings",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="parameter of a built-in trial (density=0.5) or value by its path (spawner[1]/count=20); repeatable",
+        option, nargs="+", action="extend", default=[], metavar="NAME=VALUE", help=f"{values}; repeatable"
+    )
+
+
+def parse_settings(words: Iterable[str], option: str = "--set") -> dict[str, str]:
+    """Return the values by name.
+
+    Raises:
+        InputError: a word is not of the form NAME=VALUE, or a name is given twice.
+
+    >>> parse_settings(["density=0.5", "spawner[1]/count=20"])
+    {'density': '0.5', 'spawner[1]/count': '20'}
+    """
+    from crowdbot.core import InputError
+
+    values: dict[str, str] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not (name.strip() and equals):
+            raise InputError(f"{option} {word!r} must be NAME=VALUE, such as density=0.5")
+        if name.strip() in values:
+            raise InputError(f"{option} {name.strip()} is given twice")
+        values[name.strip()] = value.strip()
+    return values
+
+
+def add_seeds(parser: argparse._ActionsContainer, default: str) -> None:
+    """Add the option ``--seeds``, see :func:`crowdbot.evaluation.parse_seeds`; ``default`` is for the help."""
+    parser.add_argument(
+        "--seeds", metavar="SEEDS", help=f"seed 7, seeds 0:100 (0 to 99) or 3,5,10:20 (default: {default})"
     )
 
 
@@ -39,11 +79,6 @@ def add_robots(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def robots(options: argparse.Namespace) -> list[str]:
-    """Return the robot types; an empty name is the robot of the trial."""
-    return [name.strip() for name in options.robots.split(",")]
-
-
 def add_world(parser: argparse._ActionsContainer) -> None:
     """Add the option ``--world``."""
     parser.add_argument(
@@ -54,21 +89,14 @@ def add_world(parser: argparse._ActionsContainer) -> None:
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:
-    """Return the values by name.
+    """Return the values of ``--set`` and ``--world`` for a trial.
 
     Raises:
-        InputError: a setting is not of the form NAME=VALUE, or a name is given twice.
+        InputError: see :func:`parse_settings`, or the world is unknown or is given twice.
     """
     from crowdbot.core import InputError, did_you_mean
 
-    found: dict[str, str] = {}
-    for text in options.settings:
-        name, equals, value = text.partition("=")
-        if not (name.strip() and equals):
-            raise InputError(f"--set {text!r} must be NAME=VALUE, such as density=0.5")
-        if name.strip() in found:
-            raise InputError(f"--set {name.strip()} is given twice")
-        found[name.strip()] = value.strip()
+    found = parse_settings(options.set)
     world = getattr(options, "world", None)
     if world is not None:
         if "world" in found:

@@ -33,7 +33,14 @@ __all__ = [
 
 
 class CrowdbotError(Exception):
-    """Base class of the exceptions of crowdbot."""
+    """Base class of the exceptions of crowdbot.
+
+    >>> try:
+    ...     raise InputError("speed = -1 m/s must be at least 0")
+    ... except CrowdbotError as error:
+    ...     print(error)
+    speed = -1 m/s must be at least 0
+    """
 
 
 class InputError(CrowdbotError, ValueError):

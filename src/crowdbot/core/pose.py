@@ -27,7 +27,11 @@ def wrap_angle(angle: float) -> float:
 
 
 class Twist(NamedTuple):
-    """A velocity command in the frame of the robot (REP-103: x forward, y left)."""
+    """A velocity command in the frame of the robot (REP-103: x forward, y left).
+
+    >>> Twist(forward=0.8, turn=-0.2)
+    Twist(forward=0.8, turn=-0.2, left=0.0)
+    """
 
     forward: float = 0.0
     """[m/s]"""

@@ -42,6 +42,14 @@ def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = N
     Raises:
         InputError: the format is unknown.
         DataError: the file cannot be written; an existing file is unchanged.
+
+    >>> import tempfile
+    >>> from crowdbot.data import Trajectories, load
+    >>> tracks = Trajectories([7, 7], [0, 1], [0.0, 0.5], [2.0, 2.0], row_rate=2.5)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save(tracks, f"{folder}/tracks.csv")
+    ...     load(f"{folder}/tracks.csv").x.tolist()
+    [0.0, 0.5]
     """
     path = Path(path)
     if format is not None and format not in _WRITERS:

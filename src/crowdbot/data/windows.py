@@ -32,6 +32,13 @@ class Windows:
         units: ``m``, or ``px`` for recordings in pixels: then every [m] above is pixels.
         plan: ``[W, S, A, 2]`` [m], planned positions of robots at the next S rows, NaN for everyone else; or None.
         radius: ``[W, A]`` [m] radii of people and robots, NaN where unknown; or None. Joint futures keep apart by them.
+
+    >>> from crowdbot.data import Trajectories
+    >>> rows = range(20)
+    >>> tracks = Trajectories([7] * 20, rows, [0.5 * row for row in rows], [0.0] * 20, row_rate=2.5)
+    >>> past, future = tracks.windows(observe=8, predict=12)
+    >>> past.position.shape, future.position.shape, past.protocol
+    ((1, 8, 1, 2), (1, 12, 1, 2), 'all')
     """
 
     position: NDArray[np.float64]

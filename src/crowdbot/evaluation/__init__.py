@@ -19,7 +19,7 @@ _MODULES = {
     "junit": ("junit_xml",),
     "method": ("Method", "own_method", "parse_methods", "with_safety"),
     "pareto": ("pareto_front",),
-    "plan": ("EvaluationCell", "EvaluationPlan", "parse_seeds"),
+    "plan": ("EvaluationCell", "EvaluationPlan", "parse_robots", "parse_seeds"),
     "prediction": (
         "DegradedScore",
         "DegradedTask",
@@ -137,6 +137,7 @@ if TYPE_CHECKING:
     from .pareto import pareto_front as pareto_front
     from .plan import EvaluationCell as EvaluationCell
     from .plan import EvaluationPlan as EvaluationPlan
+    from .plan import parse_robots as parse_robots
     from .plan import parse_seeds as parse_seeds
     from .prediction import DegradedScore as DegradedScore
     from .prediction import DegradedTask as DegradedTask
@@ -230,9 +231,9 @@ if TYPE_CHECKING:
     from .tracking import read_odometry as read_odometry
     from .tracking import read_readings as read_readings
     from .tracking import read_true_paths as read_true_paths
-    from .tracking import scan_statistics as scan_statistics
     from .tracking import track_people as track_people
     from .tracking import track_video as track_video
+    from .tracking.scan_statistics import scan_statistics as scan_statistics
     from .trial_of_recording import recorded_trial as recorded_trial
     from .verdict import SafetyVerdict as SafetyVerdict
     from .verdict import judge_cell as judge_cell

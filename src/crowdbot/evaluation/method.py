@@ -95,6 +95,9 @@ def parse_methods(text: str) -> tuple[Method, ...]:
 
     Raises:
         InputError: the list is empty, has a method twice, or a parameter is not ``name=value``.
+
+    >>> [method.name for method in parse_methods("orca, orca safety=0.2, mpc+safety")]
+    ['orca', 'orca safety=0.2', 'mpc+safety']
     """
     methods = tuple(_parse_method(part) for part in text.split(",") if part.strip())
     if not methods:

@@ -19,7 +19,7 @@ from crowdbot.trials import Trial, expand_sweeps, passage_remarks, remarks_at_en
 from .method import Method, own_method
 from .run_metrics import check_families
 
-__all__ = ["EvaluationCell", "EvaluationPlan", "parse_seeds"]
+__all__ = ["EvaluationCell", "EvaluationPlan", "parse_robots", "parse_seeds"]
 
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
@@ -174,11 +174,20 @@ def _margin(navigator: object) -> float | None:
     return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None
 
 
+def parse_robots(text: str) -> tuple[str, ...]:
+    """Return the types or folders of robots in a text, separated by commas; an empty name is the robot of the trial.
+
+    >>> parse_robots("pepper, robots/mine,")
+    ('pepper', 'robots/mine', '')
+    """
+    return tuple(name.strip() for name in text.split(","))
+
+
 def parse_seeds(text: str) -> tuple[int, ...]:
-    """Return the seeds in a text: ``0:100`` for 0 to 99, or numbers and ranges separated by commas.
+    """Return the seeds in a text: ``7``, ``0:100`` for 0 to 99, or numbers and ranges separated by commas.
 
     Raises:
-        InputError: the text has another form, is empty, or has too many seeds.
+        InputError: the text has another form, is empty, or has too many seeds or one twice.
 
     >>> parse_seeds("0:3, 10")
     (0, 1, 2, 10)
@@ -187,10 +196,13 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     for part in text.split(","):
         match = RANGE.fullmatch(part.strip())
         if match is None:
-            raise InputError(f"seeds {text!r}: {part.strip()!r} must be a number or a range such as 0:100")
+            raise InputError(f"seeds {text!r}: {part.strip()!r} must be a seed such as 7 or a range such as 0:100")
         first = int(match[1])
         end = first + 1 if match[2] is None else int(match[2])
         if end <= first or end - first > MOST_SEEDS:
-            raise InputError(f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} numbers")
+            raise InputError(f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} seeds")
         seeds += range(first, end)
+    again = [seed for seed, count in Counter(seeds).items() if count > 1]
+    if again:
+        raise InputError(f"seeds {text!r}: {again[0]} is there twice")
     return tuple(seeds)

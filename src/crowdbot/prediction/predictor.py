@@ -25,6 +25,17 @@ class Predictor(ABC):
         at the last row only. Windows may be padded or empty. The forecast of a window is independent of the batch:
         draw random numbers from :func:`window_streams`. A deterministic predictor returns K = 1 for any number of
         samples.
+
+    >>> from crowdbot.data import Trajectories
+    >>> rows = range(20)
+    >>> tracks = Trajectories([7] * 20, rows, [0.5 * row for row in rows], [0.0] * 20, row_rate=2.5)
+    >>> class StandStill(Predictor):
+    ...     def predict(self, past, steps, samples=1, rng=None):
+    ...         last = np.repeat(past.position[:, None, -1:], steps, axis=2)
+    ...         return Forecast.of(last, past.present[:, -1], past.dt, self.name)
+    >>> past, _ = tracks.windows(observe=8, predict=12)
+    >>> StandStill().predict(past, steps=12).position[0, 0, -1].tolist()
+    [[3.5, 0.0]]
     """
 
     history: ClassVar[float] = 0.0

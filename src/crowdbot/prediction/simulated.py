@@ -55,6 +55,13 @@ class Simulated(Predictor):
 
     Raises:
         InputError: unknown name, or a value that is not above 0; in :meth:`predict`, windows in pixels.
+
+    >>> from crowdbot.data import Trajectories
+    >>> rows = range(20)
+    >>> tracks = Trajectories([7] * 20, rows, [0.5 * row for row in rows], [0.0] * 20, row_rate=2.5)
+    >>> past, _ = tracks.windows(observe=8, predict=12)
+    >>> Simulated("orca").predict(past, steps=12).position[0, 0, -1].round(3).tolist()
+    [[9.5, 0.0]]
     """
 
     model: CrowdModel | str = field(default_factory=ORCA)

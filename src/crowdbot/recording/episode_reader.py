@@ -193,6 +193,15 @@ def read_episode(path: Path | str) -> RecordedEpisode:
 
     Raises:
         EpisodeError: the file is missing, damaged, or not an episode of crowdbot.
+
+    >>> import tempfile
+    >>> from crowdbot.recording import run
+    >>> from crowdbot.trials import load_trial
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     episode = run(load_trial("frontal", duration=1.0), out=folder)
+    ...     recorded = read_episode(f"{folder}/episode.mcap")
+    >>> recorded.digest == episode.digest
+    True
     """
     path = Path(path)
     with _opened(path) as stream:

@@ -135,6 +135,15 @@ def replay(
 
     Warns:
         KeyframeWarning: there is no keyframe up to ``begin``, or it is damaged.
+
+    >>> import tempfile
+    >>> from crowdbot.recording import run
+    >>> from crowdbot.trials import load_trial
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     episode = run(load_trial("frontal", duration=1.0), out=folder)
+    ...     result = replay(f"{folder}/episode.mcap")
+    >>> result.equal, result.replayed == episode.digest
+    (True, True)
     """
     path = Path(path)
     if not 0.0 <= begin < math.inf:

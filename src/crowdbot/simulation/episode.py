@@ -79,6 +79,12 @@ class Episode:
             :data:`crowdbot.world.REACTIONS`, 0 for none; None if nobody can react.
         decision_times: compute times [s] of the decisions by robot, of those with a deadline or with a navigator in
             another process, without the first one; not recorded.
+
+    >>> from crowdbot.simulation import simulate
+    >>> from crowdbot.trials import load_trial
+    >>> episode = simulate(load_trial("frontal", duration=3.0))
+    >>> episode.outcome, episode.steps, episode.position.shape
+    ('timeout', 60, (31, 2, 2))
     """
 
     trial: Trial

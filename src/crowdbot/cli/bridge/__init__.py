@@ -11,6 +11,7 @@ from crowdbot.cli.output import note, print_warnings
 
 if TYPE_CHECKING:
     from crowdbot.bridges import Transport
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.simulation import OrderSource, RunSummary
     from crowdbot.trials import Trial
 
@@ -19,7 +20,7 @@ __all__ = ["add_bridge", "check_bridge_options", "open_bridges", "run_with_bridg
 CLOCKS = ("paced", "free", "step", "follow", "commands")
 
 
-def add_bridge(parser: argparse.ArgumentParser) -> None:
+def add_bridge(parser: CommandParser) -> None:
     """Declare the options of bridges."""
     group = parser.add_argument_group("bridges to robot software")
     group.add_argument(
@@ -27,8 +28,9 @@ def add_bridge(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="NAME[:ADDRESS]",
         help="let other programs drive the robots: rosbridge[:PORT], rosbridge-client:ws://HOST:PORT,"
-        " ros1[:http://HOST:PORT], ros2[:DOMAIN], naoqi:HOST, foxglove[:PORT], tcp[:PORT]; several are possible",
+        " ros1[:http://HOST:PORT], ros2[:DOMAIN], naoqi:HOST, foxglove[:PORT], tcp[:PORT]; repeatable",
     )
+    group = parser.add_rare_group("time of bridges and access to them")
     group.add_argument(
         "--clock",
         choices=CLOCKS,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["add_mocap", "open_capture_set", "open_captures", "print_captures"]
 
 
-def add_mocap(parser: argparse.ArgumentParser) -> None:
+def add_mocap(parser: argparse._ActionsContainer) -> None:
     """Declare the option ``--mocap``."""
     parser.add_argument(
         "--mocap",

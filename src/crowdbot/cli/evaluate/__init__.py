@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
-from crowdbot.cli.settings import add_robots, add_settings, add_world
+from crowdbot.cli.settings import add_robots, add_seeds, add_settings, add_world
 
 from .again import print_worst, worst_lines, worst_values
 from .plan_options import add_plan_options, plan_of, statistic_names
@@ -24,6 +24,7 @@ from .tables import (
 )
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import EvaluationPlan, EvaluationResult, Requirement, Statistic
 
 STATISTICS = (
@@ -31,7 +32,7 @@ STATISTICS = (
 )  # fmt: skip
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     parser.add_argument("trials", nargs="*", metavar="TRIAL", help="trial files or built-in names")
     parser.add_argument(
@@ -48,7 +49,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="each navigator as it is (own), or without and with a safety layer (both); default: own",
     )
     add_robots(parser)
-    parser.add_argument("--seeds", metavar="SEEDS", help="seeds, such as 0:50 (default: 0:20; with --real 0:100)")
+    add_seeds(parser, "0:20; with --real 0:100")
     parser.add_argument("--metrics", metavar="LIST", help=f"columns of the table (default: {','.join(STATISTICS)})")
     parser.add_argument(
         "--require",

@@ -54,7 +54,7 @@ def _command(cell: CellResult, seeds: list[int], options: argparse.Namespace) ->
     words += ["--world", options.world] if options.world else []
     swept = {text.partition("=")[0] for texts in options.sweep for text in texts}
     levels = [f"{name}={level}" for name, level in cell.factors.items() if name in swept]
-    for setting in [*options.settings, *levels]:
+    for setting in [*options.set, *levels]:
         words += ["--set", setting]
     words += ["--trust"] if options.trust else []
     words += ["--seeds", ",".join(map(str, seeds)), "--worst", str(len(seeds)), "--out", "worst"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.settings import load_settings_trial, robots, settings
+from crowdbot.cli.settings import load_settings_trial, settings
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan
@@ -55,6 +55,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         families_of,
         parse_factors,
         parse_methods,
+        parse_robots,
         parse_seeds,
         parse_statistic,
         sweep_trials,
@@ -87,7 +88,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     return EvaluationPlan(
         trials,
         with_safety(methods) if options.safety == "both" else methods,
-        robots(options),
+        parse_robots(options.robots),
         parse_seeds(options.seeds or "0:20"),
         families=families,
         factors=levels,

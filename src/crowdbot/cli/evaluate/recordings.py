@@ -13,14 +13,15 @@ from crowdbot.cli.output import number, print_json, print_table, progress
 from crowdbot.cli.settings import settings
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import CellResult, RealPlacement, RobotRecording
 
 __all__ = ["add_recording_options", "present_recordings"]
 
 
-def add_recording_options(parser: argparse.ArgumentParser) -> None:
+def add_recording_options(parser: CommandParser) -> None:
     """Add the options for recordings of robots."""
-    group = parser.add_argument_group("recordings of robots among people")
+    group = parser.add_rare_group("recordings of robots among people")
     add = group.add_argument
     add("--logs", nargs="+", default=[], metavar="LOG", help="recordings to measure, instead of trials")
     add("--real", metavar="LOG", help="recording to simulate with all seeds, instead of trials; says where it lies")

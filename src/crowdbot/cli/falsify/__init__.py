@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
-from crowdbot.cli.settings import add_robots, add_settings, add_world, load_settings_trial, robots, settings
+from crowdbot.cli.settings import add_robots, add_settings, add_world, load_settings_trial, settings
 
 from .tables import print_result
 
@@ -106,13 +106,13 @@ def main(options: argparse.Namespace) -> int:
 def _space(options: argparse.Namespace) -> SearchSpace:
     """Return the trial with its navigator and what varies in it."""
     from crowdbot.core import InputError
-    from crowdbot.evaluation import parse_methods
+    from crowdbot.evaluation import parse_methods, parse_robots
     from crowdbot.falsification import SearchSpace, parse_factor
 
     methods = parse_methods(options.navigator)
     if len(methods) != 1:
         raise InputError(f"--navigator {options.navigator!r} names {len(methods)} navigators; give one")
-    kinds = robots(options)
+    kinds = parse_robots(options.robots)
     if len(kinds) != 1:
         raise InputError(f"--robots {options.robots!r} names {len(kinds)} robots; give one")
     trial = load_settings_trial(options.trial, settings(options), options.trust)

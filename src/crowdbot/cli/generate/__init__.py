@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, print_table, progress
-from crowdbot.cli.settings import add_settings, add_world, load_settings_trial, settings
+from crowdbot.cli.settings import add_seeds, add_settings, add_world, load_settings_trial, settings
 
 if TYPE_CHECKING:
     from crowdbot.generation import DataCard, GenerationPlan
@@ -22,7 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("sources", nargs="+", metavar="SOURCE", help="trial files, built-in trials, or the recipe flow or"
         " corridor-clouds")  # fmt: skip
     add("--out", type=Path, required=True, metavar="DIR", help="folder of the data; the same command continues")
-    add("--seeds", metavar="SEEDS", help="seeds, such as 0:100 (default: 0:10, or those of the recipe)")
+    add_seeds(parser, "0:10, or those of the recipe")
     add("--sensors", default="", metavar="LIST", help="sensor presets on the first robot, separated by commas:"
         " sick-tim571, front=realsense-d435 (default: none)")  # fmt: skip
     add("--noise", action="store_true", help="add the noise of the products to sensor presets")

@@ -18,6 +18,7 @@ from .stop_key import StopKey
 
 if TYPE_CHECKING:
     from crowdbot.bridges import CommandGuard
+    from crowdbot.cli.parser import CommandParser
 
 LIMITS = {
     "max-speed": ("speed", 0.5, "largest speed [m/s]"),
@@ -30,7 +31,7 @@ LIMITS = {
 """Options of the limits: field, default and help."""
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     parser.add_argument("trial", metavar="TRIAL", help="trial file or built-in name")
     parser.add_argument("--robot", default="", metavar="NAME", help="robot of the trial (default: the only one)")
@@ -46,8 +47,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--command", default="/cmd_vel", metavar="TOPIC", help="commands to the real robot (default: /cmd_vel)"
     )
+    limits = parser.add_rare_group("limits of the robot")
     for name, (_, default, about) in LIMITS.items():
-        parser.add_argument(f"--{name}", type=float, default=default, metavar="X", help=f"{about} (default: {default})")
+        limits.add_argument(f"--{name}", type=float, default=default, metavar="X", help=f"{about} (default: {default})")
     parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")

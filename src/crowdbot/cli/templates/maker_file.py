@@ -15,6 +15,7 @@ from crowdbot.cli.output import add_json, note, print_json
 from crowdbot.cli.settings import settings
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.world import DriveTest, Guess, Robot, RobotFolder
 
 __all__ = ["add_robot_options", "convert_robot", "is_robot_file"]
@@ -25,9 +26,9 @@ MOST_REMARKS = 20
 WIDTH = 48
 
 
-def add_robot_options(parser: argparse.ArgumentParser) -> None:
+def add_robot_options(parser: CommandParser) -> None:
     """Declare the options of a robot from a file."""
-    group = parser.add_argument_group("robot from a URDF, xacro or SDF file")
+    group = parser.add_rare_group("robot from a URDF, xacro or SDF file")
     group.add_argument("--out", type=Path, metavar="DIR", help="robot folder to write (default: name of the robot)")
     for option, metavar, text in (
         ("--package", "NAME=FOLDER", "folder of a package that the file names"),

@@ -5,13 +5,17 @@ from __future__ import annotations
 import argparse
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
 
 __all__ = ["add_body_options", "copy_beside", "write_body_file", "write_clip_file"]
 
 
-def add_body_options(parser: argparse.ArgumentParser) -> None:
+def add_body_options(parser: CommandParser) -> None:
     """Declare the options of a body."""
-    group = parser.add_argument_group("body")
+    group = parser.add_rare_group("body")
     group.add_argument("--height", type=float, metavar="M", help="stature in metres (default: that in the file)")
     group.add_argument(
         "--mass", type=float, metavar="KG", help="mass in kg (default: from the stature, with the mean body mass index)"

@@ -17,12 +17,13 @@ from .tracker_choice import add_choice, chosen_detectors, chosen_trackers
 from .video import add_video, track_from_video
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import Estimate, ReadingLog, TrackingRun
 
     Table = dict[str, dict[str, Estimate]]
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("source", metavar="SOURCE", nargs="?", help="trial file, name of a built-in trial,"
@@ -34,13 +35,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_runs(parser)
     add("--reach", type=float, metavar="METRES", help="largest distance of a person and the matching track (default:"
         " 0.5, or 1 for a video)")  # fmt: skip
-    add("--by", metavar="PART", help="divide the scores by distance, density or occlusion (default: not)")
+    add("--by", metavar="PART", help="divide the scores by distance, density or occlusion")
     add("--predictor", nargs="+", metavar="NAME", help="predictors whose forecasts from tracks and from the true past"
         " are compared; for a video the predictor of the tracks (default: none, or constant-velocity)")  # fmt: skip
     add("--statistics", action="store_true", help="count the returns of people in the scans, by distance, instead of"
         " tracking them")  # fmt: skip
     add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
-    add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker (default: none)")
+    add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker")
     add_video(parser)
     add_json(parser)
 

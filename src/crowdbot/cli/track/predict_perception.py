@@ -14,6 +14,7 @@ from .reading_logs import add_runs, check_plain_runs, reading_logs
 
 if TYPE_CHECKING:
     from crowdbot.cli.output import Progress
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import ReadingLog, ScanProtocol, ScanScores
 
 __all__ = ["add_perception", "predict_perception"]
@@ -22,9 +23,9 @@ PREDICTORS = ("last-scan", "moved-scan", "tracked-scene", "learned-scene")
 REFERENCE = "true-people"
 
 
-def add_perception(parser: argparse.ArgumentParser) -> None:
+def add_perception(parser: CommandParser) -> None:
     """Add the options of predictors of scans."""
-    group = parser.add_argument_group("prediction of scans")
+    group = parser.add_rare_group("prediction of scans")
     add = group.add_argument
     add("--perception", metavar="SOURCE", help="source of the scans: a trial, an episode (.mcap) or a folder of"
         " OGM-Turtlebot2")  # fmt: skip

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import Progress
-from crowdbot.cli.settings import settings
+from crowdbot.cli.settings import add_settings, parse_settings
 
 if TYPE_CHECKING:
     from crowdbot.evaluation import ReadingLog
@@ -22,8 +22,7 @@ def add_runs(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
     add("--starts", type=int, default=1, metavar="N", help="runs of a trial, by consecutive seeds (default: 1)")
     add("--duration", type=float, metavar="SECONDS", help="simulated time of a trial, or time that is read of a"
         " folder of OGM-Turtlebot2 (default: all)")  # fmt: skip
-    add("--trial", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of a built-in trial (density=0.5) or"
-        " values in a trial by their paths (default: none)")  # fmt: skip
+    add_settings(parser, option="--trial")
     add("--trust", action="store_true", help="allow code outside the folder of a trial")
 
 
@@ -58,5 +57,5 @@ def check_plain_runs(options: argparse.Namespace, reason: str) -> None:
 
 def _given(options: argparse.Namespace) -> dict[str, Any]:
     """Return the parameters of the trial."""
-    given: dict[str, Any] = dict(settings(argparse.Namespace(settings=options.trial)))
+    given: dict[str, Any] = dict(parse_settings(options.trial, "--trial"))
     return given if options.duration is None else {**given, "duration": options.duration}

@@ -6,6 +6,8 @@ import argparse
 import dataclasses
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.settings import add_settings, parse_settings
+
 if TYPE_CHECKING:
     from crowdbot.perception import Detector, PredictorMotion, Tracker
 
@@ -19,7 +21,7 @@ def add_choice(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--detector", nargs="+", metavar="NAME", help="detectors: names from `crowdbot list detectors`, or file.py:Name"
         " (default: lidar-clusters, or cloud-clusters for L-CAS)")  # fmt: skip
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="fields of the detector (default: none)")
+    add_settings(parser, "fields of the detector")
     add("--tracker", nargs="+", default=["global-nearest-neighbor"], metavar="NAME", help="trackers: names from"
         " `crowdbot list trackers`, or file.py:Name (default: global-nearest-neighbor)")  # fmt: skip
     add("--motion", nargs="+", default=[STEADY], metavar="NAME", help="motion models of the trackers: predictors or"
@@ -33,10 +35,9 @@ def chosen_detectors(options: argparse.Namespace) -> dict[str, Detector]:
         InputError: a name or a field is unknown.
     """
     from crowdbot import perception
-    from crowdbot.cli.schemes import assignments
     from crowdbot.core import InputError, find_class, from_attributes
 
-    values = assignments(options.set)
+    values = parse_settings(options.set)
     if values and len(options.detector) > 1:
         raise InputError(f"--set is for one detector, {len(options.detector)} are given")
     kinds = {name: find_class(name, perception, perception.Detector) for name in options.detector}

@@ -12,6 +12,7 @@ from crowdbot.cli.output import print_json, print_table, progress
 from .tracker_choice import chosen_detectors, chosen_trackers
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import VideoRun
 
 __all__ = ["add_video", "track_from_video"]
@@ -20,9 +21,9 @@ REACH, FAR = 1.0, 10.0
 """Largest distance of a person and a track [m], and of people who must be found [m], by default."""
 
 
-def add_video(parser: argparse.ArgumentParser) -> None:
+def add_video(parser: CommandParser) -> None:
     """Declare the options."""
-    group = parser.add_argument_group("video of a camera, instead of SOURCE")
+    group = parser.add_rare_group("video of a camera, instead of SOURCE")
     add = group.add_argument
     add("--video", type=Path, metavar="FILE", help="video of a camera on a robot")
     add("--camera", type=Path, metavar="FILE", help="calibration: camera_info of ROS as YAML, with the place on the"

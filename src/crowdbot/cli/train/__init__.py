@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from crowdbot.cli.output import add_json, note, number, print_json, print_table, progress
 from crowdbot.cli.recordings import add_recordings, print_notes, recordings
-from crowdbot.cli.schemes import assignments
+from crowdbot.cli.settings import add_settings, parse_settings
 
 from .detector import DETECTOR, train_detector
 from .learned_scene import RUNS, SCAN_PREDICTOR, train_scan_predictor
 from .navigator import NAVIGATOR, add_navigator, check_options, train_policy
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import CommandParser
     from crowdbot.data import Recording
     from crowdbot.prediction import LogRow, TimeSplit, TrainingResult
 
@@ -24,13 +25,13 @@ EPOCHS = 100
 """Default number of epochs."""
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     names = f"predictor: {', '.join(LEARNERS)}; navigator: {NAVIGATOR}; detector: {DETECTOR};"
     names += f" scan predictor: {SCAN_PREDICTOR}"
     parser.add_argument("what", metavar="NAME", help=names)
     add_recordings(parser, required=False)
-    add_navigator(parser)
+    add_navigator(parser.add_argument_group("navigator"))
     add = parser.add_argument
     add("--check", nargs="+", type=Path, metavar="PATH", help="validation recordings (default: see --hold)")
     add(
@@ -38,13 +39,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.2,
         metavar="SHARE",
-        help="final share of each recording for validation, without --check (default: 0.2); recordings too short for it"
-        " are used whole, for training or validation",
+        help="final share of each recording for validation, without --check (default: 0.2)",
     )
     add(
         "--leave-out",
         metavar="NAME",
-        help="excluded test set: eth, hotel, univ, zara1, zara2 or a file name (default: none)",
+        help="excluded test set: eth, hotel, univ, zara1, zara2, file",
     )
     add("--out", type=Path, required=True, metavar="DIR", help="folder for weights, log and training state")
     add("--resume", action="store_true", help="resume the training in DIR")
@@ -53,6 +53,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="start from other weights: a file, open (anchor-net) or a place such as zara1 (default: random weights)",
     )  # fmt: skip
     add("--epochs", type=int, metavar="N", help=f"number of epochs (default: {EPOCHS})")
+    add = parser.add_rare_group("details of a training").add_argument
     add("--updates", type=int, metavar="N", help="number of updates, instead of --epochs")
     add("--check-every", type=int, default=200, metavar="N", help="updates between validations (default: 200)")
     add(
@@ -64,13 +65,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--scans", type=int, default=3000, metavar="N", help=f"generated scans of {DETECTOR} (default: 3000)")
     add("--runs", type=int, default=RUNS, metavar="N", help=f"runs of each trial of {SCAN_PREDICTOR} (default: {RUNS})")
     add("--settings", metavar="NAME", help="preset (social-ways: report, variety or modes; default: report)")
-    add(
-        "--set",
-        nargs="+",
-        default=[],
-        metavar="NAME=VALUE",
-        help="settings that differ from the preset (default: none)",
-    )
+    add_settings(parser, "settings that differ from the preset")
     add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default: cpu)")
     add(
         "--threads",
@@ -127,7 +122,7 @@ def _train_predictor(options: argparse.Namespace) -> int:
     samples, check = data.split.training, data.split.validation
     start = str(getattr(options, "from") or "")
     model = make_learner(
-        options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device,
+        options.what, options.settings, parse_settings(options.set), samples, check, options.seed, options.device,
         start,
     )  # fmt: skip
     if not options.json:

@@ -7,7 +7,7 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import note, print_json, print_table, progress
-from crowdbot.cli.schemes import assignments
+from crowdbot.cli.settings import parse_settings
 
 if TYPE_CHECKING:
     from crowdbot.gym import NavigatorTraining, PPOSettings, TrainingTask
@@ -21,16 +21,16 @@ ONLY_HERE = ("trials", "rounds", "environments")
 ONLY_PREDICTORS = ("data", "check", "leave_out", "epochs", "updates", "patience", "settings", "tensorboard", "from")
 
 
-def add_navigator(parser: argparse.ArgumentParser) -> None:
+def add_navigator(parser: argparse._ActionsContainer) -> None:
     """Declare the options of ``crowdbot train navigator``."""
     add = parser.add_argument
     add(
         "--trials", metavar="LIST",
-        help='navigator: trials with values, separated by commas, such as "crowdnav-circle-5, crowdnav-circle-10'
+        help='trials with values, separated by commas, such as "crowdnav-circle-5, crowdnav-circle-10'
         ' people=8" (default: the crossings of CrowdNav with 5 to 20 people)',
     )  # fmt: skip
-    add("--rounds", type=int, metavar="N", help="navigator: number of rounds (default: 6)")
-    add("--environments", type=int, metavar="N", help=f"navigator: number of environments (default: {ENVIRONMENTS})")
+    add("--rounds", type=int, metavar="N", help="number of rounds (default: 6)")
+    add("--environments", type=int, metavar="N", help=f"number of environments (default: {ENVIRONMENTS})")
 
 
 def check_options(options: argparse.Namespace) -> None:
@@ -90,7 +90,7 @@ def _settings(options: argparse.Namespace) -> PPOSettings:
     if options.rounds is not None:
         values["rounds"] = options.rounds
     known = {one.name.replace("_", "-"): one for one in dataclasses.fields(PPOSettings) if one.name != "reward"}
-    for name, text in assignments(options.set).items():
+    for name, text in parse_settings(options.set).items():
         field = known.get(name)
         if field is None:
             raise InputError(f"unknown setting {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}")
@@ -126,7 +126,7 @@ def _tasks(options: argparse.Namespace) -> tuple[TrainingTask, ...]:
     if not texts:
         raise InputError("--trials names no trial")
     each = max(1, count // len(texts))
-    return tuple(TrainingTask(words[0], each, assignments(words[1:])) for words in texts)
+    return tuple(TrainingTask(words[0], each, parse_settings(words[1:], "--trials")) for words in texts)
 
 
 def _sentence(row: dict[str, float], rounds: int) -> str:

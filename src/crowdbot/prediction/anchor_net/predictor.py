@@ -134,6 +134,13 @@ class AnchorNet(Predictor):
     residual is constant. People observed once have a constant position.
 
     Paper: anchors, Chai et al. (2019), arXiv 1910.05449.
+
+    >>> from crowdbot.data import Trajectories
+    >>> rows = range(20)
+    >>> tracks = Trajectories([7] * 20, rows, [0.5 * row for row in rows], [0.0] * 20, row_rate=2.5)
+    >>> past, _ = tracks.windows(observe=8, predict=12)
+    >>> AnchorNet().predict(past, steps=12, samples=20).position.shape
+    (1, 20, 12, 1, 2)
     """
 
     fold: str = AUTO

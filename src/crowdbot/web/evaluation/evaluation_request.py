@@ -12,7 +12,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from crowdbot.core import InputError
-from crowdbot.evaluation import EvaluationPlan, families_of, parse_methods, parse_seeds, parse_statistic, with_safety
+from crowdbot.evaluation import (
+    EvaluationPlan,
+    families_of,
+    parse_methods,
+    parse_robots,
+    parse_seeds,
+    parse_statistic,
+    with_safety,
+)
 from crowdbot.metrics import LOG_FAMILIES
 from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, load_trial, remarks_at_end, robot_lines
 from crowdbot.web.jobs.job_forms import check_text
@@ -148,8 +156,7 @@ for cell in result.cells:
     @property
     def _robot_names(self) -> list[str]:
         """Names of the robots; an empty name is the robot of the trial."""
-        names = (one.strip() for one in self.robots.split(","))
-        return [posixpath.normpath(one) if one else "" for one in names]
+        return [posixpath.normpath(name) if name else "" for name in parse_robots(self.robots)]
 
     @property
     def words(self) -> tuple[str, ...]:

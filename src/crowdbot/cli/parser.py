@@ -1,0 +1,119 @@
+"""CommandParser: the parser of a command, whose help fits on two screens; ``--help-all`` describes every option."""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+__all__ = ["CommandParser"]
+
+
+class CommandHelp(argparse.HelpFormatter):
+    """Help text of a command: names are not broken at hyphens, and several values are written ``NAME ...``."""
+
+    def _format_args(self, action: argparse.Action, default_metavar: str) -> str:
+        if action.nargs == argparse.ONE_OR_MORE:
+            return f"{self._metavar_formatter(action, default_metavar)(1)[0]} ..."
+        return super()._format_args(action, default_metavar)
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return textwrap.wrap(" ".join(text.split()), width, break_on_hyphens=False)
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return "\n".join(f"{indent}{line}" for line in self._split_lines(text, width - len(indent)))
+
+
+class _HelpAll(argparse.Action):
+    """Prints the help with the descriptions of all options."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, help: str) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        assert isinstance(parser, CommandParser)
+        print(parser.format_full_help(), end="")
+        parser.exit()
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Parser of one command.
+
+    The help describes the options that most runs need. Groups of rare options are listed by name; ``--help-all``
+    describes these, too.
+
+    Args:
+        options: as for :class:`argparse.ArgumentParser`.
+
+    >>> parser = CommandParser(prog="crowdbot run")
+    >>> _ = parser.add_argument("trial", metavar="TRIAL", help="trial file")
+    >>> _ = parser.add_rare_group("network").add_argument("--token", metavar="TEXT", help="token of clients")
+    >>> print(parser.format_help())
+    usage: crowdbot run TRIAL [options]
+    <BLANKLINE>
+    positional arguments:
+      TRIAL       trial file
+    <BLANKLINE>
+    options:
+      -h, --help  show this help message and exit
+      --help-all  describe all options and exit
+    <BLANKLINE>
+    network (see --help-all):
+      --token
+    <BLANKLINE>
+    >>> "token of clients" in parser.format_full_help()
+    True
+    """
+
+    def __init__(self, **options: Any) -> None:
+        options.setdefault("allow_abbrev", False)
+        options.setdefault("formatter_class", CommandHelp)
+        super().__init__(**options)
+        self._rare_groups: list[argparse._ArgumentGroup] = []
+
+    def add_rare_group(self, title: str, description: str | None = None) -> argparse._ArgumentGroup:
+        """Return a new group of options that the short help lists by name only."""
+        if not self._rare_groups:
+            self.add_argument("--help-all", action=_HelpAll, help="describe all options and exit")
+        group = self.add_argument_group(title, description)
+        self._rare_groups.append(group)
+        return group
+
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and the message, and exit with status 2."""
+        if message.startswith("the following arguments are required"):  # an option has taken them as its values
+            message += "; arguments come before options with several values, such as --set"
+        super().error(message)
+
+    def format_usage(self) -> str:
+        """Return the line of usage: arguments and required options, then ``[options]`` for the others."""
+        needed = argparse.ArgumentParser(prog=self.prog, add_help=False, formatter_class=CommandHelp)
+        for action in self._actions:
+            if action.required or not action.option_strings:
+                needed._add_action(action)
+        return f"{needed.format_usage().rstrip()} [options]\n"
+
+    def format_help(self) -> str:
+        """Return the short help."""
+        return self._help(self._rare_groups)
+
+    def format_full_help(self) -> str:
+        """Return the help with the descriptions of all options."""
+        return self._help(())
+
+    def _help(self, listed: Sequence[argparse._ArgumentGroup]) -> str:
+        """Return the help, in which these groups are listed by name."""
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        for group in self._action_groups:
+            by_name = any(group is other for other in listed)
+            formatter.start_section(f"{group.title} (see --help-all)" if by_name else group.title)
+            if by_name:
+                formatter.add_text(" ".join(action.option_strings[-1] for action in group._group_actions))
+            else:
+                formatter.add_text(group.description)
+                formatter.add_arguments(group._group_actions)
+            formatter.end_section()
+        formatter.add_text(self.epilog)
+        return f"{self.format_usage()}\n{formatter.format_help()}"
