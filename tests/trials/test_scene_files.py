@@ -1,4 +1,4 @@
-"""Scenes of IR-SIM, Arena-Rosnav and Gazebo: what is read, what is left out by name, that they run, wrong files."""
+"""Scenes of other simulators: what is read, what is left out by name, that they run, and wrong files."""
 
 import math
 import random
@@ -63,10 +63,31 @@ GAZEBO = """<?xml version="1.0"?>
  <waypoint><time>7</time><pose>6 3 0 0 0 3</pose></waypoint><waypoint><time>12</time><pose>0 3 0 0 0 3</pose></waypoint>
 </trajectory></script></actor>
 </world></sdf>"""
-FILES = {"world.yaml": IRSIM, "scenario.json": ARENA, "hall.world": GAZEBO}
+ROOMS = """<?xml version="1.0"?>
+<geometry version="0.8" caption="hall" unit="m"><rooms><room id="0" caption="hall"><subroom id="0" class="subroom">
+<polygon caption="wall"><vertex px="10" py="2"/><vertex px="10" py="0"/><vertex px="0" py="0"/><vertex px="0" py="6"/>
+ <vertex px="10" py="6"/><vertex px="10" py="4"/></polygon>
+<obstacle id="7" closed="1"><polygon><vertex px="5" py="2"/><vertex px="6" py="2"/><vertex px="6" py="3"/>
+ <vertex px="5" py="2"/></polygon></obstacle></subroom></room></rooms>
+<transitions><transition id="0" room1_id="0" subroom1_id="0" room2_id="-1" subroom2_id="-1"><vertex px="10" py="2"/>
+ <vertex px="10" py="4"/></transition></transitions></geometry>"""
+PROJECT = """<?xml version="1.0"?>
+<JuPedSim project="p" version="0.8"><header><seed>1</seed><max_sim_time>60</max_sim_time><geometry>rooms.xml</geometry>
+</header><agents><agents_distribution>
+<group group_id="1" room_id="0" number="8" agent_parameter_id="1" x_min="1" x_max="4" y_min="1" y_max="5"/>
+<group group_id="2" room_id="0" number="1" startX="8" startY="3" goal_id="4" pre_movement_mean="3"/>
+</agents_distribution><agents_sources><source id="9" frequency="2" group_id="1"/></agents_sources></agents>
+<operational_models><model>
+<agent_parameters agent_parameter_id="1"><v0 mu="1.2" sigma="0.1"/></agent_parameters></model>
+</operational_models><routing><goals><goal id="4" final="true"><polygon><vertex px="1" py="1"/><vertex px="2" py="1"/>
+ <vertex px="2" py="2"/><vertex px="1" py="1"/></polygon></goal></goals></routing><train_constraints/></JuPedSim>"""
+FILES = {
+    "world.yaml": IRSIM, "scenario.json": ARENA, "hall.world": GAZEBO, "rooms.xml": ROOMS, "project.xml": PROJECT
+}  # fmt: skip
 
 
 def imported(tmp_path, name, text):
+    (tmp_path / "rooms.xml").write_text(ROOMS)
     file = tmp_path / name
     file.write_text(text, encoding="utf-8")
     return import_trial(file)
@@ -79,6 +100,7 @@ def trial_of(done):
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_scene_is_written_checked_and_runs(tmp_path, capsys, name):
+    (tmp_path / "rooms.xml").write_text(ROOMS)
     (tmp_path / name).write_text(FILES[name])
     out = tmp_path / "out.xml"
     assert main(["new", "trial", str(out), "--import", str(tmp_path / name)]) == 0
@@ -87,10 +109,10 @@ def test_a_scene_is_written_checked_and_runs(tmp_path, capsys, name):
     trial = load_trial(out)
     check_trial(trial)
     assert parse_trial(trial_xml(trial)) == trial
-    text = out.read_text().replace('duration="120"', 'duration="4"')
+    text = out.read_text().replace('duration="120"', 'duration="4"').replace('duration="60"', 'duration="4"')
     episode = simulate(parse_trial(text), 0)
-    assert np.isfinite(episode.position).all()
-    assert np.ptp(episode.position, axis=0).max() > 1.0
+    assert np.isfinite(episode.position[episode.active]).all()
+    assert name == "rooms.xml" or np.ptp(episode.position, axis=0).max() > 1.0  # a geometry has nobody
 
 
 def test_irsim_has_obstacles_people_and_robots(tmp_path):
@@ -401,9 +423,55 @@ def test_an_actor_without_waypoints_stands(tmp_path):
     assert (bob.position, bob.journey, bob.heading) == ((1.0, 2.0), "", pytest.approx(1.0))
 
 
+def test_jupedsim_has_walls_doors_groups_and_goals(tmp_path):
+    done = imported(tmp_path, "project.xml", PROJECT)
+    trial = trial_of(done)
+    assert (trial.duration, len(trial.stage.walls), len(trial.stage.obstacles)) == (60.0, 1, 1)
+    (group,) = trial.spawners
+    assert (group.count, str(group.speed)) == (8, "normal(1.2, 0.1, 0.9, 1.5)")
+    (single,) = trial.agents
+    ways = {journey.name: journey for journey in trial.journeys}
+    assert (single.position, ways[single.journey].stops[0].points[1]) == ((8.0, 3.0), (2.0, 1.0))
+    (door,) = trial.exits
+    assert np.array(door.zone).mean(axis=0) == pytest.approx([10.0, 3.0])
+    assert ways[group.journey].stops[0].points == door.zone
+    for sentence in (
+        "group 2: not imported are pre_movement_mean",
+        "the source '9' is not imported",
+        "<train_constraints> is not imported",
+    ):
+        assert sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "spawners", "agents", "sentence"),
+    [
+        ('x_min="1" x_max="4" y_min="1" y_max="5"', 'subroom_id="0"', 1, 1,
+         "group 1 begins in the box around its room"),
+        ('x_min="1" x_max="4"', 'x_min="4" x_max="1"', 0, 1, "group 1 begins in a box without area and is left out"),
+        ('room_id="0" number="8" agent_parameter_id="1" x_min="1"', 'room_id="5" number="8"', 0, 1,
+         "group 1 is in room '5', which has no walls, and is left out"),
+        ('goal_id="4"', 'goal_id="5"', 1, 1, "group 2: there is no goal '5' with a polygon, people go to an exit"),
+        ('number="8"', 'number="0"', 0, 1, "group 1 has 0 people and is left out"),
+        ('sigma="0.1"', "", 1, 1, None),
+    ],
+)  # fmt: skip
+def test_variants_of_jupedsim(tmp_path, old, new, spawners, agents, sentence):
+    assert old in PROJECT
+    done = imported(tmp_path, "project.xml", PROJECT.replace(old, new, 1))
+    trial = trial_of(done)
+    assert (len(trial.spawners), len(trial.agents)) == (spawners, agents)
+    assert sentence is None or sentence in done.left_out
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new", "sentence"),
     [
+        ("project.xml", "rooms.xml", "../rooms.xml", "the geometry the file '../rooms.xml' lies outside"),
+        ("project.xml", "rooms.xml", "none.xml", "the geometry there is no file 'none.xml'"),
+        ("project.xml", 'number="8"', 'number="90000"', "more than 20000 people are too many"),
+        ("rooms.xml", 'px="5"', 'px="west"', "px of <vertex> must be a number up to 1e6, not 'west'"),
+        ("rooms.xml", 'unit="m"', 'unit="cm"', "the unit 'cm' of the geometry is not m"),
         (
             "world.yaml",
             "state: [2, 8, 0]",

@@ -15,6 +15,7 @@ from .foreign_text import json_of, yaml_of
 from .gazebo import import_gazebo
 from .hunavsim import import_hunavsim
 from .irsim import import_irsim, is_irsim
+from .jupedsim import import_jupedsim
 from .original import ImportedTrial, import_original
 from .pedsim import import_pedsim
 from .umans import import_umans
@@ -27,6 +28,8 @@ XML_FILES: dict[str, Callable[[Path], ImportedTrial]] = {
     "scenario": import_pedsim,
     "sdf": import_gazebo,
     "gazebo": import_gazebo,
+    "geometry": import_jupedsim,
+    "JuPedSim": import_jupedsim,
 }
 """Importers of XML files by their root element."""
 
@@ -38,8 +41,9 @@ def import_trial(
 
     Args:
         path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, an agent file of HuNavSim
-            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav (JSON), a world of Gazebo (SDF), a drawing
-            (ASCII DXF), a building (``.glb``), or as in :func:`import_original`.
+            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav (JSON), a world of Gazebo (SDF), a
+            project or geometry of JuPedSim (XML), a drawing (ASCII DXF), a building (``.glb``), or as
+            in :func:`import_original`.
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
         layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
@@ -67,6 +71,6 @@ def import_trial(
         if tag not in ("Trial", "Config"):
             raise TrialError(
                 f"{path}: the root element <{tag[:40]}> is not known; files of UMANS have Simulation, of pedsim"
-                " scenario, of Gazebo sdf, of the CrowdBot simulator Trial or Config"
+                " scenario, of Gazebo sdf, of JuPedSim JuPedSim or geometry, of the CrowdBot simulator Trial or Config"
             )
     return import_original(path, root=root)
