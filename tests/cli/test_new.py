@@ -1,10 +1,12 @@
 """``crowdbot new``, ``--set``, ``--variant`` and the parameters of built-in trials."""
 
 import json
+import shutil
 
 import pytest
 
 from crowdbot.cli import main
+from crowdbot.core import TrialError
 from crowdbot.trials import load_trial, schema, trial_xml
 
 
@@ -167,3 +169,56 @@ def test_a_trial_from_a_bag_and_from_a_table_without_names(tmp_path, capsys):
     capsys.readouterr()
     both = ["--scale", "0.02", "--homography", str(tmp_path / "H.txt")]
     assert "coordinates have one scale" in refused(capsys, tmp_path, "new", "trial", tmp_path / "u.xml", *words, *both)
+
+
+def walkers(folder, columns="time,x,y"):
+    """Write a folder with one file a person."""
+    folder.mkdir()
+    for who in (3, 4):
+        rows = "".join(f"{50 + 0.4 * k:g},{100 * (0.5 * k + who):g},{150 * who}\n" for k in range(20))
+        (folder / f"p{who}.csv").write_text(f"{columns}\n{rows}")
+    return folder
+
+
+@pytest.mark.parametrize("columns", ["time,x,y", "when,east,north"])
+def test_a_folder_of_one_file_a_person_becomes_a_trial(tmp_path, capsys, columns):
+    data = walkers(tmp_path / "walkers", columns)
+    named = [f"{name}={column}" for name, column in zip(("time", "x", "y"), columns.split(","), strict=True)]
+    (tmp_path / "out").mkdir()
+    file = tmp_path / "out" / "t.xml"
+    words = ["new", "trial", str(file), "--recorded", str(data), "--units", "cm", "--columns", *named]
+    assert main(words) == 0
+    assert "copied walkers to the folder of the trial" in capsys.readouterr().err
+    (people,) = load_trial(file).recorded
+    tracks = people.tracks()
+    assert (people.data, tracks.ids.tolist(), len(tracks)) == ("walkers", [3, 4], 40)
+    assert tracks.position.max(axis=0).tolist() == pytest.approx([13.5, 6.0])
+    assert main([*words, "--force"]) == 0  # the copy is there with the same files
+    capsys.readouterr()
+    (data / "p5.csv").write_text((data / "p4.csv").read_text())
+    assert "exists with a different content" in refused(capsys, tmp_path, *words, "--force")
+
+
+def test_an_episode_keeps_the_folder_of_its_recording(tmp_path, capsys):
+    walkers(tmp_path / "walkers")
+    file = tmp_path / "t.xml"
+    assert main(["new", "trial", str(file), "--recorded", str(tmp_path / "walkers"), "--units", "cm"]) == 0
+    assert main(["run", str(file), "--out", str(tmp_path / "run")]) == 0
+    shutil.rmtree(tmp_path / "walkers")
+    capsys.readouterr()
+    assert main(["replay", str(tmp_path / "run" / "episode.mcap")]) == 0
+    assert "replays with the same digest" in capsys.readouterr().out
+    assert main(["check", str(file)]) == 2
+    assert "there is no file 'walkers'" in capsys.readouterr().out
+
+
+def test_a_folder_of_a_trial_has_no_file_from_elsewhere(tmp_path):
+    (tmp_path / "trial").mkdir()
+    walkers(tmp_path / "trial" / "walkers")
+    (tmp_path / "secret.csv").write_text("time,x,y\n0,0,0\n0.4,1,1\n")
+    (tmp_path / "trial" / "walkers" / "p9.csv").symlink_to(tmp_path / "secret.csv")
+    text = '<trial name="t" duration="2"><crowd type="orca"/><recorded data="walkers"/></trial>'
+    (tmp_path / "trial" / "t.xml").write_text(text)
+    with pytest.raises(TrialError, match=r"'walkers/p9\.csv' lies outside"):
+        load_trial(tmp_path / "trial" / "t.xml")
+    assert len(load_trial(tmp_path / "trial" / "t.xml", trust=True).recorded[0].tracks().ids) == 3

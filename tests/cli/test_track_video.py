@@ -97,6 +97,27 @@ def test_people_of_a_video_are_tracked_and_predicted_in_metres(folder, capsys):
     assert [float(row["ahead"]) for row in ahead] == [0.4, 0.8, 1.2, 1.6]
 
 
+def test_true_people_are_read_with_the_options_of_recordings(folder, capsys):
+    rows = [line.split(",") for line in (folder / "truth.csv").read_text().splitlines()[1:]]
+    lines = [f"{who};{1000 * float(time)};{100 * float(x)};{100 * float(y)}\n" for who, time, x, y in rows]
+    (folder / "other.csv").write_text("who;stamp;east;north\n" + "".join(lines))
+    options = ["--columns", "id=who", "time_ms=stamp", "x=east", "y=north", "--units", "cm"]
+    scores = []
+    for more in ([f"{folder}/truth.csv"], [f"{folder}/other.csv", *options]):
+        assert main(words(folder, "--steps", "1", "--json", "--truth", *more)) == 0
+        found = json.loads(capsys.readouterr().out)["scores"]
+        scores.append({name: value for name, value in found.items() if value is not None})
+    assert len(scores[0]) > 3
+    assert scores[1] == pytest.approx(scores[0], rel=1e-6)
+
+
+def test_options_of_recordings_need_true_people(folder, capsys):
+    assert main(words(folder, "--units", "cm")) == 2
+    assert "--units is for recordings; give --truth" in capsys.readouterr().err
+    assert main(["track", "frontal", "--scale", "0.1"]) == 2
+    assert "--scale is for recordings; give --video with --truth" in capsys.readouterr().err
+
+
 def test_the_table_names_the_errors(folder, capsys):
     assert main(words(folder, "--truth", f"{folder}/truth.csv", "--steps", "1")) == 0
     shown = capsys.readouterr().out

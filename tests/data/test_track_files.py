@@ -191,3 +191,20 @@ def test_importing_the_room_is_light():
 def test_every_format_says_what_it_is():
     assert len(FORMATS) == 27
     assert all(about and not about.endswith(".") for about in FORMATS.values())
+
+
+@pytest.mark.parametrize("frames", [False, True])
+def test_the_clock_of_a_file_is_kept(tmp_path, frames):
+    head, rows = ("id,frame,time,x,y" if frames else "id,time,x,y"), []
+    for k in range(12):
+        rows.append(f"1,{f'{30 + k},' * frames}{1700.5 + 0.1 * k:.1f},{0.1 * k:.1f},0")
+    (tmp_path / "clock.csv").write_text("\n".join([head, *rows]) + "\n")
+    tracks = load(tmp_path / "clock.csv")
+    assert tracks.clock[[0, -1]].tolist() == pytest.approx([1700.5, 1701.6])
+    assert tracks.time[0] == 0.0
+    assert tracks.split(0.5)[1].clock[0] == pytest.approx(1701.1)
+    for step in (0.2, 0.15):
+        assert tracks.resample(step).clock[:2].tolist() == pytest.approx([1700.5, 1700.5 + step])
+    for name in ("again.csv", "again.parquet"):
+        save(tracks, tmp_path / name)
+        assert load(tmp_path / name).clock.tolist() == pytest.approx(tracks.clock.tolist())

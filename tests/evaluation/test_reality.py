@@ -122,3 +122,41 @@ def test_the_command_measures_and_simulates(clip, tmp_path, capsys):
     assert "trials and real are given" in capsys.readouterr().err
     assert main(["evaluate"]) == 2
     assert "needs a trial, or recordings" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("who,tick,kind,east,north", ["--columns", "id=who", "frame=tick", "label=kind", "x=east", "y=north"]),
+        ("id,frame,label,x_px,y_px", []),
+    ],
+)
+def test_a_recording_is_read_with_the_shared_options(clip, tmp_path, capsys, table, words):
+    rows = clip.read_text().splitlines()[1:]
+    cells = [row.split(",") for row in rows]
+    rows = [f"{who},{frame},{kind},{float(x) * 50},{float(y) * 50}" for who, frame, kind, x, y in cells]
+    (tmp_path / "other.csv").write_text("\n".join([table, *rows]) + "\n")
+    assert main(["evaluate", "--logs", str(clip), "--fps", "10", "--json"]) == 0
+    (expected,) = json.loads(capsys.readouterr().out)["logs"]
+    words = ["--fps", "10", "--scale", "0.02", *words, "--json"]
+    assert main(["evaluate", "--logs", str(tmp_path / "other.csv"), *words]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["logs"]
+    for name, value in expected["metrics"].items():
+        assert found["metrics"][name] == (None if value is None else pytest.approx(value, rel=1e-6, abs=1e-9)), name
+
+
+def test_people_and_robot_in_two_files_meet_on_their_clock(tmp_path):
+    for name, begin, x in (("people", 900.0, 3.0), ("robot", 902.0, 0.0)):
+        rows = [f"1,{begin + 0.1 * k:.1f},{x + (name == 'robot') * 0.1 * k:.2f},1\n" for k in range(61)]
+        (tmp_path / f"{name}.csv").write_text("id,time,x,y\n" + "".join(rows))
+    recording = load_robot_recording(tmp_path / "people.csv", tmp_path / "robot.csv")
+    assert recording.agents.active[:, 1].sum() == 41  # people are there in the first 4 s of the robot
+    assert recording.agents.active[40:42, 1].tolist() == [True, False]
+
+
+def test_options_of_recordings_without_recordings_are_rejected(capsys, tmp_path):
+    assert main(["evaluate", "frontal", "--columns", "id=who"]) == 2
+    assert "--columns is for recordings; give --logs or --real" in capsys.readouterr().err
+    (tmp_path / "a.csv").write_text("id,time,x,y\n")
+    assert main(["evaluate", "--logs", str(tmp_path / "a.csv"), "--fps", "citr=25"]) == 2
+    assert "--fps citr=25.0: no recording has 'citr' in its path" in capsys.readouterr().err

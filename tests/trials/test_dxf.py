@@ -105,7 +105,7 @@ def test_mirrored_duplicate_and_other_entities(tmp_path):
     first, mirrored = (np.array(wall.points) for wall in done.trials[0][1].stage.walls)
     assert first.tolist() == [[0, 0], [1, 0]]
     assert mirrored[:, 0].max() <= 0.0
-    assert "entities INSERT are not imported" in done.left_out
+    assert "the block 'b' is not in the file and is left out" in done.left_out
 
 
 def test_the_trial_is_written_and_read_and_found_by_content(tmp_path):
@@ -210,3 +210,90 @@ def test_the_commands_tell_the_size_of_a_drawing(tmp_path, capsys):
     assert main(["new", "trial", str(out), "--import", str(file), "--unit", "m", "--force"]) == 0
     main(["check", str(out)])
     assert "note" not in capsys.readouterr().out
+
+
+def block(name, *entities, base=(0, 0), flags=0):
+    head = groups((0, "BLOCK"), (8, "0"), (2, name), (70, flags), (10, base[0]), (20, base[1]))
+    return head + "".join(entities) + groups((0, "ENDBLK"), (8, "0"))
+
+
+def insert(name, x, y, *more, layer="0"):
+    return groups((0, "INSERT"), (8, layer), (2, name), (10, x), (20, y), *more)
+
+
+def with_blocks(text, *blocks):
+    section = groups((0, "SECTION"), (2, "BLOCKS")) + "".join(blocks) + groups((0, "ENDSEC"))
+    return text.replace(groups((0, "SECTION"), (2, "ENTITIES")), section + groups((0, "SECTION"), (2, "ENTITIES")), 1)
+
+
+DOOR = block("door", line(1, 0, 3, 0), base=(1, 0))
+
+
+@pytest.mark.parametrize(
+    ("more", "ends"),
+    [
+        ([], [[[10, 5], [12, 5]]]),
+        ([(50, 90)], [[[10, 5], [10, 7]]]),
+        ([(41, 2), (42, 3), (50, 180)], [[[10, 5], [6, 5]]]),
+        ([(41, -1)], [[[10, 5], [8, 5]]]),
+        ([(230, -1)], [[[-10, 5], [-12, 5]]]),
+        ([(70, 2), (71, 2), (44, 4), (45, 1)], [[[10 + u, 5 + v], [12 + u, 5 + v]] for v in (0, 1) for u in (0, 4)]),
+        ([(50, 90), (70, 2), (44, 4)], [[[10, 5], [10, 7]], [[10, 9], [10, 11]]]),
+    ],
+)
+def test_a_block_is_drawn_where_it_is_inserted(tmp_path, more, ends):
+    found = walls(tmp_path, with_blocks(drawing(insert("door", 10, 5, *more)), DOOR))
+    np.testing.assert_allclose([wall.tolist() for wall in found], ends, atol=1e-6)
+
+
+def test_blocks_in_blocks_and_arcs_in_stretched_blocks(tmp_path):
+    circle = groups((0, "CIRCLE"), (8, "0"), (10, 0), (20, 0), (40, 1))
+    room = block("room", insert("door", 0, 0), circle)
+    text = with_blocks(drawing(insert("room", 100, 0, (41, 10), (42, 5), (50, 90))), DOOR, room)
+    door, ellipse = walls(tmp_path, text)
+    np.testing.assert_allclose(door, [[100, 0], [100, 20]], atol=1e-6)
+    x, y = (ellipse - [100, 0]).T
+    np.testing.assert_allclose((x / 5) ** 2 + (y / 10) ** 2, 1.0, atol=1e-6)
+    assert len(ellipse) > 60  # chords within 1 cm at the size in the drawing
+
+
+def test_layers_of_blocks(tmp_path):
+    parts = block("parts", line(0, 0, 1, 0), line(0, 1, 1, 1, "glass"))
+    text = with_blocks(drawing(insert("parts", 0, 0, layer="walls"), line(5, 5, 6, 5)), parts)
+    (wall,) = walls(tmp_path, text, layers=["walls"])
+    assert wall.tolist() == [[0, 0], [1, 0]]
+    (glass,) = walls(tmp_path, text, layers=["glass"])
+    assert glass.tolist() == [[0, 1], [1, 1]]
+    assert len(walls(tmp_path, text)) == 3
+
+
+@pytest.mark.parametrize(
+    ("blocks", "sentence"),
+    [
+        ([], "the block 'door' is not in the file and is left out"),
+        ([block("door", flags=4)], "the block 'door' is in another file and is left out"),
+        ([block("door", groups((0, "TEXT"), (8, "0")), line(0, 0, 1, 0))], "entities TEXT are not imported"),
+    ],
+)
+def test_blocks_that_are_left_out_are_named(tmp_path, blocks, sentence):
+    done = read(tmp_path, with_blocks(drawing(insert("door", 0, 0), line(0, 0, 9, 9)), *blocks))
+    assert sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("blocks", "more", "sentence"),
+    [
+        ([block("door", insert("door", 1, 0))], [], "blocks are nested more than 16 levels deep"),
+        ([DOOR], [(70, 9000), (71, 9000)], "81000000 copies of a block are too many"),
+        ([block("door", *[line(0, 0, k, 1) for k in range(1, 30)])], [(70, 100), (71, 100)], "are too many"),
+        (
+            [block("door", *[insert("none", 0, 0, (70, 200), (71, 200))] * 40), block("none")],
+            [],
+            "entities with those of blocks",
+        ),
+        ([DOOR], [(41, "wide")], "'wide' is not a finite number"),
+    ],
+)
+def test_hostile_blocks_are_rejected(tmp_path, blocks, more, sentence):
+    with pytest.raises(TrialError, match=sentence):
+        read(tmp_path, with_blocks(drawing(insert("door", 0, 0, *more)), *blocks))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,10 +54,15 @@ def arguments(parser: CommandParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim, HuNavSim or the CrowdBot simulator (2021), a drawing (DXF), or a building"
-        " (.glb)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim, IR-SIM, Arena-Rosnav, Gazebo, JuPedSim or the CrowdBot simulator"
+        " (2021), a drawing (DXF), or a building (.glb)",
     )
-    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording that provides the people")
+    begin.add_argument(
+        "--recorded",
+        type=Path,
+        metavar="PATH",
+        help="recording that provides the people: a file, or a folder that is one recording",
+    )
     group.add_argument(
         "--root",
         type=Path,
@@ -167,11 +173,11 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     values = {name: value_for(options.recorded, getattr(options, name)) for name in ("fps", "units", "scale")}
     values |= {name: getattr(options, name) for name in ("format", "topic", "frame", "time_base", "agents")}
     values |= {"columns": " ".join(options.columns), "homography": options.homography and options.homography.name}
-    files = [file for file in (options.recorded, options.homography) if file is not None]
-    copied = [copy for file in files if (copy := _copy_beside(options, file)) is not None]
+    paths = [path for path in (options.recorded, options.homography) if path is not None]
+    copied = [copy for path in paths if (copy := _copy_beside(options, path)) is not None]
     try:
         trial = recorded_trial(
-            options.file.parent / options.recorded.name,
+            options.file.parent / options.recorded.resolve().name,
             mode="reactive" if options.reactive else "scripted",
             replace=options.replace,
             name=options.file.stem,
@@ -179,7 +185,7 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
         )
     except InputError:
         for copy in copied:
-            copy.unlink()
+            _remove(copy)
         raise
     for copy in copied:
         note(f"copied {copy.name} to the folder of the trial, since a trial reads only files in its folder")
@@ -188,27 +194,40 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     return trial
 
 
-def _copy_beside(options: argparse.Namespace, file: Path) -> Path | None:
-    """Copy a file to the folder of the trial and return the copy; None if it is there."""
+def _copy_beside(options: argparse.Namespace, path: Path) -> Path | None:
+    """Copy a file, or the files of a folder, to the folder of the trial and return the copy; None if it is there."""
     from crowdbot.core import InputError, explain_write_errors
+    from crowdbot.data import folder_files
 
-    if not file.is_file():
-        raise InputError(f"there is no file {file.name!r} in {file.parent}")
-    beside: Path = options.file.parent / file.name
-    if beside.resolve() == file.resolve():
+    if not (path.is_file() or path.is_dir()):
+        raise InputError(f"there is no file {path.name!r} in {path.parent}")
+    beside: Path = options.file.parent / path.resolve().name
+    if beside.resolve() == path.resolve():
         return None
+    pairs = [(path, beside)] if path.is_file() else [(file, beside / file.name) for file in folder_files(path)]
     if beside.exists():
-        if beside.read_bytes() != file.read_bytes():
+        held = [beside] if beside.is_file() else folder_files(beside)
+        if held != [copy for _, copy in pairs] or any(copy.read_bytes() != file.read_bytes() for file, copy in pairs):
             raise InputError(f"{beside} exists with a different content; write the trial to another folder")
         return None
-    data = file.read_bytes()
     try:
         with explain_write_errors(beside):
-            beside.write_bytes(data)
+            if path.is_dir():
+                beside.mkdir()
+            for file, copy in pairs:
+                copy.write_bytes(file.read_bytes())
     except InputError:
-        beside.unlink(missing_ok=True)
+        _remove(beside)
         raise
     return beside
+
+
+def _remove(copy: Path) -> None:
+    """Remove a copy of a file or a folder."""
+    if copy.is_dir():
+        shutil.rmtree(copy)
+    else:
+        copy.unlink(missing_ok=True)
 
 
 def _import_trials(options: argparse.Namespace) -> None:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "add_file_options",
     "add_recordings",
+    "check_no_file_options",
     "check_parts",
     "horizon",
     "print_notes",
@@ -125,6 +126,16 @@ def value_for(path: Path | str, pairs: Sequence[tuple[str, Any]] | None) -> Any:
     [25.0, 29.97]
     """
     return next((value for part, value in reversed(pairs or ()) if part in str(path)), None)
+
+
+def check_no_file_options(options: argparse.Namespace, recordings: str) -> None:
+    """Raise :class:`InputError` if an option of :func:`add_file_options` is given without the recordings it is for."""
+    from crowdbot.core import InputError
+    from crowdbot.data import FILE_OPTIONS
+
+    for name in FILE_OPTIONS:
+        if name not in ("time_base", "agents") and getattr(options, name):
+            raise InputError(f"--{name.replace('_', '-')} is for recordings; give {recordings}")
 
 
 def check_parts(options: argparse.Namespace, paths: Sequence[Path]) -> None:

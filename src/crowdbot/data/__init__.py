@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
     from .recording import Recording
+    from .source import folder_files
     from .track_writers import save
     from .trajectories import PrimaryScene, Trajectories
     from .trajnet_scenes import TRAJNET_CATEGORIES, primary_windows, scenes_of_category
@@ -50,6 +51,7 @@ __getattr__, __dir__ = lazy_exports(
         "readers.time_base": ["RowRateError"],
         "readers.ucy": ["UCY_TO_METRES"],
         "recording": ["Recording"],
+        "source": ["folder_files"],
         "track_writers": ["save"],
         "trajectories": ["PrimaryScene", "Trajectories"],
         "walkable": ["walkable_rings"],
@@ -83,6 +85,7 @@ __all__ = [
     "detect_format",
     "example_windows",
     "fill_gaps",
+    "folder_files",
     "has_summary",
     "load",
     "observed_velocity",

@@ -58,6 +58,7 @@ def resample(tracks: Tracks, dt: float, gap: float | None) -> Tracks:
         robots=tracks.robots & left,
         labels={key: label for key, label in tracks.labels.items() if key in left},
         scenes=(),
+        clock_origin=tracks.clock_origin if whole else float(tracks.clock[0]),
     )
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
 
-__all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "parse_errors"]
+__all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "folder_files", "parse_errors"]
 
 MAX_BYTES = 2 * 1024**3
 """Largest file [bytes]."""
@@ -24,7 +24,10 @@ MAX_UNPACKED = 512 * 1024**2
 """Largest text in a gzip file [bytes]."""
 MAX_ROWS = 20_000_000
 """Largest number of rows of a table, compressed or not."""
+MOST_FILES = 100_000
+"""Largest number of files of a folder."""
 HEAD = 64 * 1024
+DIGITS = re.compile(r"(\d+)")
 GZIP = b"\x1f\x8b"
 
 MAGIC = {
@@ -139,6 +142,26 @@ class Source:
         if values.shape != (len(lines), columns):
             raise DataError(_describe_first_error(self.name, lines, line, columns))
         return values, line
+
+
+def folder_files(folder: Path) -> list[Path]:
+    """The files of a folder that is one recording, ordered by the numbers in their names, without hidden ones.
+
+    Raises:
+        DataError: the folder has none, too many, or too many bytes.
+    """
+    try:
+        files = [path for path in folder.iterdir() if path.is_file() and not path.name.startswith((".", "_"))]
+        size = sum(path.stat().st_size for path in files)
+    except OSError as error:
+        raise DataError(f"the folder {folder} cannot be read: {error.strerror}") from None
+    if not files:
+        raise DataError(f"the folder {folder} has no files")
+    if len(files) > MOST_FILES or size > MAX_BYTES:
+        raise DataError(
+            f"the folder {folder} has {len(files)} files of {size} bytes, at most {MOST_FILES} of {MAX_BYTES} are read"
+        )
+    return sorted(files, key=lambda path: [part.zfill(20) for part in DIGITS.split(path.name)])
 
 
 @contextlib.contextmanager

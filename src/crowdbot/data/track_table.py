@@ -51,6 +51,7 @@ class TrackTable:
     walls: tuple[Floats, ...] = ()
     labels: Mapping[int, str] = field(default_factory=dict)
     scenes: tuple[PrimaryScene, ...] = ()
+    clock_origin: float = 0.0
 
     def __post_init__(self) -> None:
         columns: dict[str, Any] = {
@@ -103,6 +104,14 @@ class TrackTable:
     def time(self) -> Floats:
         """``[N]`` time since the first frame [s]."""
         return np.asarray((self.frame - self.frame[0]) / self.frame_step / self.row_rate)
+
+    @property
+    def clock(self) -> Floats:
+        """``[N]`` time on the clock of the file [s]: ``clock_origin + frame / fps``.
+
+        Files of one run that are recorded with one clock are aligned by it.
+        """
+        return np.asarray(self.clock_origin + self.frame / self.frame_step / self.row_rate)
 
     @property
     def position(self) -> Floats:

@@ -83,7 +83,7 @@ def _write_csv(tracks: Trajectories, file: IO[bytes]) -> None:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["id", "frame", "time", f"x{unit}", f"y{unit}", *(["label"] if labels else [])])
-    columns = [values.tolist() for values in (tracks.id, tracks.frame, tracks.time, tracks.x, tracks.y)]
+    columns = [values.tolist() for values in (tracks.id, tracks.frame, tracks.clock, tracks.x, tracks.y)]
     if labels:
         columns.append([labels.get(id, "") for id in columns[0]])
     writer.writerows(zip(*columns, strict=True))
@@ -98,7 +98,7 @@ def _write_parquet(tracks: Trajectories, file: IO[bytes]) -> None:
     columns: dict[str, Any] = {
         "id": tracks.id,
         "frame": tracks.frame,
-        "time": tracks.time,
+        "time": tracks.clock,
         "x": tracks.x,
         "y": tracks.y,
     }

@@ -67,6 +67,7 @@ class Trajectories(TrackTable):
         walls: rings ``[N, 2]`` around areas that are not walkable, as in :class:`crowdbot.core.Walls`.
         labels: class of a track (``Pedestrian``, ``Biker``) by id, where the file has one.
         scenes: the scenes of a TrajNet++ file.
+        clock_origin: time of frame 0 on the clock of the file [s]; 0 without a column of times.
 
     Raises:
         DataError: there are no rows, a coordinate is not finite, a (frame, id) pair is duplicated, columns differ in

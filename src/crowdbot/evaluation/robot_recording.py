@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, check_number
-from crowdbot.data import Trajectories, load
+from crowdbot.data import Recording, Trajectories
 from crowdbot.metrics import AgentLog, NavigationMetrics, RobotLog, log_metrics
 
 from .run_metrics import REGIONS
@@ -76,8 +77,8 @@ class RobotRecording:
 
 
 def load_robot_recording(
-    path: Path | str,
-    robot_file: Path | str | None = None,
+    path: Path | str | Recording,
+    robot_file: Path | str | Recording | None = None,
     *,
     robot: int | None = None,
     radius: float = 0.3,
@@ -86,9 +87,7 @@ def load_robot_recording(
     mass: float = math.nan,
     height: float = math.nan,
     step: float = 0.1,
-    fps: float | None = None,
-    format: str | None = None,
-    units: str | None = None,
+    **options: Any,
 ) -> RobotRecording:
     """Load a recording of a robot among people.
 
@@ -97,14 +96,17 @@ def load_robot_recording(
     Args:
         path: recording of people, and of the robot unless ``robot_file`` has it; any format
             of :func:`crowdbot.data.load`.
-        robot_file: recording of the robot, with the same frames.
+        robot_file: recording of the robot, on the same clock: with the same times, or the same frames in files without
+            times.
         robot: id of the robot (default: the robot of the recording, or the only track of ``robot_file``).
         radius: radius of the robot [m].
         goal: goal of the robot [m] (default: its last position).
         tolerance: distance below which the goal is reached [m].
         mass, height: of the robot [kg], [m], for severities.
         step: time step of the log [s].
-        fps, format, units: see :func:`crowdbot.data.load`.
+        options: how paths are read, fields of :class:`crowdbot.data.Recording`: ``fps``, ``format``, ``units``,
+            ``columns``, ``transform``, ... A :class:`crowdbot.data.Recording` has its own. Cyclists and cars count as
+            people unless ``agents="pedestrians"``.
 
     Raises:
         InputError: a number is out of range.
@@ -112,11 +114,13 @@ def load_robot_recording(
     """
     check_number("recording", "radius", radius, "m", exclusive_min=0.0)
     check_number("recording", "step", step, "s", exclusive_min=0.0)
-    people = _metres(load(path, fps, format, units))
-    vehicle = people if robot_file is None else _metres(load(robot_file, fps, format, units))
+    source, *other = (_recording(one, options) for one in (path, robot_file) if one is not None)
+    people = _metres(source.original)
+    vehicle = _metres(other[0].original) if other else people
     who = _robot_id(vehicle, robot, robot_file is not None)
     own = np.flatnonzero(vehicle.id == who)
-    times = vehicle.frame[own] / vehicle.fps
+    start = vehicle.clock[own[0]]
+    times = vehicle.clock[own] - start
     moments = times[0] + step * np.arange(math.floor((times[-1] - times[0]) / step + 1e-6) + 1)
     if len(moments) < 3:
         raise DataError(
@@ -127,14 +131,20 @@ def load_robot_recording(
         rows = np.flatnonzero(people.id == one)
         if one in people.robots or (robot_file is None and one == who):
             continue
-        tracks.append((people.frame[rows] / people.fps, people.position[rows]))
+        tracks.append((people.clock[rows] - start, people.position[rows]))
     agents, ends = _agents(tracks, moments, radius)
     end = agents.position[-1, 0] if goal is None else np.asarray(goal, dtype=np.float64)
-    return RobotRecording(Path(path).stem, agents, ends, radius, end, tolerance, mass, height, tuple(people.walls))
+    return RobotRecording(
+        Path(source.path).stem, agents, ends, radius, end, tolerance, mass, height, tuple(people.walls)
+    )
+
+
+def _recording(path: Path | str | Recording, options: dict[str, Any]) -> Recording:
+    return path if isinstance(path, Recording) else Recording(str(path), **{"agents": "all", **options})
 
 
 def _metres(tracks: Trajectories) -> Trajectories:
-    return tracks if tracks.units == "m" and tracks.homography is None else tracks.metres()
+    return tracks if tracks.units == "m" else tracks.metres()
 
 
 def _robot_id(vehicle: Trajectories, robot: int | None, alone: bool) -> int:

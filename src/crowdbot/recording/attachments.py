@@ -29,6 +29,7 @@ from crowdbot.trials import (
     is_code,
     map_files,
     outline,
+    recording_files,
     resolve_file,
     trial_bodies,
     trial_clips,
@@ -120,7 +121,8 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
         for name, path in map_files(stage.map, stage.folder, stage.trust).items():
             found[name] = DATA, path
     for one in trial.recorded:
-        found[one.data] = DATA, resolve_file(one.data, one.folder, one.trust)
+        for name, path in recording_files(one.data, one.folder, one.trust).items():
+            found[name] = DATA, path
     for thing in _parts(trial):
         if hasattr(thing, "files"):
             for path in thing.files():

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .files.code_references import code_digest, code_references, is_code
     from .files.layout_file import builtin_stages, load_layout
     from .files.stage_maps import is_area_file, map_files
-    from .files.trial_files import resolve_file
+    from .files.trial_files import recording_files, resolve_file
     from .ground.door import Door
     from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
     from .ground.plan import floor_plan
@@ -93,7 +93,7 @@ __getattr__, __dir__ = lazy_exports(
         "files.code_references": ["code_digest", "code_references", "is_code"],
         "files.layout_file": ["builtin_stages", "load_layout"],
         "files.stage_maps": ["is_area_file", "map_files"],
-        "files.trial_files": ["resolve_file"],
+        "files.trial_files": ["recording_files", "resolve_file"],
         "ground.door": ["Door"],
         "ground.plan": ["floor_plan"],
         "ground.text_plan": ["floor_plan_of_xml"],
@@ -283,6 +283,7 @@ __all__ = [
     "read_trial_bytes",
     "readable",
     "recorded_trial",
+    "recording_files",
     "remarks_at_end",
     "remove_element",
     "replace_robot",

@@ -19,7 +19,7 @@ from crowdbot.data import FILE_OPTIONS, parse_columns, split_columns
 
 from .distribution import Distribution
 from .fields import FieldProblem, attribute, check, quote_value
-from .files.trial_files import resolve_file
+from .files.trial_files import recording_files, resolve_file, resolve_recording
 from .people import BODY_RADIUS
 
 if TYPE_CHECKING:
@@ -56,7 +56,10 @@ class RecordedPeople:
     """
 
     name: str = attribute("", about="name for messages")
-    data: str = attribute(about="recording file in the folder of the trial", pattern=r"[^\x00]{1,500}")
+    data: str = attribute(
+        about="recording in the folder of the trial: a file, or a folder that is one recording",
+        pattern=r"[^\x00]{1,500}",
+    )
     fps: float | None = attribute(None, about=FILE_OPTIONS["fps"].about, unit="1/s", exclusive_min=0.0)
     format: str = attribute("", about=FILE_OPTIONS["format"].about)
     units: str = attribute("", about=FILE_OPTIONS["units"].about, choices=("", "m", "cm", "mm", "ft", "px", "deg"))
@@ -102,7 +105,7 @@ class RecordedPeople:
             found.append((("scale", "homography"), "scale and homography are given; coordinates have one scale"))
         try:
             if "data" in values:
-                resolve_file(values["data"], values["folder"], values["trust"])
+                resolve_recording(values["data"], values["folder"], values["trust"])
         except InputError as error:
             found.append((("data",), f"data={quote_value(values['data'])} {error}"))
         return found
@@ -112,15 +115,15 @@ class RecordedPeople:
         return _ids(self.exclude)
 
     def tracks(self) -> Trajectories:
-        """Return the recording in metres; the file is read once.
+        """Return the recording in metres; its files are read once.
 
         Raises:
             InputError: there is no such file in the folder of the trial.
             DataError: it cannot be read.
         """
-        path = resolve_file(self.data, self.folder, self.trust)
-        stamp = path.stat()
-        return _load(self.recording(path), stamp.st_mtime_ns, stamp.st_size)
+        path = resolve_recording(self.data, self.folder, self.trust)
+        stamps = [file.stat() for file in recording_files(self.data, self.folder, self.trust).values()]
+        return _load(self.recording(path), tuple((stamp.st_mtime_ns, stamp.st_size) for stamp in stamps))
 
     def recording(self, path: Path) -> Recording:
         """Return a file with the options of the element.
@@ -188,8 +191,8 @@ def _ids(without: str) -> frozenset[int]:
 
 
 @functools.lru_cache(maxsize=4)
-def _load(recording: Recording, changed: int, size: int) -> Trajectories:
-    """Return a recording, which is read again only if its file has changed."""
+def _load(recording: Recording, stamps: tuple[tuple[int, int], ...]) -> Trajectories:
+    """Return a recording, which is read again only if a file of it has changed."""
     from crowdbot.data import RowRateError
 
     try:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output import add_json, note, print_json, print_robots, progress
+from crowdbot.cli.recordings import check_no_file_options
 from crowdbot.cli.settings import add_robots, add_seeds, add_settings, add_world
 
 from .again import print_worst, worst_lines, worst_values
@@ -83,6 +84,7 @@ def main(options: argparse.Namespace) -> int:
     requirements = [parse_requirement(text) for text in options.require]
     if options.logs or options.real or options.participants:
         return present_recordings(options)
+    check_no_file_options(options, "--logs or --real")
     if not options.trials:
         raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import number, print_json, print_table, progress
+from crowdbot.cli.recordings import add_file_options, check_no_file_options, check_parts, recording
 from crowdbot.cli.settings import settings
 
 if TYPE_CHECKING:
@@ -38,9 +39,7 @@ def add_recording_options(parser: CommandParser) -> None:
     add("--robot-mass", type=float, default=math.nan, metavar="KG", help="mass of the robot, for severities")
     add("--robot-height", type=float, default=math.nan, metavar="METRES", help="height of the robot, for severities")
     add("--goal", type=float, nargs=2, metavar=("X", "Y"), help="goal of the robot (default: its last position)")
-    add("--fps", type=float, metavar="FRAMES", help="frame rate of the frame column in Hz (default: from the file)")
-    add("--format", metavar="NAME", help="file format, see `crowdbot list formats` (default: detected)")
-    add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm or px (default: from the file)")
+    add_file_options(group, agents="all")
 
 
 def present_recordings(options: argparse.Namespace) -> int:
@@ -52,8 +51,11 @@ def present_recordings(options: argparse.Namespace) -> int:
         raise InputError(f"{' and '.join(given)} are given; evaluate takes trials, --logs, --real, or --participants")
     if options.sweep or options.require or options.disturbance or options.robots:
         raise InputError("--sweep, --require, --disturbance and --robots need trials, not recordings")
+    files = [Path(log) for log in (*options.logs, options.real, options.robot_file) if log]
     if options.participants:
+        check_no_file_options(options, "--logs or --real")
         return _compare_participants(options)
+    check_parts(options, files)
     if options.real:
         return _simulate(options)
     values = {log: _load(log, options).metrics() for log in options.logs}
@@ -80,17 +82,15 @@ def _compare_participants(options: argparse.Namespace) -> int:
 def _load(log: str, options: argparse.Namespace) -> RobotRecording:
     from crowdbot.evaluation import load_robot_recording
 
+    robot_file = None if options.robot_file is None else recording(options, Path(options.robot_file))
     return load_robot_recording(
-        log,
-        options.robot_file,
+        recording(options, Path(log)),
+        robot_file,
         robot=options.robot_id,
         radius=options.robot_radius,
         goal=options.goal,
         mass=options.robot_mass,
         height=options.robot_height,
-        fps=options.fps,
-        format=options.format,
-        units=options.units,
     )
 
 
@@ -117,12 +117,12 @@ def _simulate(options: argparse.Namespace) -> int:
 
     seeds = parse_seeds(options.seeds or "0:100")
     _check_runs(len(seeds), "seeds")
-    recording = _load(options.real, options)
-    real, results = recording.metrics(), []
+    robot_run = _load(options.real, options)
+    real, results = robot_run.metrics(), []
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if options.out is None else options.out
         for method in parse_methods(options.navigators):
-            trial = apply_values(recorded_trial(recording, folder, mirror=not method.type), settings(options))
+            trial = apply_values(recorded_trial(robot_run, folder, mirror=not method.type), settings(options))
             plan = EvaluationPlan([trial], [method], seeds=seeds)
             with progress(options.json) as report:
                 result = evaluate(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import add_json, print_json, print_table, progress
+from crowdbot.cli.recordings import check_no_file_options
 
 from .annotated_scans import is_annotated, score_annotated
 from .downstream import print_downstream, score_downstream
@@ -56,6 +57,7 @@ def main(options: argparse.Namespace) -> int:
         raise InputError("give a SOURCE, --scenes or --video, and only one of them")
     if options.video is not None:
         return track_from_video(options)
+    check_no_file_options(options, "--video with --truth")
     options.reach = options.reach or REACH
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")

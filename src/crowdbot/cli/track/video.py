@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import print_json, print_table, progress
+from crowdbot.cli.recordings import add_file_options, check_no_file_options, check_parts, recording
 
 from .tracker_choice import chosen_detectors, chosen_trackers
 
@@ -31,8 +32,10 @@ def add_video(parser: CommandParser) -> None:
     add("--odometry", type=Path, metavar="FILE", help="CSV of the robot: time, x, y, heading")
     add("--start", type=float, metavar="SECONDS", help="time of the first frame (default: first time of --odometry)")
     add("--steps", type=int, default=8, metavar="N", help="rows of 0.4 s of a forecast (default: 8)")
-    add("--truth", type=Path, metavar="FILE", help="CSV of true people: id, time, x, y (default: no scores)")
+    add("--truth", type=Path, metavar="FILE", help="recording of the true people, such as a CSV with id, time, x,"
+        " y, on the clock of --odometry (default: no scores)")  # fmt: skip
     add("--out", type=Path, metavar="DIR", help="folder for tracks.csv and forecasts.csv (default: none)")
+    add_file_options(parser.add_argument_group("recording of --truth"), agents="all")
 
 
 def track_from_video(options: argparse.Namespace) -> int:
@@ -55,7 +58,12 @@ def track_from_video(options: argparse.Namespace) -> int:
         raise InputError(f"--steps {options.steps} must be at least 1")
     detector: Any = next(iter(chosen_detectors(options).values()))
     tracker = next(iter(chosen_trackers(options).values()))
-    truth = None if options.truth is None else read_true_paths(options.truth)
+    if options.truth is None:
+        check_no_file_options(options, "--truth")
+        truth = None
+    else:
+        check_parts(options, [options.truth])
+        truth = read_true_paths(recording(options, options.truth))
     with progress(options.json) as report:
         run = track_video(
             options.video, read_camera(options.camera), read_odometry(options.odometry), detector, tracker,

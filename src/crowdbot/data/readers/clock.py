@@ -28,7 +28,7 @@ TOLERANCE = 1e-6
 
 
 class RegularRows(NamedTuple):
-    """Rows at regular times, with their frames from 0 on, frames per second [1/s], and a note."""
+    """Rows at regular times: frames from 0 on, frames per second [1/s], a note, and the time of frame 0 [s]."""
 
     id: Integers
     frame: Integers
@@ -36,6 +36,7 @@ class RegularRows(NamedTuple):
     y: Floats
     fps: float
     note: str
+    origin: float
 
 
 def regular_rows(
@@ -73,12 +74,13 @@ def regular_rows(
     frame, phase, fitted = _fit(since, dt, fps is None)
     off = float(np.max(np.abs(since - phase - frame * fitted)))
     if off > SNAP * fitted:
-        return _interpolated(id, since, x, y, dt, off, name)
+        return _interpolated(id, since, x, y, dt, off, name)._replace(origin=float(time.min()))
+    origin = float(time.min() + phase + frame.min() * fitted)
     frame -= frame.min()
     if fps is None and frame.max() > 0:
         fitted = float(since.max() / frame.max()) if off <= TOLERANCE * fitted else fitted
     note = f"times are up to {off:.2g} s off a regular step of {fitted:.4g} s" if off > TOLERANCE * fitted else ""
-    return RegularRows(id, frame.astype(np.int64), x, y, _short(1.0 / fitted), note)
+    return RegularRows(id, frame.astype(np.int64), x, y, _short(1.0 / fitted), note, origin)
 
 
 def row_rate_of_times(id: Integers, frame: Integers, time: Floats) -> float | None:
@@ -149,7 +151,7 @@ def _interpolated(id: Integers, since: Floats, x: Floats, y: Floats, dt: float, 
     if len(ids) == 0:
         raise DataError(f"{name}: no track has two rows within {BRIDGE * dt:.4g} s; times must be in seconds")
     note = f"times are irregular, up to {off:.2g} s off a step of {dt:.4g} s; positions are interpolated at this step"
-    return RegularRows(ids, frames, xs, ys, _short(1.0 / dt), note)
+    return RegularRows(ids, frames, xs, ys, _short(1.0 / dt), note, 0.0)
 
 
 def _short(rate: float) -> float:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 
 from crowdbot.core import DataError
-from crowdbot.data.source import MAX_BYTES, MAX_ROWS, Source
+from crowdbot.data.source import MAX_ROWS, Source, folder_files
 from crowdbot.data.trajectories import Trajectories
 
 from . import tables, wildtrack
@@ -18,29 +17,7 @@ from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
 
 __all__ = ["bag_file", "read_folder"]
 
-MOST_FILES = 100_000
 BAG_INFO, BAG_ENDINGS = "metadata.yaml", (".mcap", ".db3")
-DIGITS = re.compile(r"(\d+)")
-
-
-def _files(folder: Path) -> list[Path]:
-    """Return the files of a folder, ordered by the numbers in their names; hidden ones are left out.
-
-    Raises:
-        DataError: the folder has none, too many, or too many bytes.
-    """
-    try:
-        files = [path for path in folder.iterdir() if path.is_file() and not path.name.startswith((".", "_"))]
-        size = sum(path.stat().st_size for path in files)
-    except OSError as error:
-        raise DataError(f"the folder {folder} cannot be read: {error.strerror}") from None
-    if not files:
-        raise DataError(f"the folder {folder} has no files")
-    if len(files) > MOST_FILES or size > MAX_BYTES:
-        raise DataError(
-            f"the folder {folder} has {len(files)} files of {size} bytes, at most {MOST_FILES} of {MAX_BYTES} are read"
-        )
-    return sorted(files, key=lambda path: [part.zfill(20) for part in DIGITS.split(path.name)])
 
 
 def bag_file(folder: Path) -> Path | None:
@@ -51,7 +28,7 @@ def bag_file(folder: Path) -> Path | None:
     """
     if not (folder / BAG_INFO).is_file():
         return None
-    files = [path for path in _files(folder) if path.suffix in BAG_ENDINGS]
+    files = [path for path in folder_files(folder) if path.suffix in BAG_ENDINGS]
     if len(files) != 1:
         held = ", ".join(path.name for path in files[:10]) or "none"
         raise DataError(f"the bag {folder} must have one file of messages ({' or '.join(BAG_ENDINGS)}); it has {held}")
@@ -64,7 +41,7 @@ def read_folder(folder: Path, options: ReadOptions) -> Trajectories:
     Raises:
         DataError: they cannot be read, or are recordings of several persons.
     """
-    sources = [Source.of(path) for path in _files(folder)]
+    sources = [Source.of(path) for path in folder_files(folder)]
     if wildtrack.sniff(sources[0]):
         return wildtrack.read(sources[0], options)
     if GRAND_CENTRAL.sniff(sources[0]):

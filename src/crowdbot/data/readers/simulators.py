@@ -143,7 +143,8 @@ def read_viswalk(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(f"{source.name}: NO must be whole numbers")
     id, time, x, y = values.T
     kept = regular_rows(id.astype(np.int64), time, x, y, options.fps, source.name, line)
-    return assemble(source, options, id=kept.id, frame=kept.frame, x=kept.x, y=kept.y, fps=kept.fps, note=kept.note)
+    return assemble(source, options, id=kept.id, frame=kept.frame, x=kept.x, y=kept.y, fps=kept.fps, note=kept.note,
+                    clock_origin=kept.origin)  # fmt: skip
 
 
 VADERE = Reader("vadere", "Vadere .traj: footsteps, or positions by time step", sniff_vadere, read_vadere)

@@ -224,15 +224,25 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
         frame = integers(values["frame"], found["frame"], name, line)
         rate = row_rate_of_times(id, frame, values["time"]) if "time" in found else None
         rows: dict[str, Any] = {"id": id, "frame": frame, "x": values["x"], "y": values["y"], "row_rate": rate}
+        times = values.get("time")
         notes = "; ".join(filter(None, (one, renamed, remark)))
         seconds = seconds if options.fps is None else ""
     else:
         regular = regular_rows(id, values["time"], values["x"], values["y"], options.fps, name, line)
         rows = {"id": regular.id, "frame": regular.frame, "x": regular.x, "y": regular.y, "fps": regular.fps}
+        beside["clock_origin"], times = regular.origin, None
         line = line if regular.id is id else None  # positions that are interpolated are on no line
         notes = "; ".join(filter(None, (one, renamed, remark, regular.note)))
     evidence = FileColumns(seconds, found.get("height", ""), values.get("height"), named=True)
-    return assemble(source, options, line=line, columns=evidence, **{**rows, "note": notes, **beside, **extra})
+    tracks = assemble(source, options, line=line, columns=evidence, **{**rows, "note": notes, **beside, **extra})
+    if times is None:
+        return tracks
+    known_times = np.flatnonzero(np.isfinite(times))
+    if not len(known_times):
+        return tracks
+    first = int(known_times[0])
+    origin = float(times[first]) - float(rows["frame"][first]) / tracks.fps
+    return dataclasses.replace(tracks, clock_origin=origin)
 
 
 def _by_name(given: Mapping[str, str], names: list[str]) -> dict[str, str]:

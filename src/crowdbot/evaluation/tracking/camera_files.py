@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, Pose, SpatialPose, import_optional, parse_yaml
+from crowdbot.data import Recording
 from crowdbot.sensors import Lens
 
 __all__ = [
@@ -126,15 +127,23 @@ def read_odometry(file: Path | str) -> RobotOdometry:
     return RobotOdometry(rows[:, 0], rows[:, 1:3], np.unwrap(rows[:, 3]))
 
 
-def read_true_paths(file: Path | str) -> TruePaths:
-    """Read the true paths of people, a CSV file with the columns id, time [s], x and y [m].
+def read_true_paths(file: Path | str | Recording) -> TruePaths:
+    """Read the true paths of people at the times of the clock of the file.
+
+    Args:
+        file: a recording in any format of :func:`crowdbot.data.load`, such as a CSV file with the columns id, time [s],
+            x and y [m]; a :class:`crowdbot.data.Recording` says how it is read.
 
     Raises:
-        DataError: the file cannot be read, or a column is missing.
+        DataError: the file cannot be read, or is in pixels without a scale.
     """
-    rows = _read_rows(Path(file), ("id", "time", "x", "y"), "true paths")
-    rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
-    return TruePaths({int(who): rows[rows[:, 0] == who, 1:] for who in np.unique(rows[:, 0])})
+    recording = file if isinstance(file, Recording) else Recording(str(file), agents="all")
+    tracks = recording.original
+    if tracks.units != "m":
+        raise DataError(f"{recording.path} is in pixels; give --scale METRES or --homography FILE")
+    rows = np.column_stack([tracks.clock, tracks.position])
+    people = [who for who in tracks.ids.tolist() if who not in tracks.robots]
+    return TruePaths({who: rows[tracks.id == who] for who in people})
 
 
 def _read_rows(path: Path, names: tuple[str, ...], what: str) -> Floats:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from crowdbot.core import InputError
+from crowdbot.data import folder_files
 
-__all__ = ["read_beside", "resolve_file"]
+__all__ = ["read_beside", "recording_files", "resolve_file", "resolve_recording"]
 
 
 def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
@@ -20,16 +21,52 @@ def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
     Raises:
         InputError: the file lies outside the folder or does not exist.
     """
+    path = _inside(name, folder, trust)
+    if not path.is_file():
+        raise InputError(f"there is no file {name[:80]!r} in {folder or Path.cwd()}")
+    return path
+
+
+def resolve_recording(name: str, folder: Path | None, trust: bool) -> Path:
+    """Return the path of a recording that a trial names: a file, or a folder that is one recording.
+
+    Args:
+        name, folder, trust: see :func:`resolve_file`; they hold for each file of a folder.
+
+    Raises:
+        InputError: it does not exist, or a file of it lies outside the folder of the trial.
+        DataError: the folder has no files, or too many.
+    """
+    path = _inside(name, folder, trust)
+    if not path.is_dir():
+        return resolve_file(name, folder, trust)
+    recording_files(name, folder, trust)
+    return path
+
+
+def recording_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
+    """Return the paths of the files of a recording by their names in the trial.
+
+    Raises:
+        InputError, DataError: as :func:`resolve_recording`.
+    """
+    path = _inside(name, folder, trust)
+    if not path.is_dir():
+        return {name: resolve_file(name, folder, trust)}
+    names = [f"{name.rstrip('/')}/{file.name}" for file in folder_files(path)]
+    return {file: resolve_file(file, folder, trust) for file in names}
+
+
+def _inside(name: str, folder: Path | None, trust: bool) -> Path:
+    """Return the path of a file or folder, which may be missing."""
     root = folder or Path.cwd()
     try:
         path = (root / name).resolve()
-        there = path.is_file()
+        path.is_file()
     except (OSError, ValueError, RuntimeError):
         raise InputError(f"{name[:80]!r} is not a file name") from None
     if not trust and not path.is_relative_to(root.resolve()):
         raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
-    if not there:
-        raise InputError(f"there is no file {name[:80]!r} in {root}")
     return path
 
 

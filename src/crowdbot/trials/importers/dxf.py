@@ -1,4 +1,4 @@
-"""Stages from drawings in DXF (ASCII): lines, polylines, arcs and circles become thin walls.
+"""Stages from drawings in DXF (ASCII): lines, polylines, arcs and circles become thin walls, also those in blocks.
 
 The format is that of the AutoCAD DXF reference: pairs of lines with a group code and a value. Entities of the model
 space are read, in the unit of ``$INSUNITS``.
@@ -31,6 +31,10 @@ MOST_BYTES = 64_000_000
 MOST_ENTITIES = 50_000
 MOST_WALLS = 10_000
 MOST_CORNERS = 200_000
+MOST_DEPTH = 16
+"""Levels of blocks in blocks."""
+MOST_INSERTED = 200_000
+"""Largest number of entities with those of blocks, each time that a block is inserted."""
 FARTHEST = 1e6
 UNITS = {"in": 0.0254, "ft": 0.3048, "mm": 0.001, "cm": 0.01, "m": 1.0, "km": 1000.0}
 """Units by name [m]."""
@@ -62,6 +66,43 @@ class DxfEntity:
     def text(self, code: int, otherwise: str = "") -> str:
         """Return the first value of a group code."""
         return next((group.value.strip() for group in self.groups if group.code == code), otherwise)
+
+
+class BlockPlacement(NamedTuple):
+    """Map ``x' = a x + c y + e``, ``y' = b x + d y + f`` from the coordinates of a block to those of the drawing."""
+
+    a: float = 1.0
+    b: float = 0.0
+    c: float = 0.0
+    d: float = 1.0
+    e: float = 0.0
+    f: float = 0.0
+
+    def of(self, x: float, y: float) -> tuple[float, float]:
+        """A point of the block in the drawing.
+
+        >>> BlockPlacement(e=2.0).of(1.0, 5.0)
+        (3.0, 5.0)
+        """
+        return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
+
+    def after(self, inner: BlockPlacement) -> BlockPlacement:
+        """The map of a block that is inserted by ``inner`` into the block of this map."""
+        (a, b), (c, d) = ((self.a * u + self.c * v, self.b * u + self.d * v) for u, v in (inner[:2], inner[2:4]))
+        return BlockPlacement(a, b, c, d, *self.of(inner.e, inner.f))
+
+    @property
+    def stretch(self) -> float:
+        """Largest factor by which it lengthens a unit vector along an axis."""
+        return max(math.hypot(self.a, self.b), math.hypot(self.c, self.d))
+
+
+class PlacedEntity(NamedTuple):
+    """An entity with its layer and the map of the block that it is in."""
+
+    entity: DxfEntity
+    layer: str
+    placement: BlockPlacement
 
 
 def is_dxf(data: bytes) -> bool:
@@ -134,6 +175,8 @@ class _Reader:
         self.notes: dict[str, None] = {}
         sections = _sections(path, groups)
         self.entities = _entities(path, sections.get("ENTITIES", []))
+        self.blocks = _blocks(_entities(path, sections.get("BLOCKS", [])))
+        self.inserted = 0
         tables = _entities(path, sections.get("TABLES", []))
         self.hidden = {one.text(2) for one in tables if one.kind == "LAYER" and self._is_hidden(one)}
         self.scale = self._unit(sections.get("HEADER", []), unit)
@@ -141,8 +184,8 @@ class _Reader:
 
     def trial(self, layers: Collection[str]) -> Trial:
         """Return the trial."""
-        shapes = [one for one in self.entities if one.text(67, "0") == "0"]
-        known = sorted({one.text(8, "0") for one in shapes if one.kind in KINDS})
+        shapes = list(self._placed(self.entities, "", BlockPlacement(), 0))
+        known = sorted({one.layer for one in shapes if one.entity.kind in KINDS})
         for layer in layers:
             if layer not in known:
                 some = ", ".join(known[:20]) or "none"
@@ -154,9 +197,9 @@ class _Reader:
                 self.notes[f"layer {layer[:60]}: {why}"] = None
         rings: dict[Ring, None] = {}
         for one in shapes:
-            if one.kind not in KINDS:
-                self.notes[f"entities {one.kind[:40]} are not imported"] = None
-            elif one.text(8, "0") in chosen:
+            if one.entity.kind not in KINDS:
+                self.notes[f"entities {one.entity.kind[:40]} are not imported"] = None
+            elif one.layer in chosen:
                 ring = self._ring(one)
                 rings |= dict.fromkeys([ring] if len(set(ring)) > 1 else [])
         if not rings:
@@ -175,6 +218,66 @@ class _Reader:
             crowd=ORCA(),
             end=End(goal=False, collision=False),
         )
+
+    def _placed(
+        self, entities: Sequence[DxfEntity], layer: str, placement: BlockPlacement, depth: int
+    ) -> Iterator[PlacedEntity]:
+        """Yield the entities of the model space with those of the blocks that are inserted.
+
+        Args:
+            entities: of the drawing, or of a block.
+            layer: layer of the block, which entities of a block on layer 0 have.
+            placement: of the block.
+            depth: levels of blocks.
+        """
+        for entity in entities:
+            if depth == 0 and entity.text(67, "0") != "0":
+                continue  # paper space
+            own = entity.text(8, "0")
+            own = layer if layer and own == "0" else own
+            self._count(entity)
+            if entity.kind != "INSERT":
+                yield PlacedEntity(entity, own, placement)
+                continue
+            name = entity.text(2)
+            block = self.blocks.get(name)
+            if block is None or int(self._value(block[0], 70, 0.0)) & 4:
+                why = "is not in the file" if block is None else "is in another file"
+                self.notes[f"the block {name[:60]!r} {why} and is left out"] = None
+                continue
+            if depth >= MOST_DEPTH:
+                raise TrialError(f"{self.path}:{entity.line}: blocks are nested more than {MOST_DEPTH} levels deep")
+            for inner in self._insertions(entity, block[0]):
+                self._count(entity)  # copies of an empty block take time, too
+                yield from self._placed(block[1], own, placement.after(inner), depth + 1)
+
+    def _count(self, entity: DxfEntity) -> None:
+        self.inserted += 1
+        if self.inserted > MOST_INSERTED:
+            raise TrialError(
+                f"{self.path}:{entity.line}: more than {MOST_INSERTED} entities with those of blocks are too many"
+            )
+
+    def _insertions(self, insert: DxfEntity, block: DxfEntity) -> Iterator[BlockPlacement]:
+        """Yield the map of each copy of a block; none if it is not horizontal."""
+        side = self._side(insert)
+        if side == 0.0:
+            return
+        scale_x, scale_y = self._value(insert, 41, 1.0), self._value(insert, 42, 1.0)
+        turn = math.radians(math.fmod(self._value(insert, 50, 0.0), 360.0))
+        x, y = self._value(insert, 10), self._value(insert, 20)
+        base_x, base_y = self._value(block, 10, 0.0), self._value(block, 20, 0.0)
+        columns, rows = (max(1, int(self._value(insert, code, 1.0))) for code in (70, 71))
+        if columns * rows > MOST_ENTITIES:
+            raise TrialError(f"{self.path}:{insert.line}: {columns * rows} copies of a block are too many")
+        cos, sin = math.cos(turn), math.sin(turn)
+        for row, column in itertools.product(range(rows), range(columns)):
+            u = column * self._value(insert, 44, 0.0) - scale_x * base_x
+            v = row * self._value(insert, 45, 0.0) - scale_y * base_y
+            yield BlockPlacement(
+                side * cos * scale_x, sin * scale_x, -side * sin * scale_y, cos * scale_y,
+                side * (x + cos * u - sin * v), y + sin * u + cos * v,
+            )  # fmt: skip
 
     def _note_size(self, rings: Collection[Ring]) -> None:
         """Note a size that no hall has: editors often leave a unit in the header that is not that of the drawing."""
@@ -213,23 +316,24 @@ class _Reader:
         frozen = flags is not None and int(self._number(flags)) & 1
         return bool(frozen) or (color is not None and self._number(color) < 0.0)
 
-    def _ring(self, one: DxfEntity) -> Ring:
+    def _ring(self, placed: PlacedEntity) -> Ring:
         """Return the points of an entity [m]; a closed one ends at its first point. Empty if it cannot be a wall."""
+        one, unit = placed.entity, self.scale * placed.placement.stretch
         if one.kind == "LINE":
             points = [(self._value(one, 10), self._value(one, 20)), (self._value(one, 11), self._value(one, 21))]
-            return self._points(one, points, 1.0)
+            return self._points(placed, points, 1.0)
         side = self._side(one)
         if side == 0.0:
             return ()
         if one.kind in ("LWPOLYLINE", "POLYLINE"):
-            return self._points(one, self._polyline(one), side)
+            return self._points(placed, self._polyline(one, unit), side)
         center, radius = (self._value(one, 10), self._value(one, 20)), self._value(one, 40)
         if radius <= 0.0:
             raise TrialError(f"{self.path}:{one.line}: the radius {radius:g} of {one.kind} must be above 0")
         begin, end = (0.0, 360.0) if one.kind == "CIRCLE" else (self._value(one, 50), self._value(one, 51))
-        return self._points(one, arc_points(center, radius, begin, end, self.scale), side)
+        return self._points(placed, arc_points(center, radius, begin, end, unit), side)
 
-    def _polyline(self, one: DxfEntity) -> list[tuple[float, float]]:
+    def _polyline(self, one: DxfEntity, unit: float) -> list[tuple[float, float]]:
         """Return the points of a polyline, with arcs for its bulges."""
         flags = int(self._value(one, 70, 0.0))
         if one.kind == "POLYLINE":
@@ -247,7 +351,7 @@ class _Reader:
                     x, y, bulge = rows[-1]
                     value = self._number(group)
                     rows[-1] = (x, value, bulge) if group.code == 20 else (x, y, value)
-        return bulge_points(rows, bool(flags & 1), self.scale)
+        return bulge_points(rows, bool(flags & 1), unit)
 
     def _side(self, one: DxfEntity) -> float:
         """Return 1, -1 for an entity that is drawn from below, 0 for one that is not horizontal."""
@@ -257,10 +361,11 @@ class _Reader:
             return 0.0
         return -1.0 if z < 0.0 else 1.0
 
-    def _points(self, one: DxfEntity, points: Sequence[tuple[float, float]], side: float) -> Ring:
-        found: list[tuple[float, float]] = []
-        for x, y in points:
-            spot = (round(side * x * self.scale, 6), round(y * self.scale, 6))
+    def _points(self, placed: PlacedEntity, points: Sequence[tuple[float, float]], side: float) -> Ring:
+        one, found = placed.entity, list[tuple[float, float]]()
+        for u, v in points:
+            x, y = placed.placement.of(side * u, v)
+            spot = (round(x * self.scale, 6), round(y * self.scale, 6))
             if not max(abs(spot[0]), abs(spot[1])) <= FARTHEST:
                 raise TrialError(f"{self.path}:{one.line}: {one.kind} is more than {FARTHEST:g} m from the origin")
             if not found or found[-1] != spot:
@@ -302,6 +407,20 @@ def _sections(path: Path, groups: list[DxfGroup]) -> dict[str, list[DxfGroup]]:
             now.append(group)
     if "ENTITIES" not in found:
         raise TrialError(f"{path} has no section ENTITIES: it is not a drawing in DXF")
+    return found
+
+
+def _blocks(entities: Sequence[DxfEntity]) -> dict[str, tuple[DxfEntity, list[DxfEntity]]]:
+    """Return the head and the entities of each block by name."""
+    found: dict[str, tuple[DxfEntity, list[DxfEntity]]] = {}
+    now: list[DxfEntity] | None = None
+    for entity in entities:
+        if entity.kind == "BLOCK":
+            now = found.setdefault(entity.text(2), (entity, []))[1]
+        elif entity.kind == "ENDBLK":
+            now = None
+        elif now is not None:
+            now.append(entity)
     return found
 
 

@@ -1,0 +1,285 @@
+"""Trials from worlds of Gazebo (SDF): boxes, cylinders, spheres and outlines become solid, actors become people.
+
+The format is that of http://sdformat.org. Gazebo Classic (``.world``) and Gazebo (``.sdf``) are read.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Element, InputError
+from crowdbot.models import CrowdModel, SocialForce
+from crowdbot.trials.files.trial_files import resolve_file
+from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.world import frame, roll_pitch_yaw
+
+from .original import ImportedTrial
+from .scene_parts import ImportedScene, as_number, circle
+
+__all__ = ["import_gazebo"]
+
+Floats = NDArray[np.float64]
+LOW, HIGH = 0.1, 1.8
+"""Heights [m] between which a solid is in the way of people."""
+MOST_FILES, MOST_DEPTH = 200, 5
+STILL = 1e-3
+"""Distance [m] between waypoints at which a person waits."""
+NOTHING = ("sun", "ground_plane")
+"""Included models without walls."""
+SILENT = {
+    "gravity", "physics", "scene", "gui", "light", "state", "magnetic_field", "atmosphere", "wind", "audio",
+    "spherical_coordinates", "plugin", "model", "actor", "include", "name", "world", "frame",
+}  # fmt: skip
+"""Elements of a world that are imported, or that change no wall and no person."""
+
+
+def import_gazebo(path: str | Path) -> ImportedTrial:
+    """Read a world of Gazebo (root element ``sdf`` or ``gazebo`` with a ``world``).
+
+    The collisions of models that are between 0.1 and 1.8 m above the ground become solid. Included models are read if
+    they are beside the file, as ``NAME/model.sdf`` or ``models/NAME/model.sdf``. Actors walk from waypoint to waypoint
+    at their mean speed.
+
+    Raises:
+        TrialError: the file is missing or malformed, or nothing in it can be imported.
+    """
+    path = Path(path)
+    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    scene = ImportedScene(path, "Gazebo")
+    worlds = root.each("world")
+    if root.tag not in ("sdf", "gazebo") or not worlds:
+        raise scene.error("is not a world of Gazebo: it has no <world> in <sdf>")
+    if len(worlds) > 1:
+        scene.note(f"the file has {len(worlds)} worlds: the first is imported")
+    with scene.named_errors():
+        return _Reader(scene).trial(worlds[0])
+
+
+class _Reader:
+    """Converts a world."""
+
+    def __init__(self, scene: ImportedScene) -> None:
+        self.scene, self.files = scene, 0
+
+    def trial(self, world: Element) -> ImportedTrial:
+        """The trial."""
+        for part in world.children:
+            if part.tag not in SILENT:
+                self.scene.note(f"<{part.tag[:40]}> in line {part.line} is not imported")
+            elif part.tag == "plugin":
+                self.scene.note(f"the plugin {_name(part)} is not imported")
+        ground = np.eye(4)
+        for part in world.children:
+            if part.tag == "model":
+                self._model(part, ground, 0)
+            elif part.tag == "include":
+                self._include(part, ground, 0)
+        for part in world.each("actor"):
+            self._actor(part)
+        crowd: CrowdModel = SocialForce()
+        self.scene.note("actors do not avoid anybody in Gazebo: here people have the social force model")
+        return self.scene.trial(crowd=crowd)
+
+    def _pose(self, part: Element) -> Floats:
+        """Frame ``[4, 4]`` of an element in its parent; a frame of another element is noted."""
+        pose = next(iter(part.each("pose")), None)
+        if pose is None:
+            return np.eye(4)
+        other = pose.attributes.get("relative_to") or pose.attributes.get("frame")
+        if other and other not in ("world", "__model__"):
+            self.scene.note(f"the pose in line {pose.line} is relative to {other[:40]!r}, and is read in its parent")
+        words = pose.stray.split() or ["0"] * 6
+        if len(words) != 6:
+            raise self.scene.error(f"line {pose.line}: <pose> has {len(words)} numbers, it needs x y z roll pitch yaw")
+        values = [as_number(word, f"line {pose.line}: <pose>") for word in words]
+        if pose.attributes.get("degrees", "false") in ("true", "1"):
+            values[3:] = [math.radians(value) for value in values[3:]]
+        return np.asarray(frame(tuple(values[:3]), roll_pitch_yaw(*values[3:])), dtype=np.float64)
+
+    def _include(self, part: Element, parent: Floats, depth: int) -> None:
+        """Add an included model whose file is beside the world."""
+        uri = next((one.stray.strip() for one in part.each("uri")), "")
+        model = uri.rpartition("model://")[2].rstrip("/")
+        name = next((one.stray.strip() for one in part.each("name")), "") or model
+        if model.rpartition("/")[2] in NOTHING:
+            return
+        self.files += 1
+        if self.files > MOST_FILES or depth >= MOST_DEPTH:
+            raise self.scene.error(
+                f"more than {MOST_FILES} included models, or {MOST_DEPTH} levels of them, are too many"
+            )
+        folder = self.scene.path.resolve().parent
+        for file in (f"{model}/model.sdf", f"models/{model}/model.sdf", f"../models/{model}/model.sdf"):
+            if not uri.startswith("model://") or ".." in model:
+                break
+            try:
+                found = resolve_file(file, folder, trust=False)
+            except InputError:
+                continue
+            root = parse_trial_xml(read_trial_bytes(found), str(found))
+            frame_of_model = parent @ self._pose(part)
+            for inner in root.each("model"):
+                self._model(inner, frame_of_model, depth + 1, name)
+            return
+        self.scene.note(f"the included model {name[:60]!r} is left out: its file is not beside the world")
+
+    def _model(self, model: Element, parent: Floats, depth: int, name: str = "") -> None:
+        """Add the collisions of a model and of the models in it."""
+        name = (name or _name(model)).strip("'")[:60]
+        static = next((one.stray.strip() for one in model.each("static")), "false") in ("true", "1")
+        joints = [one for one in model.each("joint") if one.attributes.get("type") != "fixed"]
+        if joints and not static:
+            self.scene.note(f"the model {name!r} is left out: it has joints, and is probably a robot")
+            return
+        if depth > MOST_DEPTH:
+            raise self.scene.error(f"more than {MOST_DEPTH} levels of models are too many")
+        place = parent @ self._pose(model)
+        before = len(self.scene.obstacles)
+        for link in model.each("link"):
+            at = place @ self._pose(link)
+            if not link.each("collision") and link.each("visual"):
+                self.scene.note(f"the model {name!r}: visuals without collision are not imported")
+            for k, collision in enumerate(link.each("collision")):
+                self._collision(name, k, collision, at @ self._pose(collision))
+        for inner in model.each("model"):
+            self._model(inner, place, depth + 1)
+        for inner in model.each("include"):
+            self._include(inner, place, depth)
+        if not static and len(self.scene.obstacles) > before:
+            self.scene.note(f"the model {name!r} can be moved in Gazebo, and is fixed here")
+
+    def _collision(self, name: str, k: int, collision: Element, at: Floats) -> None:
+        """Add a collision as an obstacle; one above or below people is left out."""
+        shapes = [shape for geometry in collision.each("geometry") for shape in geometry.children]
+        for shape in shapes:
+            corners = self._corners(name, shape)
+            if corners is None:
+                continue
+            space = corners @ at[:3, :3].T + at[:3, 3]
+            low, high = float(space[:, 2].min()), float(space[:, 2].max())
+            if high < LOW or low > HIGH:
+                where = f"below {LOW:g} m" if high < LOW else f"above {HIGH:g} m"
+                self.scene.note(f"a {shape.tag[:20]} of the model {name!r} is {where}, and is left out")
+                continue
+            upright = abs(at[2, 2]) > 1.0 - 1e-9
+            outline = [(round(float(x), 6), round(float(y), 6)) for x, y in space[: len(space) // 2, :2]]
+            hull = outline if upright else _hull(space[:, :2])
+            self.scene.obstacle(hull, f"collision {k + 1} of the model {name!r}")
+
+    def _corners(self, name: str, shape: Element) -> Floats | None:
+        """Corners ``[2 N, 3]`` of a shape in its own frame, lower outline first; None if it is none of those read."""
+        if shape.tag == "box":
+            x, y, z = self._numbers(shape, "size", 3)
+            outline = [(-x / 2, -y / 2), (x / 2, -y / 2), (x / 2, y / 2), (-x / 2, y / 2)]
+            return _prism(outline, -z / 2, z / 2)
+        if shape.tag in ("cylinder", "capsule", "cone"):
+            radius, length = (self._numbers(shape, tag, 1)[0] for tag in ("radius", "length"))
+            reach = length / 2 + (radius if shape.tag == "capsule" else 0.0)
+            return _prism(circle(0.0, 0.0, radius), -reach, reach)
+        if shape.tag in ("sphere", "ellipsoid"):
+            radii = (
+                self._numbers(shape, "radii", 3) if shape.tag == "ellipsoid" else self._numbers(shape, "radius", 1) * 3
+            )
+            return _prism([(x * radii[0], y * radii[1]) for x, y in circle(0.0, 0.0, 1.0)], -radii[2], radii[2])
+        if shape.tag == "polyline":
+            outline = []
+            for point in shape.each("point"):
+                words = point.stray.split()
+                if len(words) != 2:
+                    raise self.scene.error(f"line {point.line}: <point> needs x and y")
+                outline.append((self._number(words[0], point), self._number(words[1], point)))
+            height = self._numbers(shape, "height", 1)[0]
+            return _prism(outline, 0.0, height) if len(outline) >= 3 else None
+        if shape.tag == "plane":
+            return None
+        file = next((one.stray.strip() for one in shape.each("uri")), "")
+        more = f" ({file[-60:]})" if file else ""
+        self.scene.note(f"the {shape.tag[:20]} of the model {name!r}{more} is left out: its outline is not in the file")
+        return None
+
+    def _number(self, word: str, part: Element) -> float:
+        return as_number(word, f"line {part.line}: <{part.tag[:40]}>")
+
+    def _numbers(self, shape: Element, tag: str, count: int) -> list[float]:
+        part = next(iter(shape.each(tag)), None)
+        words = [] if part is None else part.stray.split()
+        if part is None or len(words) != count:
+            raise self.scene.error(f"line {shape.line}: <{shape.tag[:40]}> needs <{tag}> with {count} numbers")
+        values = [self._number(word, part) for word in words]
+        if min(values) < 0.0:
+            raise self.scene.error(f"line {part.line}: <{tag}> must not be below 0")
+        return values
+
+    def _actor(self, actor: Element) -> None:
+        """Add an actor with its waypoints."""
+        name = _name(actor).strip("'")
+        start = self._pose(actor)
+        for plugin in actor.each("plugin"):
+            self.scene.note(f"the plugin {_name(plugin)} of the actor {name!r} is not imported")
+        scripts = actor.each("script")
+        rows = [
+            self._waypoint(one)
+            for script in scripts
+            for way in script.each("trajectory")
+            for one in way.each("waypoint")
+        ]
+        rows.sort(key=lambda row: row[0])
+        if sum(len(script.each("trajectory")) for script in scripts) > 1:
+            self.scene.note(f"the actor {name!r} has several trajectories: their waypoints follow by time")
+        if not rows:
+            x, y = float(start[0, 3]), float(start[1, 3])
+            self.scene.person(name, x, y, heading=float(np.arctan2(start[1, 0], start[0, 0])))
+            return
+        spots = [row[1:3] for row in rows]
+        if np.hypot(*(start[:2, 3] - np.array(spots[0]))) > 0.01 and np.any(start[:2, 3]):
+            self.scene.note(
+                f"the actor {name!r} has a pose and waypoints: waypoints are read in the frame of the world"
+            )
+        kept = [spots[0], *(b for a, b in itertools.pairwise(spots) if math.dist(a, b) > STILL)]
+        walked = [(math.dist(a[1:3], b[1:3]), b[0] - a[0]) for a, b in itertools.pairwise(rows)]
+        if any(length <= STILL and time > 0.5 for length, time in walked):
+            self.scene.note(f"the actor {name!r} waits at waypoints: here people go on at once")
+        moving = [(length, time) for length, time in walked if length > STILL and time > 0.0]
+        speed = sum(length for length, _ in moving) / sum(time for _, time in moving) if moving else None
+        delay = next((one.stray.strip() for script in scripts for one in script.each("delay_start")), "0")
+        if as_number(delay or "0", f"delay_start of {name!r}") > 0.0:
+            self.scene.note(f"the actor {name!r} starts {delay} s later in Gazebo, here at once")
+        loops = next((one.stray.strip() for script in scripts for one in script.each("loop")), "true")
+        loop = loops in ("true", "1")
+        way = [*kept[1:], *([kept[0]] if loop and kept[-1] != kept[0] and len(kept) > 1 else [])]
+        heading = float(rows[0][3]) if not way else None
+        self.scene.person(
+            name, *kept[0], self.scene.points(way), then="again" if loop else "stay", heading=heading, speed=speed
+        )
+
+    def _waypoint(self, part: Element) -> tuple[float, float, float, float]:
+        """Time [s], x, y [m] and heading [rad] of a waypoint."""
+        time = next((one.stray.strip() for one in part.each("time")), "")
+        at = self._pose(part)
+        return (
+            as_number(time or "nothing", f"line {part.line}: <time>"), float(at[0, 3]),
+            float(at[1, 3]), float(np.arctan2(at[1, 0], at[0, 0])),
+        )  # fmt: skip
+
+
+def _name(part: Element) -> str:
+    return repr(part.attributes.get("name", part.attributes.get("filename", part.tag))[:60])
+
+
+def _prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Floats:
+    return np.array([(x, y, z) for z in (low, high) for x, y in outline], dtype=np.float64)
+
+
+def _hull(points: Floats) -> list[tuple[float, float]]:
+    """Corners of the convex hull of points ``[N, 2]``."""
+    import shapely
+
+    hull = shapely.convex_hull(shapely.multipoints(points))
+    corners = shapely.get_coordinates(hull)[:-1] if hull.geom_type == "Polygon" else shapely.get_coordinates(hull)
+    return [(round(float(x), 6), round(float(y), 6)) for x, y in corners]

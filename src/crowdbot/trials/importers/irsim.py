@@ -1,0 +1,284 @@
+"""Trials from worlds of IR-SIM: obstacles, moving obstacles as people, and robots, in one YAML file.
+
+The format is that of https://github.com/hanruihua/ir-sim: ``world``, ``robot`` and ``obstacle``, also below ``irsim``.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from crowdbot.models import ORCA, CrowdModel, SocialForce
+from crowdbot.trials.journey import Point
+
+from .foreign_text import yaml_of
+from .original import ImportedTrial
+from .scene_parts import ImportedScene, as_number, box, circle, move, number_in
+
+__all__ = ["import_irsim", "is_irsim"]
+
+Spot = tuple[float, float]
+STATE, SPEED, GOAL_RADIUS = (1.0, 1.0, 0.0), 1.0, 0.1
+"""Defaults of IR-SIM: the place of an object, its largest speed [m/s], and the distance at arrival [m]."""
+MOST_OBJECTS = 5000
+WORLD = {"height", "width", "step_time", "sample_time", "offset", "name", "plot", "status"}
+"""Keys of the world that do not change the scene, or that are read."""
+READ = {
+    "shape", "state", "goal", "number", "distribution", "kinematics", "behavior", "group_behavior", "name", "vel_max",
+    "goal_threshold", "static", "unobstructed", "color", "plot", "role",
+}  # fmt: skip
+
+
+def is_irsim(whole: Any) -> bool:
+    """Whether the content of a YAML file is a world of IR-SIM."""
+    content = whole.get("irsim", whole) if isinstance(whole, dict) else None
+    return isinstance(content, dict) and bool({"world", "obstacle"} & set(content)) and "hunav_loader" not in content
+
+
+def import_irsim(path: str | Path) -> ImportedTrial:
+    """Read a world of IR-SIM (YAML with ``world``, ``robot`` and ``obstacle``).
+
+    Obstacles without a behaviour become solid, those with one become people, and robots stay robots.
+
+    Raises:
+        TrialError: the file is missing or malformed, or nothing in it can be imported.
+    """
+    path = Path(path)
+    whole = yaml_of(path)
+    scene = ImportedScene(path, "IR-SIM", GOAL_RADIUS)
+    content = whole.get("irsim", whole) if isinstance(whole, dict) else None
+    if not isinstance(content, dict) or not is_irsim(whole):
+        raise scene.error("is not a world of IR-SIM: it has neither world nor obstacle")
+    world = content.get("world") or {}
+    if not isinstance(world, dict):
+        raise scene.error("world must be a mapping")
+    with scene.named_errors():
+        return _Reader(scene, world).trial(content)
+
+
+class _Reader:
+    """Converts a world."""
+
+    def __init__(self, scene: ImportedScene, world: dict[Any, Any]) -> None:
+        self.scene, self.world = scene, world
+        self.models: list[CrowdModel] = []
+
+    def trial(self, content: dict[Any, Any]) -> ImportedTrial:
+        """The trial."""
+        for key in content:
+            if key not in ("world", "robot", "obstacle", "gui"):
+                self.scene.note(f"{str(key)[:40]} is not imported")
+        for key, value in self.world.items():
+            if key not in WORLD and value is not None and key != "obstacle_map":
+                self.scene.note(f"world: {str(key)[:40]} is not imported")
+        grid = self.world.get("obstacle_map")
+        if grid is not None:
+            name = grid.get("path") or grid.get("name") if isinstance(grid, dict) else grid
+            self.scene.note(
+                f"the map {str(name)[:60]!r} is not imported: write a ROS map (.yaml) with its resolution,"
+                " and name it in <stage map>"
+            )
+        self.scene.note("the border of the world is no wall, as in IR-SIM")
+        count = 0
+        for role in ("obstacle", "robot"):
+            rows = content.get(role) or []
+            for k, row in enumerate(rows if isinstance(rows, list) else [rows]):
+                label = f"{role} {k + 1}"
+                if not isinstance(row, dict):
+                    raise self.scene.error(f"{label} must be a mapping")
+                number = int(number_in(row, "number", label, 1.0))
+                count += max(0, number)
+                if count > MOST_OBJECTS:
+                    raise self.scene.error(f"more than {MOST_OBJECTS} objects are too many")
+                self._group(label, str(row.get("role") or role), row, number)
+        step = min(1.0, max(0.001, number_in(self.world, "step_time", "world", 0.1)))
+        return self.scene.trial(step=step, crowd=self.models[0] if self.models else None)
+
+    def _group(self, label: str, role: str, row: dict[Any, Any], number: int) -> None:
+        """Add the objects of one entry."""
+        for key, value in row.items():
+            if key not in READ and value is not None:
+                self.scene.note(f"{label}: {str(key)[:40]} is not imported")
+        if row.get("unobstructed"):
+            self.scene.note(f"{label} is unobstructed, nothing collides with it, and is left out")
+            return
+        placed = self._places(label, row, number)
+        for k, (state, goals) in enumerate(placed):
+            name = self._name(label, row, k, number)
+            shape = _item(row.get("shape"), k, dict) or {"name": "circle"}
+            if not isinstance(shape, dict):
+                raise self.scene.error(f"{name}: shape must be a mapping, such as {{name: circle, radius: 0.2}}")
+            behavior = _item(row.get("behavior"), k, dict) or row.get("group_behavior") or {}
+            behavior = behavior if isinstance(behavior, dict) else {"name": behavior}
+            if role == "robot":
+                self._robot(name, row, k, shape, state, goals)
+            elif behavior and row.get("kinematics") and not row.get("static"):
+                self._person(name, row, k, shape, state, goals, behavior)
+            else:
+                self._solid(name, shape, state)
+
+    def _places(self, label: str, row: dict[Any, Any], number: int) -> list[tuple[tuple[float, ...], list[Spot]]]:
+        """States and goals of the objects of an entry; none if they are random."""
+        how = row.get("distribution") or {}
+        kind = str(how.get("name", "manual") if isinstance(how, dict) else how)
+        if kind == "random" and (number > 1 or "state" not in row):
+            self.scene.note(f"{label} is placed at random ({number} objects) and is left out: place them")
+            return []
+        if kind == "circle":
+            width, height = (number_in(self.world, key, "world", 10.0) for key in ("width", "height"))
+            low = self.world.get("offset") or [0.0, 0.0]
+            own = how if isinstance(how, dict) else {}
+            middle = own.get("center") or [_at(low, 0, label) + 0.5 * width, _at(low, 1, label) + 0.5 * height]
+            radius = number_in(own, "radius", label, 0.5 * min(width, height) - 0.5)
+            x, y = _at(middle, 0, label), _at(middle, 1, label)
+            turns = [2.0 * math.pi * k / max(1, number) for k in range(number)]
+            spots = [move([(radius, 0.0)], x, y, turn)[0] for turn in turns]
+            across = [move([(-radius, 0.0)], x, y, turn)[0] for turn in turns]
+            return [((*spot, turn - math.pi), [goal]) for spot, goal, turn in zip(spots, across, turns, strict=True)]
+        placed = []
+        for k in range(number):
+            state = _item(row.get("state"), k, float) or list(STATE)
+            place = tuple(_at(state, axis, f"{label}: state", 0.0) for axis in range(3))
+            goal = _item(row.get("goal"), k, float) if number > 1 else row.get("goal")
+            rows = [] if goal is None else goal if _depth(goal) == 2 else [goal]
+            placed.append((place, [(_at(spot, 0, f"{label}: goal"), _at(spot, 1, f"{label}: goal")) for spot in rows]))
+        return placed
+
+    def _name(self, label: str, row: dict[Any, Any], k: int, number: int) -> str:
+        name = _item(row.get("name"), k, str)
+        return str(name)[:40] if name else label.replace(" ", "_") + (f"_{k + 1}" if number > 1 else "")
+
+    def _speed(self, name: str, row: dict[Any, Any], k: int, behavior: dict[Any, Any]) -> float:
+        """Largest speed of an object [m/s]."""
+        given = row.get("vel_max")
+        given = _item(given, k, float) if given is not None else None
+        values = given if isinstance(given, list) else [SPEED if given is None else given]
+        own = [key for key in ("vxmax", "maxSpeed") if behavior.get(key) is not None]
+        speed = number_in(behavior, own[0], name) if own else _at(values, 0, f"{name}: vel_max")
+        return speed
+
+    def _person(
+        self,
+        name: str,
+        row: dict[Any, Any],
+        k: int,
+        shape: dict[Any, Any],
+        state: tuple[float, ...],
+        goals: list[Spot],
+        behavior: dict[Any, Any],
+    ) -> None:
+        kind = str(behavior.get("name", ""))
+        model: CrowdModel = SocialForce() if kind == "sfm" else ORCA()
+        if kind not in ("rvo", "orca", "sfm", "hrvo"):
+            self.scene.note(f"the behaviour {kind[:40]!r} of {name}: ORCA replaces it")
+        elif [one for one in behavior if one not in ("name", "loop", "wander", "vxmax", "vymax", "maxSpeed")]:
+            self.scene.note("parameters of behaviours: the model has its defaults")
+        if self.models and type(self.models[0]) is not type(model):
+            self.scene.note(f"the behaviour of {name}: all people have the model of the first")
+        self.models.append(model)
+        if behavior.get("wander"):
+            self.scene.note(f"{name} wanders to random goals, which are not imported: it has the goals of the file")
+        if not goals:
+            self.scene.note(f"{name} has no goal and stands")
+        reach = number_in(row, "goal_threshold", name, GOAL_RADIUS)
+        stops: list[Point] = self.scene.points(goals, reach)
+        self.scene.person(
+            name,
+            state[0],
+            state[1],
+            stops,
+            then="again" if behavior.get("loop") else "stay",
+            heading=None if stops else state[2],
+            speed=self._speed(name, row, k, behavior),
+            radius=self._radius(name, shape),
+        )
+
+    def _robot(
+        self,
+        name: str,
+        row: dict[Any, Any],
+        k: int,
+        shape: dict[Any, Any],
+        state: tuple[float, ...],
+        goals: list[Spot],
+    ) -> None:
+        from crowdbot.world import DifferentialDrive, Omnidirectional
+
+        kinematics = row.get("kinematics") or {}
+        kind = str(kinematics.get("name") if isinstance(kinematics, dict) else kinematics)
+        speed = min(10.0, max(0.05, self._speed(name, row, k, {})))
+        omni = kind.startswith("omni")
+        if kind.startswith("acker"):
+            self.scene.note(f"{name} steers like a car: it has a differential drive here")
+        if len(goals) > 1:
+            self.scene.note(f"{name} has {len(goals)} goals: its goal is the last")
+        self.scene.robot(
+            state[0],
+            state[1],
+            goals[-1] if goals else None,
+            heading=state[2],
+            radius=self._radius(name, shape),
+            speed=speed,
+            drive=Omnidirectional(max_speed=speed) if omni else DifferentialDrive(max_speed=speed),
+        )
+
+    def _radius(self, name: str, shape: dict[Any, Any]) -> float:
+        """Radius of the disc around a shape [m]."""
+        if shape.get("name", "circle") == "circle":
+            return number_in(shape, "radius", name, 0.2)
+        spots = self._corners(name, shape)
+        if not spots:
+            return 0.2
+        self.scene.note(f"{name} is a {str(shape.get('name'))[:20]}: it becomes the disc around it")
+        return max(math.hypot(x, y) for x, y in spots)
+
+    def _corners(self, name: str, shape: dict[Any, Any]) -> list[Spot]:
+        """Corners of a shape in its own frame; none if it is random or unknown."""
+        kind = str(shape.get("name", "circle"))
+        if shape.get("random_shape") or shape.get("is_convex"):
+            self.scene.note(f"{name} has a random shape and is left out")
+            return []
+        if kind == "circle":
+            center = shape.get("center") or [0.0, 0.0]
+            radius = number_in(shape, "radius", name, 0.2)
+            return circle(_at(center, 0, name), _at(center, 1, name), radius) if radius > 0.0 else []
+        if kind == "rectangle":
+            return box(0.0, 0.0, number_in(shape, "length", name, 1.0), number_in(shape, "width", name, 1.0))
+        if kind in ("polygon", "linestring"):
+            rows = shape.get("vertices")
+            if not isinstance(rows, list):
+                raise self.scene.error(f"{name}: vertices of a {kind} must be a list of points")
+            return [(_at(row, 0, f"{name}: vertices"), _at(row, 1, f"{name}: vertices")) for row in rows]
+        self.scene.note(f"{name} has the shape {kind[:40]!r} and is left out")
+        return []
+
+    def _solid(self, name: str, shape: dict[Any, Any], state: tuple[float, ...]) -> None:
+        spots = move(self._corners(name, shape), state[0], state[1], state[2])
+        if not spots:
+            return
+        if shape.get("name") == "linestring":
+            self.scene.wall(spots, name)
+        else:
+            self.scene.obstacle(spots, name)
+
+
+def _depth(value: Any) -> int:
+    """Levels of lists, of which only the first elements are looked at."""
+    return 1 + _depth(value[0]) if isinstance(value, list) and value else 0
+
+
+def _item(value: Any, k: int, kind: type) -> Any:
+    """The value of the k-th object: an element of a list of values, or the one value of all.
+
+    A list of fewer values than objects repeats its last, as in IR-SIM.
+    """
+    several = isinstance(value, list) and value and (kind is not float or isinstance(value[0], list))
+    return value[min(k, len(value) - 1)] if several else value
+
+
+def _at(value: Any, k: int, where: str, otherwise: float | None = None) -> float:
+    """The k-th number of a list."""
+    if not isinstance(value, list | tuple) or (len(value) <= k and otherwise is None):
+        return as_number(str(value)[:40] if not isinstance(value, list | tuple) else "nothing", where)
+    return as_number(value[k], where) if len(value) > k else float(otherwise or 0.0)

@@ -1,0 +1,565 @@
+"""Scenes of other simulators: what is read, what is left out by name, that they run, and wrong files."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+
+from crowdbot.cli import main
+from crowdbot.core import TrialError
+from crowdbot.models import ORCA, SocialForce
+from crowdbot.simulation import simulate
+from crowdbot.trials import check_trial, import_trial, load_trial, parse_trial, trial_xml
+
+IRSIM = """
+world: {height: 12, width: 16, step_time: 0.1, control_mode: auto}
+robot:
+  kinematics: {name: 'diff'}
+  shape: {name: 'circle', radius: 0.25}
+  state: [1, 1, 0.5]
+  goal: [14, 10, 0]
+  vel_max: [0.8, 1.0]
+  sensors: [{type: lidar2d}]
+obstacle:
+  - shape: {name: 'rectangle', length: 2.0, width: 1.0}
+    state: [6, 5, 0]
+  - shape: {name: 'linestring', vertices: [[0, 0], [0, 3]]}
+    state: [12, 1, 0]
+  - name: walker
+    kinematics: {name: omni}
+    behavior: {name: rvo, vxmax: 1.2, loop: true}
+    shape: {name: circle, radius: 0.3}
+    state: [2, 8, 0]
+    goal: [[9, 8], [9, 10], [2, 8]]
+"""
+ARENA = """{
+ "robots": [{"start": [0, 0, 0.5], "goal": [5, 5, 0]}],
+ "obstacles": {
+  "static": [{"name": "shelf1", "model": "shelf", "pos": [13, 11, -0.5]}],
+  "interactive": [{"name": "door", "pos": [1, 1, 0]}],
+  "dynamic": [
+   {"name": "doctor", "pos": [-1, -7.5, 0], "type": "adult", "model": "actor1", "vmax": 1.1,
+    "waypoints": [[-3, -7.5, 0], [-3, -5, 0]], "waypoint_mode": 2}, // in order
+   {"name": "lift", "pos": [4, 4, 0], "type": "forklift", "waypoints": [[1, 1, 0]]}
+  ]},
+ "map": "hall", "resets": 5
+}"""
+GAZEBO = """<?xml version="1.0"?>
+<sdf version="1.6"><world name="w">
+<include><uri>model://sun</uri></include>
+<include><uri>model://table</uri><name>table_1</name><pose>9 9 0 0 0 0</pose></include>
+<model name="wall"><static>1</static><pose>2 0 0 0 0 1.5707963</pose><link name="l"><pose>0 0 1.25 0 0 0</pose>
+ <collision name="c"><geometry><box><size>4 0.2 2.5</size></box></geometry></collision></link></model>
+<model name="post"><link name="l"><collision name="c"><pose>5 1 0.5 0 0 0</pose>
+ <geometry><cylinder><radius>0.3</radius><length>1</length></cylinder></geometry></collision></link></model>
+<model name="ceiling"><static>true</static><link name="l"><collision name="c"><pose>0 0 3 0 0 0</pose>
+ <geometry><box><size>9 9 0.2</size></box></geometry></collision></link></model>
+<model name="cart"><link name="l"/><joint name="j" type="continuous"/></model>
+<model name="chair"><static>1</static><link name="l"><collision name="c"><geometry><mesh><uri>chair.dae</uri></mesh>
+ </geometry></collision></link></model>
+<actor name="ann"><script><loop>true</loop><delay_start>2</delay_start><trajectory id="0" type="walking">
+ <waypoint><time>0</time><pose>0 3 0 0 0 0</pose></waypoint><waypoint><time>5</time><pose>6 3 0 0 0 0</pose></waypoint>
+ <waypoint><time>7</time><pose>6 3 0 0 0 3</pose></waypoint><waypoint><time>12</time><pose>0 3 0 0 0 3</pose></waypoint>
+</trajectory></script></actor>
+</world></sdf>"""
+ROOMS = """<?xml version="1.0"?>
+<geometry version="0.8" caption="hall" unit="m"><rooms><room id="0" caption="hall"><subroom id="0" class="subroom">
+<polygon caption="wall"><vertex px="10" py="2"/><vertex px="10" py="0"/><vertex px="0" py="0"/><vertex px="0" py="6"/>
+ <vertex px="10" py="6"/><vertex px="10" py="4"/></polygon>
+<obstacle id="7" closed="1"><polygon><vertex px="5" py="2"/><vertex px="6" py="2"/><vertex px="6" py="3"/>
+ <vertex px="5" py="2"/></polygon></obstacle></subroom></room></rooms>
+<transitions><transition id="0" room1_id="0" subroom1_id="0" room2_id="-1" subroom2_id="-1"><vertex px="10" py="2"/>
+ <vertex px="10" py="4"/></transition></transitions></geometry>"""
+PROJECT = """<?xml version="1.0"?>
+<JuPedSim project="p" version="0.8"><header><seed>1</seed><max_sim_time>60</max_sim_time><geometry>rooms.xml</geometry>
+</header><agents><agents_distribution>
+<group group_id="1" room_id="0" number="8" agent_parameter_id="1" x_min="1" x_max="4" y_min="1" y_max="5"/>
+<group group_id="2" room_id="0" number="1" startX="8" startY="3" goal_id="4" pre_movement_mean="3"/>
+</agents_distribution><agents_sources><source id="9" frequency="2" group_id="1"/></agents_sources></agents>
+<operational_models><model>
+<agent_parameters agent_parameter_id="1"><v0 mu="1.2" sigma="0.1"/></agent_parameters></model>
+</operational_models><routing><goals><goal id="4" final="true"><polygon><vertex px="1" py="1"/><vertex px="2" py="1"/>
+ <vertex px="2" py="2"/><vertex px="1" py="1"/></polygon></goal></goals></routing><train_constraints/></JuPedSim>"""
+FILES = {
+    "world.yaml": IRSIM, "scenario.json": ARENA, "hall.world": GAZEBO, "rooms.xml": ROOMS, "project.xml": PROJECT
+}  # fmt: skip
+
+
+def imported(tmp_path, name, text):
+    (tmp_path / "rooms.xml").write_text(ROOMS)
+    file = tmp_path / name
+    file.write_text(text, encoding="utf-8")
+    return import_trial(file)
+
+
+def trial_of(done):
+    ((_, trial),) = done.trials
+    return trial
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_scene_is_written_checked_and_runs(tmp_path, capsys, name):
+    (tmp_path / "rooms.xml").write_text(ROOMS)
+    (tmp_path / name).write_text(FILES[name])
+    out = tmp_path / "out.xml"
+    assert main(["new", "trial", str(out), "--import", str(tmp_path / name)]) == 0
+    said = capsys.readouterr().out
+    assert "errors" not in said
+    trial = load_trial(out)
+    check_trial(trial)
+    assert parse_trial(trial_xml(trial)) == trial
+    text = out.read_text().replace('duration="120"', 'duration="4"').replace('duration="60"', 'duration="4"')
+    episode = simulate(parse_trial(text), 0)
+    assert np.isfinite(episode.position[episode.active]).all()
+    assert name == "rooms.xml" or np.ptp(episode.position, axis=0).max() > 1.0  # a geometry has nobody
+
+
+def test_irsim_has_obstacles_people_and_robots(tmp_path):
+    done = imported(tmp_path, "world.yaml", IRSIM)
+    trial = trial_of(done)
+    assert (type(trial.crowd), trial.step) == (ORCA, 0.1)
+    assert trial.stage.obstacles[0].points == ((5.0, 4.5), (7.0, 4.5), (7.0, 5.5), (5.0, 5.5))
+    assert trial.stage.walls[0].points == ((12.0, 1.0), (12.0, 4.0))
+    (walker,) = trial.agents
+    assert (walker.name, walker.position, walker.speed, walker.radius) == ("walker", (2.0, 8.0), 1.2, 0.3)
+    (way,) = trial.journeys
+    assert (way.then, [(stop.x, stop.y) for stop in way.stops]) == ("again", [(9.0, 8.0), (9.0, 10.0), (2.0, 8.0)])
+    (robot,) = trial.robots
+    assert (robot.position, robot.heading, robot.radius, robot.goal.position) == ((1.0, 1.0), 0.5, 0.25, (14.0, 10.0))
+    assert robot.drive.max_speed == 0.8
+    for sentence in ("world: control_mode is not imported", "robot 1: sensors is not imported"):
+        assert sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "people", "obstacles", "sentence"),
+    [
+        ("world: {", "irsim:\n world: {", 0, 0, None),
+        (
+            "    state: [2, 8, 0]\n",
+            "    number: 4\n    distribution: {name: circle, radius: 2, center: [9, 8]}\n",
+            4,
+            1,
+            "the border of the world is no wall, as in IR-SIM",
+        ),
+        (
+            "    state: [2, 8, 0]\n",
+            "    number: 3\n    distribution: {name: random}\n",
+            0,
+            1,
+            "obstacle 3 is placed at random (3 objects) and is left out: place them",
+        ),
+        ("    state: [6, 5, 0]\n", "    number: 2\n    state: [[6, 5, 0], [9, 2, 1]]\n", 1, 2, None),
+        (
+            "{name: 'rectangle', length: 2.0, width: 1.0}",
+            "{name: polygon, vertices: [[0, 0], [1, 0], [0, 1]]}",
+            1,
+            1,
+            None,
+        ),
+        (
+            "{name: 'rectangle', length: 2.0, width: 1.0}",
+            "{name: polygon, random_shape: true}",
+            1,
+            0,
+            "obstacle_1 has a random shape and is left out",
+        ),
+        (
+            "    state: [6, 5, 0]\n",
+            "    state: [6, 5, 0]\n    unobstructed: true\n",
+            1,
+            0,
+            "obstacle 1 is unobstructed, nothing collides with it, and is left out",
+        ),
+        (
+            "control_mode: auto",
+            "obstacle_map: cave.png",
+            1,
+            1,
+            "the map 'cave.png' is not imported: write a ROS map (.yaml) with its resolution, and name it in <stage"
+            " map>",
+        ),
+        (
+            "name: rvo, vxmax: 1.2,",
+            "name: dash, wander: true,",
+            1,
+            1,
+            "the behaviour 'dash' of walker: ORCA replaces it",
+        ),
+        ("radius: 0.3", "radius: 2.5", 1, 1, "walker has a radius of 2.5 m, which is unlikely for a person"),
+        ("vxmax: 1.2", "vxmax: 40", 1, 1, "walker: the speed of 40 m/s becomes 10 m/s"),
+    ],
+)
+def test_variants_of_irsim(tmp_path, old, new, people, obstacles, sentence):
+    assert old in IRSIM
+    text = IRSIM.replace(old, new, 1)
+    if new.startswith("irsim:"):
+        text = "irsim:" + IRSIM.replace("\n", "\n  ")
+        people = obstacles = 1
+    done = imported(tmp_path, "world.yaml", text)
+    trial = trial_of(done)
+    assert (len(trial.agents), len(trial.stage.obstacles)) == (people, obstacles)
+    assert sentence is None or sentence in done.left_out
+
+
+def test_people_on_a_circle_of_irsim_walk_across(tmp_path):
+    text = IRSIM.replace(
+        "    state: [2, 8, 0]\n    goal: [[9, 8], [9, 10], [2, 8]]\n", "    number: 4\n    distribution: circle\n"
+    )
+    trial = trial_of(imported(tmp_path, "world.yaml", text))
+    places = np.array([agent.position for agent in trial.agents])
+    assert places.ravel() == pytest.approx([13.5, 6, 8, 11.5, 2.5, 6, 8, 0.5])
+    goals = {journey.name: journey.stops[0] for journey in trial.journeys}
+    first = goals[trial.agents[0].journey]
+    assert (first.x, first.y) == pytest.approx((2.5, 6.0))
+
+
+def test_arena_has_people_and_robots_and_names_what_it_lacks(tmp_path):
+    done = imported(tmp_path, "scenario.json", ARENA)
+    trial = trial_of(done)
+    (doctor,) = trial.agents
+    assert (doctor.name, doctor.position, doctor.speed, type(trial.crowd)) == ("doctor", (-1, -7.5), 1.1, SocialForce)
+    assert [(stop.x, stop.y) for stop in trial.journeys[0].stops] == [(-3.0, -7.5), (-3.0, -5.0)]
+    assert trial.journeys[0].then == "again"
+    assert (trial.robots[0].heading, trial.robots[0].goal.position) == (0.5, (5.0, 5.0))
+    for sentence in (
+        "lift is a forklift and is left out: people and robots are imported",
+        "the static obstacle 'shelf1' (model shelf) is not imported, since its size is not in the file; it is at (13.0,"
+        " 11.0)",
+        "'door' (interactive) is not imported",
+        "the map 'hall' is not beside the scenario as hall/map.yaml or hall.yaml: the stage has no walls, add them",
+    ):
+        assert sentence in done.left_out
+
+
+@pytest.mark.parametrize("place", ["hall/map.yaml", "hall.yaml"])
+def test_the_map_of_arena_beside_the_scenario_is_the_stage(tmp_path, place):
+    file = tmp_path / place
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("image: hall.pgm\nresolution: 0.5\norigin: [-20, -20, 0]\n")
+    (file.parent / "hall.pgm").write_bytes(b"P5 80 80 255\n" + b"\x00" * 80 + b"\xfe" * (79 * 80))
+    done = imported(tmp_path, "scenario.json", ARENA)
+    trial = trial_of(done)
+    assert trial.stage.map == place
+    assert trial.stage.clearance([(0.0, 0.0)])[0] == pytest.approx(19.5, abs=0.6)
+    assert not any("the map" in sentence for sentence in done.left_out)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "people", "sentence"),
+    [
+        (
+            '"waypoint_mode": 2',
+            '"waypoint_mode": 1',
+            1,
+            "doctor goes to its waypoints at random in Arena-Rosnav, here in order",
+        ),
+        (
+            '"vmax": 1.1',
+            '"number_of_peds": 3',
+            1,
+            "doctor stands for 3 people: one is imported, since the file has one place",
+        ),
+        (
+            '"vmax": 1.1',
+            '"wait_time": 4, "chatting_probability": 0.1',
+            1,
+            "parameters of people are not imported: chatting_probability, wait_time",
+        ),
+        (
+            '"vmax": 1.1',
+            '"start_up_mode": "trigger_zone"',
+            1,
+            "doctor: the start up mode trigger_zone is not imported, people go at once",
+        ),
+        ('"vmax": 1.1', '"vmax": 9', 1, "doctor has a speed of 9 m/s, which is unlikely for a person"),
+        ('"type": "forklift"', '"type": "elder"', 2, None),
+        ("[[-3, -7.5, 0], [-3, -5, 0]]", "[]", 1, None),
+        (
+            '"map": "hall"',
+            '"map": "../../etc/hall"',
+            1,
+            "the map '../../etc/hall' is not beside the scenario as ../../etc/hall/map.yaml or ../../etc/hall.yaml: the"
+            " stage has no walls, add them",
+        ),
+    ],
+)
+def test_variants_of_arena(tmp_path, old, new, people, sentence):
+    assert old in ARENA
+    done = imported(tmp_path, "scenario.json", ARENA.replace(old, new, 1))
+    assert len(trial_of(done).agents) == people
+    assert sentence is None or sentence in done.left_out
+
+
+def test_older_scenarios_of_arena_are_read(tmp_path):
+    text = """{"pedsim_agents": [{"name": "Pedestrian", "id": 0, "pos": [10.5, 1.8], "type": "adult", "vmax": 1.0,
+      "waypoints": [[12.5, 5.9], [17.4, 8.1]], "waypoint_mode": 0}],
+      "static_obstacles": [{"name": "shelf", "model_path": "obstacles/shelf.yaml", "pos": [11.9, 14], "angle": 6.28}],
+      "robot_position": [-1.3, -1.3], "robot_goal": [22.3, 16.5], "map_path": "map4/map.yaml",
+      "format": "arena-tools"}"""
+    done = imported(tmp_path, "scenario.json", text)
+    trial = trial_of(done)
+    assert (trial.agents[0].position, len(trial.journeys[0].stops)) == ((10.5, 1.8), 2)
+    assert (trial.robots[0].position, trial.robots[0].goal.position) == ((-1.3, -1.3), (22.3, 16.5))
+    assert any("the map 'map4/map.yaml' is not beside" in sentence for sentence in done.left_out)
+
+
+def test_gazebo_has_solids_and_actors_and_names_what_it_lacks(tmp_path):
+    done = imported(tmp_path, "hall.world", GAZEBO)
+    trial = trial_of(done)
+    wall, post = (np.array(obstacle.points) for obstacle in trial.stage.obstacles)
+    assert np.ptp(wall, axis=0) == pytest.approx([0.2, 4.0], abs=1e-5)
+    assert wall.mean(axis=0) == pytest.approx([2.0, 0.0], abs=1e-5)
+    assert np.hypot(*(post - (5.0, 1.0)).T) == pytest.approx(0.3, abs=1e-5)
+    (ann,) = trial.agents
+    assert (ann.name, ann.position, ann.speed) == ("ann", (0.0, 3.0), pytest.approx(1.2))
+    (way,) = trial.journeys
+    assert (way.then, [(stop.x, stop.y) for stop in way.stops]) == ("again", [(6.0, 3.0), (0.0, 3.0)])
+    for sentence in (
+        "the included model 'table_1' is left out: its file is not beside the world",
+        "the model 'post' can be moved in Gazebo, and is fixed here",
+        "a box of the model 'ceiling' is above 1.8 m, and is left out",
+        "the model 'cart' is left out: it has joints, and is probably a robot",
+        "the mesh of the model 'chair' (chair.dae) is left out: its outline is not in the file",
+        "the actor 'ann' waits at waypoints: here people go on at once",
+        "the actor 'ann' starts 2 s later in Gazebo, here at once",
+    ):
+        assert sentence in done.left_out
+
+
+@pytest.mark.parametrize("folder", ["table", "models/table"])
+def test_included_models_beside_the_world_are_read(tmp_path, folder):
+    model = (
+        '<sdf version="1.6"><model name="table"><static>1</static><link name="l"><collision name="c"><geometry>'
+        "<box><size>2 1 2</size></box></geometry></collision></link></model></sdf>"
+    )
+    (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / folder / "model.sdf").write_text(model)
+    trial = trial_of(imported(tmp_path, "hall.world", GAZEBO))
+    corners = [np.array(obstacle.points) for obstacle in trial.stage.obstacles]
+    assert len(corners) == 3
+    assert corners[0].mean(axis=0) == pytest.approx([9.0, 9.0])
+
+
+def test_a_model_that_includes_itself_is_rejected(tmp_path):
+    (tmp_path / "table").mkdir()
+    (tmp_path / "table" / "model.sdf").write_text(
+        '<sdf version="1.6"><model name="t"><include><uri>model://table</uri></include></model></sdf>'
+    )
+    with pytest.raises(TrialError, match="levels of them, are too many"):
+        imported(tmp_path, "hall.world", GAZEBO)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "people", "obstacles", "sentence"),
+    [
+        ("<loop>true</loop>", "<loop>false</loop>", 1, 2, None),
+        ("<size>4 0.2 2.5</size>", "<size>4 0.2 0.01</size>", 1, 2, None),
+        ("2 0 0 0 0 1.5707963", "2 0 1 1.5707963 0 0", 1, 2, None),
+        (
+            "<cylinder><radius>0.3</radius><length>1</length></cylinder>",
+            "<sphere><radius>0.5</radius></sphere>",
+            1,
+            2,
+            None,
+        ),
+        (
+            "<cylinder><radius>0.3</radius><length>1</length></cylinder>",
+            "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>2</height></polyline>",
+            1,
+            2,
+            None,
+        ),
+        (
+            "<cylinder><radius>0.3</radius><length>1</length></cylinder>",
+            "<plane><normal>0 0 1</normal></plane>",
+            1,
+            1,
+            None,
+        ),
+        ("<time>5</time>", "<time>0.5</time>", 1, 2, None),
+        (
+            '<actor name="ann">',
+            '<actor name="ann"><plugin name="p" filename="libp.so"/><pose>1 2 0 0 0 0</pose>',
+            1,
+            2,
+            "the plugin 'p' of the actor 'ann' is not imported",
+        ),
+        ('<sdf version="1.6">', '<sdf version="1.6"><world name="v"><model name="x"/></world>', None, None, None),
+        (
+            "<include><uri>model://sun</uri></include>",
+            "<population name='p'/>",
+            1,
+            2,
+            "<population> in line 3 is not imported",
+        ),
+        (
+            "model://table",
+            "model://../../table",
+            1,
+            2,
+            "the included model 'table_1' is left out: its file is not beside the world",
+        ),
+    ],
+)
+def test_variants_of_gazebo(tmp_path, old, new, people, obstacles, sentence):
+    assert old in GAZEBO
+    text = GAZEBO.replace(old, new, 1)
+    if people is None:
+        with pytest.raises(TrialError, match="no solids, people or robots that can be imported; the file has 2 worlds"):
+            imported(tmp_path, "hall.world", text)
+        return
+    done = imported(tmp_path, "hall.world", text)
+    trial = trial_of(done)
+    assert (len(trial.agents), len(trial.stage.obstacles)) == (people, obstacles)
+    assert sentence is None or sentence in done.left_out
+    assert trial.journeys[0].then == ("stay" if "false" in new else "again")
+
+
+def test_an_actor_without_waypoints_stands(tmp_path):
+    text = '<sdf version="1.6"><world name="w"><actor name="bob"><pose>1 2 0 0 0 1</pose></actor></world></sdf>'
+    (bob,) = trial_of(imported(tmp_path, "hall.world", text)).agents
+    assert (bob.position, bob.journey, bob.heading) == ((1.0, 2.0), "", pytest.approx(1.0))
+
+
+def test_jupedsim_has_walls_doors_groups_and_goals(tmp_path):
+    done = imported(tmp_path, "project.xml", PROJECT)
+    trial = trial_of(done)
+    assert (trial.duration, len(trial.stage.walls), len(trial.stage.obstacles)) == (60.0, 1, 1)
+    (group,) = trial.spawners
+    assert (group.count, str(group.speed)) == (8, "normal(1.2, 0.1, 0.9, 1.5)")
+    (single,) = trial.agents
+    ways = {journey.name: journey for journey in trial.journeys}
+    assert (single.position, ways[single.journey].stops[0].points[1]) == ((8.0, 3.0), (2.0, 1.0))
+    (door,) = trial.exits
+    assert np.array(door.zone).mean(axis=0) == pytest.approx([10.0, 3.0])
+    assert ways[group.journey].stops[0].points == door.zone
+    for sentence in (
+        "group 2: not imported are pre_movement_mean",
+        "the source '9' is not imported",
+        "<train_constraints> is not imported",
+    ):
+        assert sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "spawners", "agents", "sentence"),
+    [
+        ('x_min="1" x_max="4" y_min="1" y_max="5"', 'subroom_id="0"', 1, 1,
+         "group 1 begins in the box around its room"),
+        ('x_min="1" x_max="4"', 'x_min="4" x_max="1"', 0, 1, "group 1 begins in a box without area and is left out"),
+        ('room_id="0" number="8" agent_parameter_id="1" x_min="1"', 'room_id="5" number="8"', 0, 1,
+         "group 1 is in room '5', which has no walls, and is left out"),
+        ('goal_id="4"', 'goal_id="5"', 1, 1, "group 2: there is no goal '5' with a polygon, people go to an exit"),
+        ('number="8"', 'number="0"', 0, 1, "group 1 has 0 people and is left out"),
+        ('sigma="0.1"', "", 1, 1, None),
+    ],
+)  # fmt: skip
+def test_variants_of_jupedsim(tmp_path, old, new, spawners, agents, sentence):
+    assert old in PROJECT
+    done = imported(tmp_path, "project.xml", PROJECT.replace(old, new, 1))
+    trial = trial_of(done)
+    assert (len(trial.spawners), len(trial.agents)) == (spawners, agents)
+    assert sentence is None or sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "sentence"),
+    [
+        ("project.xml", "rooms.xml", "../rooms.xml", "the geometry the file '../rooms.xml' lies outside"),
+        ("project.xml", "rooms.xml", "none.xml", "the geometry there is no file 'none.xml'"),
+        ("project.xml", 'number="8"', 'number="90000"', "more than 20000 people are too many"),
+        ("rooms.xml", 'px="5"', 'px="west"', "px of <vertex> must be a number up to 1e6, not 'west'"),
+        ("rooms.xml", 'unit="m"', 'unit="cm"', "the unit 'cm' of the geometry is not m"),
+        (
+            "world.yaml",
+            "state: [2, 8, 0]",
+            "state: [west, 8, 0]",
+            "world.yaml: obstacle 3: state must be a number up to 1e6, not 'west'",
+        ),
+        ("world.yaml", "state: [2, 8, 0]", "state: [1e9, 8, 0]", "must be a number up to 1e6"),
+        (
+            "world.yaml",
+            "vertices: [[0, 0], [0, 3]]",
+            "vertices: 3",
+            "vertices of a linestring must be a list of points",
+        ),
+        ("world.yaml", "name: walker", "number: 900000", "more than 5000 objects are too many"),
+        ("world.yaml", "world: {", "world: !!python/object:os.system {", "the tag '!!python/object:os.system'"),
+        ("scenario.json", "[-1, -7.5, 0]", "[-1]", "person 'doctor': pos must be [x, y, angle], not '[-1]'"),
+        ("scenario.json", "[[-3, -7.5, 0]", "[[NaN, -7.5, 0]", "doctor: waypoint 1 must be a number up to 1e6"),
+        ("scenario.json", '"dynamic": [', '"dynamic": 3, "d": [', "dynamic must be a list of objects"),
+        ("scenario.json", '"resets": 5', '"resets": ', "is not JSON"),
+        ("hall.world", "<size>4 0.2 2.5</size>", "<size>4 0.2</size>", "<box> needs <size> with 3 numbers"),
+        ("hall.world", "<size>4 0.2 2.5</size>", "<size>4 -1 2</size>", "<size> must not be below 0"),
+        (
+            "hall.world",
+            "<pose>0 3 0 0 0 0</pose>",
+            "<pose>0 3</pose>",
+            "<pose> has 2 numbers, it needs x y z roll pitch yaw",
+        ),
+        ("hall.world", "<time>5</time>", "<time>x</time>", "<time> must be a number up to 1e6, not 'x'"),
+        ("hall.world", '<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]>', "DOCTYPE"),
+    ],
+)
+def test_wrong_scenes_are_rejected(tmp_path, name, old, new, sentence):
+    assert old in FILES[name]
+    with pytest.raises(TrialError) as caught:
+        imported(tmp_path, name, FILES[name].replace(old, new, 1))
+    assert sentence in str(caught.value)
+
+
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("data", [b"", b"\xff\xfe\x00", b"{", b"[1]", b"<a/>", b"x" * 4_100_000, b"{}", b"[" * 9000])
+def test_files_that_are_no_scene_end_with_a_sentence(tmp_path, name, data):
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(TrialError, match=name.replace(".", r"\.")):
+        import_trial(tmp_path / name)
+
+
+WORDS = [
+    "0",
+    "-1",
+    "1e300",
+    "nan",
+    "[]",
+    "{}",
+    "null",
+    '""',
+    "true",
+    "<",
+    ">",
+    ",",
+    ":",
+    " ",
+    "9" * 40,
+    "é",
+    "name",
+    "[[1]]",
+]
+
+
+def mutated(text, chance):
+    """A text with a few parts deleted, doubled, moved or replaced."""
+    for _ in range(chance.randint(1, 4)):
+        a, b = sorted(chance.randrange(len(text) + 1) for _ in range(2))
+        b = min(b, a + chance.choice((1, 3, 12, 60)))
+        piece = chance.choice(("", text[a:b] * 2, chance.choice(WORDS), text[a:b][::-1]))
+        text = text[:a] + piece + text[b:]
+    return text
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_mutated_scenes_are_read_or_rejected(tmp_path, name):
+    chance = random.Random(5)
+    outcomes = set()
+    for _ in range(150):
+        try:
+            done = imported(tmp_path, name, mutated(FILES[name], chance))
+        except TrialError:
+            outcomes.add("rejected")
+        else:
+            assert all(math.isfinite(value) for agent in trial_of(done).agents for value in agent.position)
+            outcomes.add("read")
+    assert outcomes == {"read", "rejected"}
