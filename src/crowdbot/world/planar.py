@@ -18,7 +18,7 @@ from crowdbot.models.mixture import MODEL
 from crowdbot.world.robots.drives.drive import Drive, Twists
 from crowdbot.world.robots.drives.servo import CommandDelay, Pending
 
-from .crowd.contact import ContactModel, ContactSurfaces
+from .crowd.contact import ContactModel
 from .crowd.environment_rows import trim_scene, works_in_batches
 from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
@@ -28,6 +28,7 @@ from .crowd.portal import PortalTransfer
 from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
+from .crowd.wall_crossing import ContactSurfaces, stop_at_walls
 from .crowd.waypoint import PolygonZone
 from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
@@ -56,7 +57,7 @@ from .planar_phases import (
     show_robots,
     step_models,
 )
-from .pushes import drift_people, without_drift
+from .pushes import PUSH, drift_people, without_drift
 from .robots.mount import MountPlacement
 from .world import Contact, World
 
@@ -88,8 +89,9 @@ class PlanarWorld(World):
 
     People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
     crowd model, robots are external agents. Without ``contact`` there are no forces between bodies: overlaps are
-    reported in :attr:`contacts`, but not resolved. A robot driven into a wall passes through it. The crowd has its own
-    random stream, which sensors and navigators do not affect. Arguments after ``robot_margin`` are off by default.
+    reported in :attr:`contacts`, but not resolved. People whose path crosses a wall stop there; a robot driven into a
+    wall passes through it. The crowd has its own random stream, which sensors and navigators do not affect. Arguments
+    after ``robot_margin`` are off by default.
 
     Args:
         scene: initial scene; robots are agents with ``external=True``.
@@ -206,11 +208,11 @@ class PlanarWorld(World):
         self.clock.advance()
         elapsed = self.environment_time.age
         earlier, crowd = self._step_crowd(hide_ghosts(without_drift(before), self.ghosts))
-        crowd = self._push_people(crowd)
+        crowd = self._push_people(earlier, crowd)
         if self.avatars is not None:
             earlier, before, crowd = self.avatars.move(self, earlier, before, crowd, elapsed)
         after = self._step_robots(before, crowd, asked)
-        after = self._resolve_overlaps(earlier, after)
+        after = self._finish_motion(earlier, after)
         after = after.replace(external=external, time=self.environment_time.now)
         after = after if self.script is None else self.script.place(after, elapsed)
         after = after if self.avatars is None else self.avatars.place(self.avatars.hold(after), elapsed)
@@ -365,7 +367,7 @@ class PlanarWorld(World):
         """Return the scenes before and after the last substep of the crowd."""
         moving = self._traffic.desired_motion(before, self.heading_jitter)
         start = show_robots(moving, self.twists, self.robot_margin)
-        resolve, radius = self._resolve_overlaps, before.radius
+        resolve, radius = self._finish_motion, before.radius
         step: Callable[[Scene, float], Scene] = self._step_model
         if self.reactions is not None:
             start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
@@ -378,6 +380,17 @@ class PlanarWorld(World):
         models = self._models or (self.model,)
         whole = len(models) == 1 or (self.joined and works_in_batches(self.model))
         return step_models(scene, dt, models, self._rngs, self.model if whole else None)
+
+    def _finish_motion(self, earlier: Scene, after: Scene) -> Scene:
+        """Return the scene after a substep with overlaps resolved, in which nobody has crossed a wall."""
+        return self._stop_at_walls(earlier, self._resolve_overlaps(earlier, after))
+
+    def _stop_at_walls(self, earlier: Scene, after: Scene) -> Scene:
+        return stop_at_walls(earlier, after, self.dt / self.substeps, self._fixed_walls(after))
+
+    def _fixed_walls(self, scene: Scene) -> Walls:
+        """Return the walls that stop people."""
+        return scene.walls
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         if self.contact is None:
@@ -438,9 +451,11 @@ class PlanarWorld(World):
             bodies.forget_renderer()
         return agent
 
-    def _push_people(self, crowd: Scene) -> Scene:
+    def _push_people(self, earlier: Scene, crowd: Scene) -> Scene:
         """Return the scene after the motion by pushes in a step of the crowd."""
-        return drift_people(crowd, self.ids, self.dt)
+        if PUSH not in crowd.memory:
+            return crowd
+        return drift_people(self._stop_at_walls(earlier, crowd), self.ids, self.dt)
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
         """Remove a robot; see :meth:`World.remove_robot`."""

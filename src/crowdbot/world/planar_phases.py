@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Pose, Scene, Twist
 from crowdbot.metrics import step_clearance
 from crowdbot.models import CrowdModel
-from crowdbot.world.crowd.contact import ContactModel, ContactSurfaces
+from crowdbot.world.crowd.contact import ContactModel
 from crowdbot.world.crowd.environment_rows import stack_scenes
 from crowdbot.world.crowd.limits import CrowdLimits
+from crowdbot.world.crowd.wall_crossing import ContactSurfaces
 
 from .crowd.departure import leave_at_goals, leave_in_zone
 from .crowd.people_flow import PeopleFlow

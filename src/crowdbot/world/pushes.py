@@ -81,12 +81,10 @@ def drift_people(scene: Scene, ids: Ints, dt: float) -> Scene:
     """Return the scene after a step of the crowd of ``dt`` [s] with the motion by pushes; walls stop it.
 
     Args:
-        scene: people where the crowd model has moved them.
+        scene: people where the crowd model has moved them; some are pushed, or were.
         ids: identities ``[E, A]``.
         dt: time step [s].
     """
-    if PUSH not in scene.memory:
-        return scene
     memory, position, velocity = scene.memory[PUSH].copy(), scene.position.copy(), scene.velocity.copy()
     segments = scene.walls.segments()
     for e in range(len(memory)):

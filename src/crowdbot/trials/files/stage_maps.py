@@ -217,8 +217,8 @@ def map_of(
 ) -> tuple[shapely.Polygon, ...]:
     """Return the occupied cells of a ROS map (map_server, a ``.yaml`` file with an image) as polygons.
 
-    Cells are read as by nav2_map_server in the modes ``trinary``, ``scale`` and ``raw``. Borders are simplified by at
-    most one cell.
+    Cells are read as by nav2_map_server in the modes ``trinary``, ``scale`` and ``raw``. Cells that touch only at a
+    corner are connected there, by a square with a diagonal of one cell. Borders are simplified by at most one cell.
 
     Args:
         name: name of the ``.yaml`` file in the folder.
@@ -303,7 +303,11 @@ def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tu
     if len(line) == 0:
         return ()
     _check_detail(image, len(line), "runs of solid cells")
-    whole = shapely.union_all(shapely.box(begin, line, end, line + 1))
+    corner_x, corner_y = _diagonal_corners(solid)
+    _check_detail(image, len(corner_x), "corners at which solid cells touch")
+    bridge = 0.5 * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+    bridges = shapely.polygons(np.stack([corner_x, corner_y], axis=-1)[:, None] + bridge)
+    whole = shapely.union_all(np.concatenate([shapely.box(begin, line, end, line + 1), bridges]))
     _check_detail(image, len(shapely.get_coordinates(whole)), "corners of cells")
     parts = shapely.get_parts(shapely.simplify(whole, 1.0, preserve_topology=True))
     corners = len(shapely.get_coordinates(parts))
@@ -314,6 +318,17 @@ def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tu
     turn = np.array([[cos, sin], [-sin, cos]])
     placed = shapely.transform(parts, lambda cells: cells @ turn + np.array([x, y]))
     return tuple(part for part in np.atleast_1d(placed) if part.geom_type == "Polygon" and part.area > 0.0)
+
+
+def _diagonal_corners(solid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return x and y of the corners [cells] at which two solid cells touch and the two others are free.
+
+    Without material there, each cell is a polygon of its own, and simplifying them opens gaps between them.
+    """
+    low, high = solid[:-1], solid[1:]
+    rising, falling = low[:, :-1] & high[:, 1:], low[:, 1:] & high[:, :-1]
+    y, x = np.nonzero(rising & ~(low[:, 1:] | high[:, :-1]) | falling & ~(low[:, :-1] | high[:, 1:]))
+    return x + 1, y + 1
 
 
 def _check_detail(image: Path, count: int, what: str) -> None:

@@ -9,15 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, Walls, did_you_mean, kernel, prange
+from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, did_you_mean, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .contact_bodies import gather_bodies, shift_bodies
 from .contact_search import find_close_bodies
-from .wall_cells import WallCells, wall_cells
+from .wall_cells import WallCells
+from .wall_crossing import PASSES, ContactSurfaces, cell_index, first_crossing, project_off_wall
 
-__all__ = ["ContactModel", "ContactSurfaces"]
+__all__ = ["ContactModel"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -28,10 +29,6 @@ MOST = 24
 """Maximum number of neighbors that push a person at the same time, nearest first."""
 TOUCH = 1.0 - 1e-4
 """Fraction of the contact distance at which two bodies, or a body and a wall, count as separated."""
-PASSES = 4
-"""Maximum number of walls that push a person one after the other."""
-REACH = 0.5
-"""Steps up to this length [m] are tested for wall crossings in grid cells, longer ones against all walls."""
 ALONE = 8
 """Minimum number of environments for which each is the work of one thread."""
 GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
@@ -178,59 +175,21 @@ def _out_of_walls(
 ) -> tuple[float, float]:  # fmt: skip
     """Return x, y moved out of walls. The body of radius r was at b before and stays on that side of the walls."""
     for _ in range(PASSES):
-        m = _first_crossing(wall, first, member, frame, solid, bx, by, x, y)
+        m = first_crossing(wall, first, member, frame, solid, bx, by, x, y)
         if m < 0:
             m = _nearest_wall(wall, first, member, frame, x, y, r)
             if m < 0:
                 return x, y
-            x, y = _project_off_wall(wall[m], solid[m], False, bx, by, x, y, r)
+            x, y = project_off_wall(wall[m], solid[m], False, bx, by, x, y, r)
         else:
-            x, y = _project_off_wall(wall[m], solid[m], True, bx, by, x, y, r)
-    return (x, y) if _first_crossing(wall, first, member, frame, solid, bx, by, x, y) < 0 else (bx, by)
-
-
-@kernel
-def _cell(frame: Floats, x: float, y: float) -> int:
-    """Return the grid cell of x, y; -1 outside the grid."""
-    i, j = math.floor((x - frame[0]) / frame[2]), math.floor((y - frame[1]) / frame[2])
-    if i < 0.0 or j < 0.0 or i >= frame[3] or j >= frame[4]:
-        return -1
-    return int(j) * int(frame[3]) + int(i)
-
-
-@kernel
-def _first_crossing(
-    wall: Floats, first: Rows, member: Rows, frame: Floats, solid: Bools, bx: float, by: float, x: float, y: float
-) -> int:
-    """Return the first wall crossed from b to x, y; -1 for none. Leaving a solid is allowed."""
-    dx, dy = x - bx, y - by
-    if dx == 0.0 and dy == 0.0:
-        return -1
-    short = dx * dx + dy * dy <= frame[5] * frame[5]
-    begin, end = 0, len(wall)
-    if short:
-        cell = _cell(frame, x, y)
-        if cell < 0:
-            return -1
-        begin, end = first[cell], first[cell + 1]
-    found, soonest = -1, math.inf
-    for k in range(begin, end):
-        m = member[k] if short else k
-        ax, ay, wx, wy = wall[m, 0], wall[m, 1], wall[m, 2] - wall[m, 0], wall[m, 3] - wall[m, 1]
-        from_, to = wx * (by - ay) - wy * (bx - ax), wx * (y - ay) - wy * (x - ax)
-        if not ((from_ < 0.0 <= to) or (to <= 0.0 < from_ and not solid[m])):
-            continue
-        t = from_ / (from_ - to)
-        along = ((bx + t * dx - ax) * wx + (by + t * dy - ay) * wy) / (wx * wx + wy * wy)
-        if 0.0 <= along <= 1.0 and t < soonest:
-            found, soonest = m, t
-    return found
+            x, y = project_off_wall(wall[m], solid[m], True, bx, by, x, y, r)
+    return (x, y) if first_crossing(wall, first, member, frame, solid, bx, by, x, y) < 0 else (bx, by)
 
 
 @kernel
 def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, r: float) -> int:
     """Return the nearest wall with a distance below r, -1 for none."""
-    cell = _cell(frame, x, y)
+    cell = cell_index(frame, x, y)
     found, least = -1, (r * TOUCH) ** 2
     if cell >= 0:
         for k in range(first[cell], first[cell + 1]):
@@ -240,53 +199,6 @@ def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: flo
             if d2 < least:
                 found, least = m, d2
     return found
-
-
-@kernel
-def _project_off_wall(
-    wall: Floats, solid: bool, crossed: bool, bx: float, by: float, x: float, y: float, r: float
-) -> tuple[float, float]:
-    """Return x, y moved to distance r from a wall.
-
-    The side is that of b if the wall was crossed, otherwise the current one, and always outside a solid.
-    """
-    ax, ay, ex, ey = wall[0], wall[1], wall[2] - wall[0], wall[3] - wall[1]
-    nx, ny = nearest_on_segment(x, y, ax, ay, wall[2], wall[3])
-    dx, dy = x - nx, y - ny
-    left = ex * (y - ay) - ey * (x - ax)
-    inner = abs(dx * ex + dy * ey) <= 1e-9 * (abs(left) + 1e-300)
-    length = math.sqrt(ex * ex + ey * ey)
-    side = 1.0 if ex * (by - ay) - ey * (bx - ax) > 0.0 else -1.0
-    if solid and (crossed or (inner and left > 0.0)):
-        side = -1.0
-    elif not crossed and (dx != 0.0 or dy != 0.0):
-        distance = math.sqrt(dx * dx + dy * dy)
-        return nx + dx / distance * r, ny + dy / distance * r
-    return nx - side * ey / length * r, ny + side * ex / length * r
-
-
-class ContactSurfaces(NamedTuple):
-    """Walls, prepared for contact with bodies.
-
-    Fields:
-        walls: the walls.
-        cells: the walls sorted into a grid.
-        solid: ``[M]`` whether the left side of a wall is solid.
-        reach: largest supported radius of a body [m].
-    """
-
-    walls: Walls
-    cells: WallCells
-    solid: Bools
-    reach: float
-
-    @classmethod
-    def of(cls, walls: Walls, reach: float) -> ContactSurfaces:
-        """Prepare walls for bodies up to a radius of ``reach`` [m]."""
-        thin = walls.previous == walls.next
-        once = ~thin | (np.arange(len(walls)) < walls.next)
-        wide = max(REACH, float(reach))
-        return cls(walls, wall_cells(walls.segments(), wide), ~thin[once], wide)
 
 
 @dataclass(frozen=True)

@@ -294,6 +294,10 @@ class PhysicsWorld(PlanarWorld):
         kept = {name: getattr(before, name) for name in ("walls", "external", "preferred_speed", "max_speed")}
         return earlier.replace(**kept), crowd.replace(**kept)
 
+    def _fixed_walls(self, scene: Scene) -> Walls:
+        """Return the walls that stop people, with the outlines of fixed props."""
+        return self._outlined
+
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Resolve overlaps of people as in the plane; robots are left to the engine."""
         if self.contact is None:
@@ -464,7 +468,7 @@ class PhysicsWorld(PlanarWorld):
         pushed = acting_pushes(scene, self.ids)
         return pushed if self.falling is None else np.union1d(self.falling.wanting(), pushed)
 
-    def _push_people(self, crowd: Scene) -> Scene:
+    def _push_people(self, earlier: Scene, crowd: Scene) -> Scene:
         """Return the scene unchanged: the engine applies the forces."""
         return crowd
 
