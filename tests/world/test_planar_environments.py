@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA, CrowdModel, Mixture, SocialForce
 from crowdbot.world import (
+    AckermannDrive,
     DifferentialDrive,
     PlanarWorld,
     Twists,
@@ -88,6 +89,22 @@ def test_environments_that_are_replaced_begin_anew(kind: str, data: st.DataObjec
     expected = [alone(*row) for row in zip(seeds, counts, [kind] * 3, ages, strict=True)]
     assert digests(whole) == expected  # type: ignore[arg-type]
     assert whole.ticks.tolist() == ages
+
+
+@pytest.mark.parametrize("steps", [(3, 0), (0, 3)])
+def test_a_car_at_rest_replaces_one_that_drives_and_the_reverse(steps: tuple[int, int]) -> None:
+    """A car has a steering angle after its first step only."""
+    scene = Scene.of([[0.0, 0.0], [3.0, 1.0]], external=[True, False])
+    parts = [PlanarWorld(scene, ORCA(), {0: AckermannDrive()}, 0.1, seed) for seed in range(2)]
+    for part, count in zip(parts, steps, strict=True):
+        for _ in range(count):
+            part.step({0: Twist(0.5, 0.3)})
+    single = select_environments(parts[1], [0])
+    assert put_environments(parts[0], [0], parts[1]) is parts[0]
+    for _ in range(4):
+        parts[0].step({0: Twist(0.4, -0.2)})
+        single.step({0: Twist(0.4, -0.2)})
+    assert digests(parts[0]) == digests(single)  # type: ignore[arg-type]
 
 
 def test_selected_environments_do_not_share_state() -> None:

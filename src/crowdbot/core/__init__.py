@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.lazy import lazy_exports
 
+from . import tree
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
@@ -181,6 +182,7 @@ __all__ = [
     "stream_states",
     "system_name",
     "table_rows",
+    "tree",
     "unread_fields",
     "user_data_folder",
     "whole_ticks",

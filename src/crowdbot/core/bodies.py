@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
+from .tree import take
 
 __all__ = ["STAGE", "Bodies", "Skins"]
 
@@ -35,6 +36,7 @@ class Skins:
     faces: Ints
     owner: Ints
     part: Ints
+    shared_fields: ClassVar[tuple[str, ...]] = ("faces", "owner", "part")
 
     @classmethod
     def of(cls, vertices: ArrayLike, faces: ArrayLike, owner: ArrayLike, part: ArrayLike = -1) -> Skins:
@@ -100,6 +102,9 @@ class Bodies:
     post_owner: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     post_part: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     skins: Skins | None = None
+    shared_fields: ClassVar[tuple[str, ...]] = (
+        "owner", "part", "parts", "box_owner", "box_part", "post_owner", "post_part",
+    )  # fmt: skip
 
     @classmethod
     def of(cls, *, parts: tuple[str, ...] = (), skins: Skins | None = None, **arrays: ArrayLike) -> Bodies:
@@ -140,9 +145,7 @@ class Bodies:
 
     def environments(self, index: Ints) -> Bodies:
         """Return the environments with these indices along E."""
-        arrays: dict[str, Any] = {name: getattr(self, name)[index] for name in AXES}
-        skins = None if self.skins is None else dataclasses.replace(self.skins, vertices=self.skins.vertices[index])
-        return dataclasses.replace(self, **arrays, skins=skins)
+        return take(self, index)
 
     def stage_bodies(self) -> Bodies:
         """Return only the bodies of the stage.

@@ -7,7 +7,7 @@ import math
 import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from .bodies import Bodies
 from .errors import InputError
 from .kernels import kernel
 from .model_parameter import BOOL, FLOAT, dense
+from .tree import take
 from .walls import Walls
 
 __all__ = ["Scene"]
@@ -95,6 +96,7 @@ class Scene:
     bodies: Bodies | None = None
     height: Floats | None = None
     wall_height: float = WALL_HEIGHT
+    shared_fields: ClassVar[tuple[str, ...]] = ("walls",)
 
     @classmethod
     def of(
@@ -273,16 +275,7 @@ class Scene:
         >>> pair.environments([1, 0, 1, 1]).shape
         (4, 3)
         """
-        index = np.asarray(chosen, dtype=np.int64)
-        part = self._copy()
-        part.__dict__.pop(IS_DENSE, None)
-        for name, value in self.__dict__.items():
-            if isinstance(value, np.ndarray):
-                part.__dict__[name] = value[index]
-        part.__dict__["memory"] = {name: value[index] for name, value in self.memory.items()}
-        if self.bodies is not None:
-            part.__dict__["bodies"] = self.bodies.environments(index)
-        return part
+        return take(self, np.asarray(chosen, dtype=np.int64))
 
     def environment(self, number: int) -> Scene:
         """Return one environment; its arrays are views, which must not be changed.

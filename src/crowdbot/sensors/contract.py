@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crowdbot.core import InputError, Pose, Scene, stream
+from crowdbot.core import InputError, Pose, Scene, stream, tree
 
 from .lens import ImageSource
 from .noise import Randomness
-from .rows import count_rows
 from .sensor import Reading, Sensor
 from .state_rows import measure_rows, put_state_rows, take_state_rows
 from .view import SensorView
@@ -103,7 +102,7 @@ def _check_batch(sensor: Sensor) -> None:
         time = np.array([STARTS[e] + 0.1 * counts[e] for e in due])
         view = SensorView(_scene(time, due), _pose(time, due))
         reading, rows = _measure_batch(sensor, view, take_state_rows(state, due), [rngs[e] for e in due])
-        count_rows(rows, f"state of {name}")
+        tree.count(rows, f"state of {name}")
         state = rows if len(due) == 2 else put_state_rows(state, due, rows, 2)
         if not np.array_equal(reading.time, time):
             raise InputError(f"{name}: the time of the reading is {reading.time} s, it must be {time} s")

@@ -11,11 +11,10 @@ from typing import Any, ClassVar, Protocol, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, tree
 
 from .lens import ImageSource
 from .noise import Noise, Randomness
-from .rows import check_rows, environment_index, join_rows, take_rows
 from .view import SensorView
 
 __all__ = ["Reading", "Sensor", "join_readings"]
@@ -54,8 +53,8 @@ class Reading:
             InputError: an environment does not exist, or the first axis of an array is not the environments.
         """
         name = type(self).__name__
-        check_rows(self, len(self.pose.position), name)
-        return take_rows(self, environment_index(index, len(self.pose.position), name))
+        tree.check(self, len(self.pose.position), name)
+        return tree.take(self, tree.environment_index(index, len(self.pose.position), name))
 
     def environment(self, number: int) -> Self:
         """Return the reading of one environment, with arrays ``[1, ...]`` and the time as a number.
@@ -66,8 +65,8 @@ class Reading:
         count, name = len(self.pose.position), type(self).__name__
         if not 0 <= number < count:
             raise InputError(f"{name}: the environment is {number}, it must be from 0 to {count - 1}")
-        check_rows(self, count, name)
-        alone = take_rows(self, slice(number, number + 1))
+        tree.check(self, count, name)
+        alone = tree.take(self, slice(number, number + 1))
         return dataclasses.replace(alone, time=float(alone.time[0])) if isinstance(alone.time, np.ndarray) else alone
 
 
@@ -194,14 +193,14 @@ def join_readings(readings: Sequence[ReadingKind], environments: Sequence[ArrayL
     [[1.0, 0.0], [2.0, 0.0]]
     """
     name = type(readings[0]).__name__ if readings else "readings"
-    places = [environment_index(index, None, name) for index in environments]
+    places = [tree.environment_index(index, None, name) for index in environments]
     every = np.concatenate(places) if places else np.zeros(0, dtype=np.int64)
     if not readings or not np.array_equal(np.sort(every), np.arange(len(every))):
         raise InputError(f"{name}: the environments are {every.tolist()}, they must be 0 to E - 1, each once")
     for reading, place in zip(readings, places, strict=True):
-        check_rows(reading, len(place), name)
+        tree.check(reading, len(place), name)
     try:
-        joined: ReadingKind = join_rows(readings, places, len(every))
+        joined: ReadingKind = tree.join(readings, places, len(every))
     except TypeError:
         raise InputError(f"{name}: the readings have different classes, fields or shapes") from None
     return joined

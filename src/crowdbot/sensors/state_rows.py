@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, tree
 
 from .noise import Randomness
-from .rows import count_rows, environment_index, join_rows, take_rows
 from .sensor import Reading, Sensor, join_readings
 from .view import SensorView
 
@@ -51,9 +50,9 @@ def take_state_rows(state: Any, index: ArrayLike) -> Any:
     {'time': 0.5, 'bias': array([3., 2.])}
     """
     if isinstance(state, StateGroups):
-        rows = environment_index(index, state.count, "state")
-        return _grouped([(where, take_rows(part, found)) for where, found, part in _chosen(state, rows)], len(rows))
-    return take_rows(state, environment_index(index, count_rows(state, "state"), "state"))
+        rows = tree.environment_index(index, state.count, "state")
+        return _grouped([(where, tree.take(part, found)) for where, found, part in _chosen(state, rows)], len(rows))
+    return tree.take(state, tree.environment_index(index, tree.count(state, "state"), "state"))
 
 
 def put_state_rows(state: Any, index: ArrayLike, rows: Any, environments: int | None = None) -> Any:
@@ -83,7 +82,7 @@ def put_state_rows(state: Any, index: ArrayLike, rows: Any, environments: int | 
         count = environments
     elif environments is not None and environments != count:
         raise InputError(f"state: it has {count} environments, not {environments}")
-    chosen = environment_index(index, count, "state")
+    chosen = tree.environment_index(index, count, "state")
     if len(np.unique(chosen)) != len(chosen):
         raise InputError(f"state: the environments are {chosen.tolist()}, each must occur once")
     if (new := _count(rows)) is not None and new != len(chosen):
@@ -96,7 +95,7 @@ def put_state_rows(state: Any, index: ArrayLike, rows: Any, environments: int | 
         return rows
     if not isinstance(state, StateGroups) and not isinstance(rows, StateGroups):
         try:
-            return join_rows([state, rows], [slice(None), chosen], count)
+            return tree.put(state, chosen, rows, count)
         except TypeError:  # other structures: groups
             pass
     kept = np.ones(count, dtype=np.bool_)
@@ -131,7 +130,7 @@ def measure_rows(sensor: Sensor, view: SensorView, state: Any, rng: Randomness |
 
 
 def _count(state: Any) -> int | None:
-    return state.count if isinstance(state, StateGroups) else count_rows(state, "state")
+    return state.count if isinstance(state, StateGroups) else tree.count(state, "state")
 
 
 def _pieces(state: Any, count: int) -> list[tuple[Ints, Any]]:
@@ -159,13 +158,13 @@ def _grouped(pieces: list[tuple[Ints, Any]], count: int) -> Any:
             both = np.sort(np.concatenate([others, where]))
             places = [np.searchsorted(both, others), np.searchsorted(both, where)]
             try:
-                groups[number] = (both, join_rows([state, part], places, len(both)))
+                groups[number] = (both, tree.join([state, part], places, len(both)))
             except TypeError:
                 continue
             break
         else:
             order = np.argsort(where)
-            groups.append((where[order], take_rows(part, order)))
+            groups.append((where[order], tree.take(part, order)))
     if len(groups) == 1:
         return groups[0][1]
     return StateGroups(tuple(where for where, _ in groups), tuple(part for _, part in groups))

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, tree
 
 from .lens import ImageSource
 from .odometry.wheel_rotation import WheelRotation
-from .rows import environment_index, take_rows
 
 __all__ = ["SensorView"]
 
@@ -54,10 +53,10 @@ class SensorView:
         Raises:
             InputError: an environment does not exist.
         """
-        chosen = environment_index(index, self.environments, "SensorView")
-        pose = take_rows(self.pose, chosen)
+        chosen = tree.environment_index(index, self.environments, "SensorView")
+        pose = tree.take(self.pose, chosen)
         images = None if self.renderer is None else _Selection(self.renderer, chosen, self.environments)
-        return SensorView(self.scene.environments(chosen), pose, images, take_rows(self.wheels, chosen))
+        return SensorView(self.scene.environments(chosen), pose, images, tree.take(self.wheels, chosen))
 
     def check(self, sensor: str) -> None:
         """Raise :class:`InputError` if the pose is not finite or does not have one row for each environment."""
@@ -85,5 +84,5 @@ class _Selection:
     def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
         places = np.zeros(self.environments, dtype=np.int64)
         places[self.index] = np.arange(len(self.index))
-        images = self.renderer.render(camera, take_rows(pose, places))
+        images = self.renderer.render(camera, tree.take(pose, places))
         return {name: np.asarray(image)[self.index] for name, image in images.items()}

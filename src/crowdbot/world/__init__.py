@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from .crowd.arrivals import arrival_counts
     from .crowd.avatars import Avatars, give_pose
     from .crowd.contact import ContactModel
-    from .crowd.environment_rows import take_arrays
     from .crowd.journey import JourneyAssignment, WaypointSequence
     from .crowd.limits import CrowdLimits
     from .crowd.people_flow import environment_seeds
@@ -218,7 +217,6 @@ _LAZY = {
     "simulated_body": "robots.wheel_encoders",
     "slot_of": "live_changes",
     "step_environments": "environments",
-    "take_arrays": "crowd.environment_rows",
     "two_body_force": "physics.body_region_limits",
     "wheel_geometry": "robots.wheel_encoders",
     "wheel_rotation": "robots.wheel_encoders",
@@ -351,7 +349,6 @@ __all__ = [
     "simulated_body",
     "slot_of",
     "step_environments",
-    "take_arrays",
     "two_body_force",
     "wheel_geometry",
     "wheel_rotation",

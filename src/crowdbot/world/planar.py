@@ -19,7 +19,7 @@ from crowdbot.world.robots.drives.drive import Drive, Twists
 from crowdbot.world.robots.drives.servo import CommandDelay, Pending
 
 from .crowd.contact import ContactModel
-from .crowd.environment_rows import trim_scene, works_in_batches
+from .crowd.environment_rows import resize_scene, works_in_batches
 from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
@@ -355,7 +355,7 @@ class PlanarWorld(World):
         """Return the scene of one environment with its own number of agents."""
         slots = int(self.slots[environment])
         one = self.scene if len(self.slots) == 1 else self.scene.environment(environment)
-        return one if slots == one.shape[1] else trim_scene(one, slots)
+        return one if slots == one.shape[1] else resize_scene(one, slots)
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene with replayed people and avatars as external agents."""

@@ -10,20 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Scene, Twist
+from crowdbot.core import InputError, MissingExtra, Scene, Twist, tree
 from crowdbot.models import CrowdModel
 from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.drives.servo import Pending
 
 from .crowd.environment_rows import (
-    concatenate_arrays,
     pad_ids,
-    pad_scene,
-    put_arrays,
     put_scene,
     set_models,
     stack_scenes,
-    take_arrays,
     works_in_batches,
 )
 from .crowd.people_flow import PeopleFlow
@@ -66,7 +62,7 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     whole._rngs = first._rngs.join([world._rngs for world in worlds[1:]])
     set_models(whole, [model for world in worlds for model in _models(world)])
     _set_flow(whole, _join_flows([world._traffic for world in worlds], whole.scene.shape[1]))
-    whole.twists = {robot: concatenate_arrays([world.twists[robot] for world in worlds]) for robot in first.twists}
+    whole.twists = {robot: tree.join([world.twists[robot] for world in worlds]) for robot in first.twists}
     whole._delayed = _join_delays(worlds)
     whole.slots = np.concatenate([world.slots for world in worlds])
     whole.contacts, begin = (), 0
@@ -114,7 +110,7 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     arrivals = None if flow.arrivals is None else flow.arrivals.select(index.tolist())
     changed: dict[str, Any] = {name: getattr(flow, name)[index] for name in ("seeds", "ids", "following")}
     _set_flow(some, dataclasses.replace(flow, arrivals=arrivals, **changed))
-    some.twists = {robot: take_arrays(twists, index) for robot, twists in world.twists.items()}
+    some.twists = {robot: tree.take(twists, index) for robot, twists in world.twists.items()}
     some._delayed = {robot: _take_delay(delay, index, world) for robot, delay in world._delayed.items()}
     some.slots = world.slots[index]
     some.avatars = None if world.avatars is None else world.avatars.select(index)
@@ -137,9 +133,8 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
     agents = max(world.scene.shape[1], other.scene.shape[1])
     walls = world.scene.walls if world.doors is None else other.scene.walls
     world.doors, world.router = other.doors, world.router if other.doors is None else other.router
-    world.scene = put_scene(pad_scene(world.scene, agents), index, pad_scene(other.scene, agents)).replace(walls=walls)
-    before = put_scene(pad_scene(world._previous, agents), index, pad_scene(other._previous, agents))
-    world._previous = before.replace(walls=walls)
+    world.scene = put_scene(world.scene, index, other.scene).replace(walls=walls)
+    world._previous = put_scene(world._previous, index, other._previous).replace(walls=walls)
     world.environment_time.put(index, other.environment_time)
     models = list(_models(world))
     flow, new = world._traffic, other._traffic
@@ -159,7 +154,7 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
     world.slots[index] = other.slots
     if world.avatars is not None and other.avatars is not None:
         world.avatars.put(index, other.avatars)
-    world.twists = {robot: put_arrays(twists, index, other.twists[robot]) for robot, twists in world.twists.items()}
+    world.twists = {robot: _put_twists(twists, index, other.twists[robot]) for robot, twists in world.twists.items()}
     world._delayed = {robot: _reset_delay(delay, index, world) for robot, delay in world._delayed.items()}
     fresh = set(index.tolist())
     world.contacts = tuple(one for one in world.contacts if one.environment not in fresh)
@@ -192,7 +187,7 @@ def step_one_by_one(
         index = np.array([e])
         part = select_environments(world, index)
         try:
-            part.step({robot: take_arrays(command, index) for robot, command in wide.items()})
+            part.step({robot: tree.take(command, index) for robot, command in wide.items()})
         except MissingExtra:
             raise
         except Exception as error:  # told to the caller
@@ -226,8 +221,12 @@ def _join_flows(flows: Sequence[PeopleFlow], agents: int) -> PeopleFlow:
     )
 
 
-def _wide(twist: Twist | Twists, count: int) -> Twists:
-    return Twists.of(twist, count)
+def _put_twists(twists: Twists, index: Ints, rows: Twists) -> Twists:
+    """Replace the twists of some environments; those of a car have a steering angle after its first step, 0 before."""
+    kind = type(twists) if isinstance(twists, type(rows)) else type(rows)
+    names = [field.name for field in dataclasses.fields(kind)]
+    whole, part = (kind(*(getattr(one, name, np.zeros_like(one.forward)) for name in names)) for one in (twists, rows))
+    return tree.put(whole, index, part)
 
 
 def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending, ...], Twist | Twists]]:
@@ -240,11 +239,11 @@ def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending
         pending = []
         for k in range(1, len(most) + 1):  # from the latest command backwards
             parts = [
-                _wide(row[-k].command if k <= len(row) else Twist(), n)
+                Twists.of(row[-k].command if k <= len(row) else Twist(), n)
                 for (row, _), n in zip(rows, counts, strict=True)
             ]
-            pending.append(Pending(most[-k].wait, concatenate_arrays(parts)))
-        now = concatenate_arrays([_wide(command, n) for (_, command), n in zip(rows, counts, strict=True)])
+            pending.append(Pending(most[-k].wait, tree.join(parts)))
+        now = tree.join([Twists.of(command, n) for (_, command), n in zip(rows, counts, strict=True)])
         found[robot] = (tuple(reversed(pending)), now)
     return found
 
@@ -252,13 +251,13 @@ def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending
 def _take_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
     pending, now = delay
     count = len(world.slots)
-    rows = tuple(Pending(one.wait, take_arrays(_wide(one.command, count), index)) for one in pending)
-    return rows, take_arrays(_wide(now, count), index)
+    rows = tuple(Pending(one.wait, tree.take(Twists.of(one.command, count), index)) for one in pending)
+    return rows, tree.take(Twists.of(now, count), index)
 
 
 def _reset_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
     """Return delayed commands in which restarted robots stand still until their first command arrives."""
     pending, now = delay
-    count, still = len(world.slots), _wide(Twist(), len(index))
-    rows = tuple(Pending(one.wait, put_arrays(_wide(one.command, count), index, still)) for one in pending)
-    return rows, put_arrays(_wide(now, count), index, still)
+    count, still = len(world.slots), Twists.of(Twist(), len(index))
+    rows = tuple(Pending(one.wait, tree.put(Twists.of(one.command, count), index, still)) for one in pending)
+    return rows, tree.put(Twists.of(now, count), index, still)

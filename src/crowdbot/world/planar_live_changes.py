@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Twist, Walls, did_you_mean
 from crowdbot.world.robots.drives.drive import Drive, Twists
 
-from .crowd.environment_rows import pad_ids, pad_scene, set_models
+from .crowd.environment_rows import pad_ids, resize_scene, set_models
 from .robots.robot import Robot
 from .world import World
 
@@ -82,7 +82,7 @@ def robot_environments(world: World, agent: int, environments: Sequence[int] | N
 def widen(world: Any, agents: int) -> None:
     """Add absent agents to all environments of a planar or physics world, so that each has at least ``agents``."""
     if agents > world.scene.shape[1]:
-        world.scene, world._previous = pad_scene(world.scene, agents), pad_scene(world._previous, agents)
+        world.scene, world._previous = resize_scene(world.scene, agents), resize_scene(world._previous, agents)
         world._traffic.ids = pad_ids(world._traffic.ids, agents)
         world.ids = world._traffic.ids
         set_models(world, [world.model] * len(world.slots) if world._models is None else world._models)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls
-from crowdbot.world.crowd.environment_rows import concatenate_arrays, pad_ids, stack_scenes, take_arrays, trim_scene
+from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls, tree
+from crowdbot.world.crowd.environment_rows import pad_ids, resize_scene, stack_scenes
 from crowdbot.world.environment_time import EnvironmentTime
 from crowdbot.world.planar_live_changes import (
     check_robot_place,
@@ -73,7 +73,7 @@ class WorldBatch(World):
     def scene(self, scene: Scene) -> None:
         """Change the scene of each environment."""
         for e, world in enumerate(self.worlds):
-            one = trim_scene(scene.environments([e]), world.scene.shape[1])
+            one = resize_scene(scene.environments([e]), world.scene.shape[1])
             world.scene = one.replace(walls=world.scene.walls, time=world.scene.time)
 
     @property
@@ -90,9 +90,7 @@ class WorldBatch(World):
     @property
     def twists(self) -> dict[int, Twists]:  # type: ignore[override]
         """Current twist of each robot."""
-        return {
-            robot: concatenate_arrays([world.twists[robot] for world in self.worlds]) for robot in self.worlds[0].twists
-        }
+        return {robot: tree.join([world.twists[robot] for world in self.worlds]) for robot in self.worlds[0].twists}
 
     @property
     def contacts(self) -> tuple[Contact, ...]:  # type: ignore[override]
@@ -124,7 +122,7 @@ class WorldBatch(World):
         def advance(e: int) -> Exception | None:
             index = np.array([e])
             try:
-                self.worlds[e].step({robot: take_arrays(one, index) for robot, one in wide.items()})
+                self.worlds[e].step({robot: tree.take(one, index) for robot, one in wide.items()})
             except Exception as error:  # told to the caller
                 return error
             return None
@@ -197,16 +195,13 @@ class WorldBatch(World):
 
     def pose(self, robot: int) -> Pose:
         """Return the pose of a robot in every environment."""
-        poses = [world.pose(robot) for world in self.worlds]
-        return Pose(np.concatenate([p.position for p in poses]), np.concatenate([p.heading for p in poses]))
+        poses: list[Pose] = [world.pose(robot) for world in self.worlds]
+        return tree.join(poses)
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
         """Return the pose of a sensor in every environment; see :class:`World`."""
-        poses: list[Any] = [world.sensor_pose(robot, mount, spatial) for world in self.worlds]
-        place = np.concatenate([pose.position for pose in poses])
-        if isinstance(poses[0], Pose):
-            return Pose(place, np.concatenate([pose.heading for pose in poses]))
-        return SpatialPose(place, np.concatenate([pose.rotation for pose in poses]))
+        poses: list[Pose | SpatialPose] = [world.sensor_pose(robot, mount, spatial) for world in self.worlds]
+        return tree.join(poses)
 
     def wall_clearance(self, robot: int) -> NDArray[np.float64]:
         """Return the clearance to fixed objects ``[E]`` [m]; see :class:`World`."""
@@ -268,7 +263,7 @@ class WorldBatch(World):
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: Any = None, **how: Any) -> None:
         """Change parameters of all environments; see :meth:`PlanarWorld.reconfigure`."""
         for e, world in enumerate(self.worlds):
-            one = trim_scene(scene.environments([e]), world.scene.shape[1]).replace(walls=world.scene.walls)
+            one = resize_scene(scene.environments([e]), world.scene.shape[1]).replace(walls=world.scene.walls)
             own = None if seed is None else (seed + e if isinstance(seed, int) else seed[e])
             world.reconfigure(one, sources, own, **how)
 

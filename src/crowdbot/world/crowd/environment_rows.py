@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
+from crowdbot.core import Scene, tree
 from crowdbot.models import CrowdModel, Mixture
 
 __all__ = [
-    "concatenate_arrays",
     "join_models",
     "pad_ids",
-    "pad_scene",
-    "put_arrays",
     "put_scene",
+    "resize_scene",
     "set_models",
     "stack_scenes",
-    "take_arrays",
-    "trim_scene",
     "works_in_batches",
 ]
-
-T = TypeVar("T")
 
 FILLS = {"radius": 0.25, "group": -1, "external": True, "visible": True}
 """Values of the slots that pad a scene. They are external, so that nobody enters in them."""
@@ -43,40 +37,48 @@ def works_in_batches(model: CrowdModel) -> bool:
 
 
 def stack_scenes(scenes: Sequence[Scene]) -> Scene:
-    """Return the scenes as environments of one scene with the walls of the first; shorter ones are padded.
+    """Join scenes with the walls and bodies of the first; those with fewer agents are padded.
 
     >>> stack_scenes([Scene.of([[0.0, 0.0]]), Scene.of([[1.0, 0.0], [2.0, 0.0]])]).active.tolist()
     [[True, False], [True, True]]
     """
-    if len(scenes) == 1:
-        return scenes[0]
+    return scenes[0] if len(scenes) == 1 else _with_common_time(tree.join(_aligned(scenes)), scenes[0])
+
+
+def put_scene(scene: Scene, index: NDArray[np.int64], rows: Scene) -> Scene:
+    """Replace the environments ``index`` of a scene; the scene with fewer agents is padded."""
+    whole, part = _aligned([scene, rows])
+    return _with_common_time(tree.put(whole, index, part), scene)
+
+
+def _aligned(scenes: Sequence[Scene]) -> list[Scene]:
+    """Scenes without bodies, with equally many agents and the same memories.
+
+    A memory that a scene lacks, such as that of pushes before the first one, is zero.
+    """
     agents = max(scene.shape[1] for scene in scenes)
-    rows = [pad_scene(scene, agents) for scene in scenes]
-    arrays = {name: np.concatenate([getattr(row, name) for row in rows]) for name in _names(rows[0])}
-    names = {name: value for row in rows for name, value in row.memory.items()}
-    memory = {name: np.concatenate([_memory(row, name, value) for row in rows]) for name, value in names.items()}
-    times = np.concatenate([np.broadcast_to(row.time, (row.shape[0],)) for row in rows])
-    return rows[0].replace(**arrays, memory=memory, time=_shared(times))
+    kinds = {name: (value.shape[2:], value.dtype) for scene in scenes for name, value in scene.memory.items()}
+    rows = []
+    for scene in scenes:
+        memory = {
+            name: scene.memory.get(name, np.zeros((*scene.shape, *tail), of)) for name, (tail, of) in kinds.items()
+        }
+        rows.append(resize_scene(scene.replace(bodies=None, memory=memory), agents))
+    return rows
 
 
-def _memory(scene: Scene, name: str, like: NDArray[Any]) -> NDArray[Any]:
-    """Return a memory of a scene, zeros if it begins later in the run, as that of pushes."""
-    known = scene.memory.get(name)
-    return np.zeros((*scene.shape, *like.shape[2:]), dtype=like.dtype) if known is None else known
+def _with_common_time(scene: Scene, first: Scene) -> Scene:
+    """Scene with the bodies of the first one, and with one number as its time if all environments agree."""
+    time = scene.time
+    if isinstance(time, np.ndarray) and np.all(time == time[0]):
+        time = float(time[0])
+    return scene.replace(time=time, bodies=first.bodies)
 
 
-def pad_scene(scene: Scene, agents: int) -> Scene:
-    """Return a scene with absent, external agents at the end, so that it has this number of agents."""
-    more = agents - scene.shape[1]
-    if more <= 0:
-        return scene
-
-    def padded(value: NDArray[Any], fill: Any = 0) -> NDArray[Any]:
-        block = np.full((len(value), more, *value.shape[2:]), fill, dtype=value.dtype)
-        return np.concatenate([value, block], axis=1)
-
-    arrays = {name: padded(getattr(scene, name), FILLS.get(name, 0)) for name in _names(scene)}
-    return scene.replace(**arrays, memory={name: padded(value) for name, value in scene.memory.items()})
+def resize_scene(scene: Scene, agents: int) -> Scene:
+    """Remove the last agents of a scene, or add absent, external ones, so that it has this number of agents."""
+    plain = tree.resize(scene.replace(memory={}, bodies=None), agents, FILLS)
+    return plain.replace(memory=tree.resize(scene.memory, agents, {}), bodies=scene.bodies)
 
 
 def pad_ids(ids: NDArray[np.int64], agents: int) -> NDArray[np.int64]:
@@ -94,50 +96,6 @@ def set_models(world: Any, models: list[Any]) -> None:
     world._models = models
     world.joined = joined is not None
     world.model = models[0] if joined is None else joined
-
-
-def trim_scene(scene: Scene, agents: int) -> Scene:
-    """Return a scene with only the first agents."""
-    arrays = {name: getattr(scene, name)[:, :agents].copy() for name in _names(scene)}
-    return scene.replace(**arrays, memory={name: value[:, :agents].copy() for name, value in scene.memory.items()})
-
-
-def put_scene(scene: Scene, index: NDArray[np.int64], rows: Scene) -> Scene:
-    """Return the scene with the environments ``index`` replaced by those of another with as many agents."""
-    arrays = {name: _put(getattr(scene, name), index, getattr(rows, name)) for name in _names(scene)}
-    names = {**rows.memory, **scene.memory}
-    memory = {
-        name: _put(_memory(scene, name, value), index, _memory(rows, name, value)) for name, value in names.items()
-    }
-    times = np.array(np.broadcast_to(scene.time, (scene.shape[0],)))
-    times[index] = rows.time
-    return scene.replace(**arrays, memory=memory, time=_shared(times))
-
-
-def take_arrays(value: T, index: NDArray[np.int64]) -> T:
-    """Return a dataclass of arrays ``[E, ...]`` with the environments ``index``."""
-    anything: Any = value
-    names = [part.name for part in dataclasses.fields(anything)]
-    found: T = dataclasses.replace(anything, **{name: getattr(anything, name)[index] for name in names})
-    return found
-
-
-def concatenate_arrays(values: Sequence[T]) -> T:
-    """Return dataclasses of arrays ``[E, ...]`` as one, with the environments of all."""
-    first: Any = values[0]
-    names = [part.name for part in dataclasses.fields(first)]
-    columns = {name: np.concatenate([getattr(one, name) for one in values]) for name in names}
-    found: T = dataclasses.replace(first, **columns)
-    return found
-
-
-def put_arrays(value: T, index: NDArray[np.int64], rows: T) -> T:
-    """Return a dataclass of arrays ``[E, ...]`` with the environments ``index`` replaced."""
-    anything: Any = value
-    names = [part.name for part in dataclasses.fields(anything)]
-    changed = {name: _put(getattr(anything, name), index, getattr(rows, name)) for name in names}
-    found: T = dataclasses.replace(anything, **changed)
-    return found
 
 
 def join_models(models: Sequence[CrowdModel], agents: int) -> CrowdModel | None:
@@ -204,20 +162,3 @@ def _pad_row(value: NDArray[Any], agents: int) -> NDArray[Any]:
     """Return a number or ``[A]`` or ``[1, A]`` as ``[agents]``; further agents get the last value, or 1."""
     row = np.atleast_1d(value).reshape(-1)
     return np.concatenate([row, np.full(agents - len(row), row[-1] if len(row) else 1, dtype=row.dtype)])
-
-
-def _names(scene: Scene) -> list[str]:
-    """Return the fields of a scene that are arrays ``[E, A, ...]``."""
-    names = (part.name for part in dataclasses.fields(scene) if part.name != "time")
-    return [name for name in names if isinstance(getattr(scene, name), np.ndarray)]
-
-
-def _put(value: NDArray[Any], index: NDArray[np.int64], rows: NDArray[Any]) -> NDArray[Any]:
-    changed = value.copy()
-    changed[index] = rows
-    return changed
-
-
-def _shared(times: NDArray[np.float64]) -> Any:
-    """Return the common time of all environments, or their times ``[E]``."""
-    return float(times[0]) if np.all(times == times[0]) else times
