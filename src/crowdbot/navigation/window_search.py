@@ -213,7 +213,8 @@ def _clearance(i: int, j: int, k: int, n: int, radius: float, passing: Floats, p
     px, py = passing[k, n, 0] - path[j, k, 0, i], passing[k, n, 1] - path[j, k, 1, i]
     qx, qy = passing[k, n, 2] - path[j, k + 1, 0, i], passing[k, n, 3] - path[j, k + 1, 1, i]
     nx, ny = nearest_on_segment(0.0, 0.0, px, py, qx, qy)
-    return math.sqrt(nx * nx + ny * ny) - radius - passing[k, n, 4]
+    gap: float = math.sqrt(nx * nx + ny * ny) - radius - passing[k, n, 4]
+    return gap
 
 
 @kernel
