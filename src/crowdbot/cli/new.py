@@ -52,8 +52,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim, HuNavSim, IR-SIM, Arena-Rosnav, Gazebo, JuPedSim or the CrowdBot simulator"
-        " (2021), a drawing (DXF), or a building (.glb)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim, IR-SIM, Arena-Rosnav, Gazebo, JuPedSim, Menge or the CrowdBot"
+        " simulator (2021), a drawing (DXF), or a building (.glb)",
     )
     begin.add_argument(
         "--recorded",
