@@ -81,16 +81,47 @@ PROJECT = """<?xml version="1.0"?>
 <agent_parameters agent_parameter_id="1"><v0 mu="1.2" sigma="0.1"/></agent_parameters></model>
 </operational_models><routing><goals><goal id="4" final="true"><polygon><vertex px="1" py="1"/><vertex px="2" py="1"/>
  <vertex px="2" py="2"/><vertex px="1" py="1"/></polygon></goal></goals></routing><train_constraints/></JuPedSim>"""
+MENGE = """<?xml version="1.0"?>
+<Experiment version="2.0"><SpatialQuery type="kd-tree"/><Common time_step="0.1"/>
+<AgentProfile name="base"><Common r="0.2" pref_speed="1.3" max_speed="2"/></AgentProfile>
+<AgentProfile name="slow" inherits="base"><Common class="2"><Property name="pref_speed" dist="c" value="0.8"/></Common>
+</AgentProfile>
+<AgentGroup><ProfileSelector type="const" name="base"/><StateSelector type="const" name="Walk"/>
+<Generator type="explicit"><Agent p_x="1" p_y="2"/><Agent p_x="1" p_y="4"/></Generator></AgentGroup>
+<AgentGroup><ProfileSelector type="const" name="slow"/><StateSelector type="const" name="Cross"/>
+<Generator type="rect_grid" anchor_x="-9" anchor_y="-9" offset_x="1" offset_y="2" count_x="3" count_y="2"/></AgentGroup>
+<ObstacleSet type="explicit" class="1"><Obstacle closed="1"><Vertex p_x="4" p_y="0"/><Vertex p_x="5" p_y="0"/>
+<Vertex p_x="5" p_y="1"/></Obstacle><Obstacle closed="0"><Vertex p_x="0" p_y="8"/><Vertex p_x="9" p_y="8"/></Obstacle>
+</ObstacleSet></Experiment>"""
+STATES = """<?xml version="1.0"?>
+<BFSM><GoalSet id="0"><Goal type="AABB" id="0" min_x="8" min_y="1" max_x="9" max_y="3"/>
+<Goal type="point" id="1" x="2" y="6"/></GoalSet>
+<State name="Walk" final="0"><GoalSelector type="explicit" goal_set="0" goal="0"/><VelComponent type="goal"/></State>
+<State name="Back" final="0"><GoalSelector type="explicit" goal_set="0" goal="1"/><VelComponent type="goal"/></State>
+<State name="Cross" final="0"><GoalSelector type="mirror" mirror_x="1" mirror_y="1"/></State>
+<State name="Stop" final="1"><GoalSelector type="identity"/></State>
+<Transition from="Walk" to="Back"><Condition type="goal_reached" distance="0.25"/></Transition>
+<Transition from="Back" to="Walk"><Condition type="goal_reached" distance="0.25"/></Transition>
+<Transition from="Cross" to="Stop"><Condition type="goal_reached" distance="0.05"/></Transition>
+<Transition from="Stop"><Condition type="timer" dist="u"/></Transition></BFSM>"""
+MENGE_PROJECT = '<Project scene="hallS.xml" behavior="hallB.xml" model="orca"/>'
 FILES = {
+    "hall.xml": MENGE_PROJECT, "hallS.xml": MENGE,
     "world.yaml": IRSIM, "scenario.json": ARENA, "hall.world": GAZEBO, "rooms.xml": ROOMS, "project.xml": PROJECT
 }  # fmt: skip
 
 
 def imported(tmp_path, name, text):
-    (tmp_path / "rooms.xml").write_text(ROOMS)
+    named_files(tmp_path)
     file = tmp_path / name
     file.write_text(text, encoding="utf-8")
     return import_trial(file)
+
+
+def named_files(folder):
+    """Write the files that projects name."""
+    for name, text in (("rooms.xml", ROOMS), ("hallS.xml", MENGE), ("hallB.xml", STATES)):
+        (folder / name).write_text(text)
 
 
 def trial_of(done):
@@ -100,7 +131,7 @@ def trial_of(done):
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_scene_is_written_checked_and_runs(tmp_path, capsys, name):
-    (tmp_path / "rooms.xml").write_text(ROOMS)
+    named_files(tmp_path)
     (tmp_path / name).write_text(FILES[name])
     out = tmp_path / "out.xml"
     assert main(["new", "trial", str(out), "--import", str(tmp_path / name)]) == 0
@@ -244,6 +275,8 @@ def test_the_map_of_arena_beside_the_scenario_is_the_stage(tmp_path, place):
     assert trial.stage.map == place
     assert trial.stage.clearance([(0.0, 0.0)])[0] == pytest.approx(19.5, abs=0.6)
     assert not any("the map" in sentence for sentence in done.left_out)
+    written = f"the stage reads {place} in the folder of the trial: write the trial beside the scenario"
+    assert written in done.left_out
 
 
 @pytest.mark.parametrize(
@@ -443,6 +476,42 @@ def test_jupedsim_has_walls_doors_groups_and_goals(tmp_path):
         assert sentence in done.left_out
 
 
+@pytest.mark.parametrize(("name", "text"), [("hall.xml", MENGE_PROJECT), ("hallS.xml", MENGE)])
+def test_menge_has_obstacles_agents_and_goals(tmp_path, name, text):
+    done = imported(tmp_path, name, text)
+    trial = trial_of(done)
+    assert (trial.step, len(trial.stage.obstacles), len(trial.stage.walls)) == (0.1, 1, 1)
+    assert [agent.position for agent in trial.agents[:3]] == [(1.0, 2.0), (1.0, 4.0), (-9.0, -9.0)]
+    assert [agent.position for agent in trial.agents[3:]] == [(-8, -9), (-7, -9), (-9, -7), (-8, -7), (-7, -7)]
+    assert {(agent.speed, agent.radius) for agent in trial.agents} == {(1.3, 0.2), (0.8, 0.2)}
+    ways = {journey.name: journey for journey in trial.journeys}
+    walk, cross = ways[trial.agents[0].journey], ways[trial.agents[2].journey]
+    assert (walk.then, len(walk.stops), walk.stops[0].points[2]) == ("again", 2, (9.0, 3.0))
+    assert (cross.then, [(stop.x, stop.y) for stop in cross.stops]) == ("stay", [(9.0, 9.0)])
+    assert "the transition from 'Stop' in line 11 is not imported" in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "people", "sentence"),
+    [
+        ('type="rect_grid"', 'type="hex_lattice"', 2, "the generator of type 'hex_lattice' in line 9 is left out"),
+        ('count_y="2"', 'count_y="2" displace_dist="u"', 8,
+         "random displacements of agents on a grid are not imported"),
+        ('dist="c" value="0.8"', 'dist="u" min="0.6" max="1.0"', 8,
+         "the distribution of pref_speed is not imported: all have its middle"),
+        ('name="Walk"/>', 'name="Run"/>', 8, "there is no state 'Run': people stay"),
+        ('<ObstacleSet type="explicit"', '<ObstacleSet type="nav_mesh"', 8,
+         "the obstacle set of type 'nav_mesh' in line 10 is not imported"),
+        ('r="0.2"', 'r="0.2" mass="80"', 8, None),
+    ],
+)  # fmt: skip
+def test_variants_of_menge(tmp_path, old, new, people, sentence):
+    assert old in MENGE
+    done = imported(tmp_path, "hallS.xml", MENGE.replace(old, new, 1))
+    assert len(trial_of(done).agents) == people
+    assert sentence is None or sentence in done.left_out
+
+
 @pytest.mark.parametrize(
     ("old", "new", "spawners", "agents", "sentence"),
     [
@@ -467,6 +536,11 @@ def test_variants_of_jupedsim(tmp_path, old, new, spawners, agents, sentence):
 @pytest.mark.parametrize(
     ("name", "old", "new", "sentence"),
     [
+        ("hall.xml", "hallS.xml", "../hallS.xml", "the file '../hallS.xml' lies outside"),
+        ("hall.xml", 'scene="hallS.xml"', "", "is not a project of Menge: it names no scene"),
+        ("hall.xml", "hallS.xml", "hallB.xml", "the scene has the root element <BFSM>"),
+        ("hallS.xml", 'count_x="3"', 'count_x="30000"', "30000 x 2 agents, at most 5000 are read"),
+        ("hallS.xml", 'p_x="1"', 'p_x="left"', "p_x of <Agent> must be a number up to 1e6, not 'left'"),
         ("project.xml", "rooms.xml", "../rooms.xml", "the geometry the file '../rooms.xml' lies outside"),
         ("project.xml", "rooms.xml", "none.xml", "the geometry there is no file 'none.xml'"),
         ("project.xml", 'number="8"', 'number="90000"', "more than 20000 people are too many"),

@@ -54,8 +54,8 @@ def arguments(parser: CommandParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="file of Vadere, UMANS, pedsim, HuNavSim, IR-SIM, Arena-Rosnav, Gazebo, JuPedSim or the CrowdBot simulator"
-        " (2021), a drawing (DXF), or a building (.glb)",
+        help="file of Vadere, UMANS, pedsim, HuNavSim, IR-SIM, Arena-Rosnav, Gazebo, JuPedSim, Menge or the CrowdBot"
+        " simulator (2021), a drawing (DXF), or a building (.glb)",
     )
     begin.add_argument(
         "--recorded",

@@ -105,6 +105,7 @@ def _map(scene: ImportedScene, whole: dict[str, Any]) -> str:
             map_files(one, folder, trust=False)
         except InputError:
             continue
+        scene.note(f"the stage reads {one[:80]} in the folder of the trial: write the trial beside the scenario")
         return one
     scene.note(
         f"the map {name[:60]!r} is not beside the scenario as {' or '.join(one[:80] for one in names)}: the stage has"

@@ -16,6 +16,7 @@ from .gazebo import import_gazebo
 from .hunavsim import import_hunavsim
 from .irsim import import_irsim, is_irsim
 from .jupedsim import import_jupedsim
+from .menge import import_menge
 from .original import ImportedTrial, import_original
 from .pedsim import import_pedsim
 from .umans import import_umans
@@ -30,6 +31,8 @@ XML_FILES: dict[str, Callable[[Path], ImportedTrial]] = {
     "gazebo": import_gazebo,
     "geometry": import_jupedsim,
     "JuPedSim": import_jupedsim,
+    "Project": import_menge,
+    "Experiment": import_menge,
 }
 """Importers of XML files by their root element."""
 
@@ -41,9 +44,9 @@ def import_trial(
 
     Args:
         path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, an agent file of HuNavSim
-            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav (JSON), a world of Gazebo (SDF), a
-            project or geometry of JuPedSim (XML), a drawing (ASCII DXF), a building (``.glb``), or as
-            in :func:`import_original`.
+            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav (JSON), a world of Gazebo (SDF), a project or
+            geometry of JuPedSim (XML), a project or scene of Menge (XML), a drawing (ASCII DXF), a building
+            (``.glb``), or as in :func:`import_original`.
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
         layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
@@ -71,6 +74,7 @@ def import_trial(
         if tag not in ("Trial", "Config"):
             raise TrialError(
                 f"{path}: the root element <{tag[:40]}> is not known; files of UMANS have Simulation, of pedsim"
-                " scenario, of Gazebo sdf, of JuPedSim JuPedSim or geometry, of the CrowdBot simulator Trial or Config"
+                " scenario, of Gazebo sdf, of JuPedSim JuPedSim or geometry, of Menge Project"
+                " or Experiment, of the CrowdBot simulator Trial or Config"
             )
     return import_original(path, root=root)
