@@ -113,6 +113,11 @@ def published(trial: Trial, method: str, cases: int) -> tuple[float, float, floa
     return tuple(cell.estimate(name).value for name in ("success-rate", "collision-rate", "time-to-goal"))  # type: ignore[return-value]
 
 
+def success_rate(trial: Trial, cases: int) -> float:
+    """Return the share of successes of the navigator of the trial, without the other metrics."""
+    return float(np.mean([episode.outcome == "success" for episode in simulate_seeds(trial, range(cases))]))
+
+
 @pytest.mark.parametrize("cases", sizes(120, 500))
 def test_orca_has_its_published_results(cases: int) -> None:
     trial = load_trial("crowdnav-circle-5")
@@ -122,13 +127,13 @@ def test_orca_has_its_published_results(cases: int) -> None:
     success, _, _ = published(trial, f"{ORCA} safety=0.32", cases)
     assert success == pytest.approx(0.904, abs=0.04)
     assert published(trial, "straight", cases)[0] == pytest.approx(0.026, abs=0.025)
-    assert published(load_trial("crowdnav-circle-5", visible=True), "own", cases)[0] == 1.0
+    assert success_rate(load_trial("crowdnav-circle-5", visible=True), cases) == 1.0
 
 
 def test_success_rises_with_the_attention_of_people() -> None:
     rates = []
     for attention in (0.0, 0.5, 1.0):
         trial = load_trial("attention-ladder", attention=attention)
-        rates.append(published(trial, "own", 120)[0])
+        rates.append(success_rate(trial, 120))
     assert rates[0] < 0.5 < rates[2]
     assert rates[0] < rates[1] < rates[2]
