@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.gym import CrowdTask, PPOSettings, Reward
+from crowdbot.gym import CrowdTask, Reward
 from crowdbot.trials import load_trial
 
 PROGRESS = Reward(success=0.0, collision=0.0, discomfort=0.0)
@@ -58,7 +58,3 @@ def test_ends_and_discomfort() -> None:
 
 def test_no_collision_within_10_m_is_better_than_standing() -> None:
     assert Reward().collision + 10.0 * Reward().progress <= 0.0
-
-
-def test_the_reward_of_the_published_navigator_does_not_depend_on_the_defaults() -> None:
-    assert PPOSettings().reward == Reward(1.0, -1.0, 0.2, 1.0, 0.1)

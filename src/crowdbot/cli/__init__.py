@@ -46,7 +46,7 @@ COMMAND_GROUPS = {
     "predict and track people": {
         "predict": "score predictors on recordings of people",
         "calibrate": "fit the parameters of a crowd model to recordings of people",
-        "train": "train a predictor on recordings of people, or a navigator in simulated crowds",
+        "train": "train a predictor on recordings of people, or a detector on generated scans",
         "degrade": "score predictors on degraded tracks, or write a degraded recording",
         "track": "find and track people in laser scans, and score the tracks",
     },

@@ -15,7 +15,7 @@ from crowdbot.trials import Trial, load_trial
 
 from .action_form import ActionForm
 from .crowd_task import CrowdTask
-from .observation_form import ObservationForm, bounds_of
+from .observation_form import ObservationForm
 from .reward import Reward
 from .robot_port import RobotPort
 
@@ -133,7 +133,7 @@ def port_space(port: RobotPort, count: int = 0) -> spaces.Dict:
     """Return the space of the observations of a robot: of one environment, or of ``count`` environments."""
     parts: dict[str, spaces.Space[Any]] = {}
     for name, shape in port.observation.shapes(port.beams).items():
-        low, high = bounds_of(name, port.longest)
+        low, high = port.observation.bounds(name, port.longest)
         whole = (count, *shape) if count else shape
         smallest, largest = (np.broadcast_to(np.asarray(value, dtype=np.float32), whole) for value in (low, high))
         parts[name] = spaces.Box(smallest, largest, dtype=np.float32)

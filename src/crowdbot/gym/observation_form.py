@@ -100,17 +100,24 @@ class ObservationForm:
             parts["occupancy"] = occupancy_grids(batch, self.cells, self.cell)
         return {name: np.clip(np.nan_to_num(value), -FAR, FAR).astype(np.float32) for name, value in parts.items()}
 
+    def bounds(self, name: str, longest: float) -> tuple[Floats, Floats]:
+        """Return the smallest and the largest values of a part, for its last axis or for all of it.
 
-def bounds_of(name: str, longest: float) -> tuple[Floats, Floats]:
-    """Return the smallest and the largest values of a part, for its last axis or for all of it; values are clipped."""
-    if name == "scan":
-        return np.zeros(1), np.full(1, longest)
-    if name == "occupancy":
-        return np.zeros(1), np.ones(1)
-    if name == "people":
-        return np.array([*[-FAR] * 4, 0.0, -FAR, 0.0]), np.array([*[FAR] * 6, 1.0])
-    low = np.array([0.0, -1.0, -1.0, 0.0, *[-FAR] * 3, 0.0, 0.0, 0.0])
-    return low, np.array([FAR, 1.0, 1.0, *[FAR] * 7])
+        Args:
+            name: name of the part.
+            longest: largest range of the scanner [m].
+
+        >>> ObservationForm("scan").bounds("scan", 25.0)
+        (array([0.]), array([25.]))
+        """
+        if name == "scan":
+            return np.zeros(1), np.full(1, longest)
+        if name == "occupancy":
+            return np.zeros(1), np.ones(1)
+        if name == "people":
+            return np.array([*[-FAR] * 4, 0.0, -FAR, 0.0]), np.array([*[FAR] * 6, 1.0])
+        low = np.array([0.0, -1.0, -1.0, 0.0, *[-FAR] * 3, 0.0, 0.0, 0.0])
+        return low, np.array([FAR, 1.0, 1.0, *[FAR] * 7])
 
 
 def _robot(batch: ObservationBatch) -> Floats:

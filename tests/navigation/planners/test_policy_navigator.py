@@ -173,7 +173,7 @@ def test_the_shipped_weights_have_a_card() -> None:
 
 def test_wrong_files_of_weights_are_refused(tmp_path: Path) -> None:
     weights, card = PolicyWeights.read(policy_file())
-    with pytest.raises(InputError, match=r"there is no file .*none.npz; make one with crowdbot train navigator"):
+    with pytest.raises(InputError, match=r"there is no file .*none.npz; make one with examples/train_navigator.py"):
         PolicyWeights.read(tmp_path / "none.npz")
     (tmp_path / "text.npz").write_text("text")
     with pytest.raises(InputError, match="has no weights of a policy"):

@@ -1,4 +1,4 @@
-"""``crowdbot train``: train a predictor on recordings of people, or the navigator ``policy`` in simulated crowds."""
+"""``crowdbot train``: train a predictor on recordings of people, or a detector or predictor on generated scans."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from crowdbot.cli.settings import add_settings, parse_settings
 
 from .detector import DETECTOR, train_detector
 from .learned_scene import RUNS, SCAN_PREDICTOR, train_scan_predictor
-from .navigator import NAVIGATOR, add_navigator, check_options, train_policy
 
 if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
@@ -27,11 +26,9 @@ EPOCHS = 100
 
 def arguments(parser: CommandParser) -> None:
     """Declare the options."""
-    names = f"predictor: {', '.join(LEARNERS)}; navigator: {NAVIGATOR}; detector: {DETECTOR};"
-    names += f" scan predictor: {SCAN_PREDICTOR}"
+    names = f"predictor: {', '.join(LEARNERS)}; detector: {DETECTOR}; scan predictor: {SCAN_PREDICTOR}"
     parser.add_argument("what", metavar="NAME", help=names)
     add_recordings(parser, required=False)
-    add_navigator(parser.add_argument_group("navigator"))
     add = parser.add_argument
     add("--check", nargs="+", type=Path, metavar="PATH", help="validation recordings (default: see --hold)")
     add(
@@ -85,9 +82,6 @@ def main(options: argparse.Namespace) -> int:
         return train_detector(options)
     if options.what == SCAN_PREDICTOR:
         return train_scan_predictor(options)
-    check_options(options)
-    if options.what == NAVIGATOR:
-        return train_policy(options)
     return _train_predictor(options)
 
 
@@ -96,7 +90,9 @@ def _train_predictor(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError, UnknownName, explain_write_errors
 
     if options.what not in LEARNERS:
-        raise UnknownName("learned predictor", options.what, (*LEARNERS, NAVIGATOR, DETECTOR, SCAN_PREDICTOR))
+        raise UnknownName("learned predictor", options.what, (*LEARNERS, DETECTOR, SCAN_PREDICTOR))
+    if options.data is None:
+        raise InputError(f"crowdbot train {options.what} needs recordings: give --data PATH ...")
     from crowdbot.prediction import (
         BEST,
         LAST,

@@ -92,7 +92,7 @@ class PolicyNavigator(Navigator):
         speed: largest speed [m/s], limited by the drive.
         horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
         margin: clearance to people that is kept for this time [m].
-        file: file of weights from ``crowdbot train navigator`` (default: the weights of the package).
+        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
 
     Sources: proximal policy optimisation, Schulman et al. 2017, https://arxiv.org/abs/1707.06347; inputs in the goal
     frame, Chen et al. 2019, doi:10.1109/ICRA.2019.8794134.

@@ -70,7 +70,7 @@ class PolicyWeights(NamedTuple):
             InputError: the file is missing, damaged, of another format, or its arrays have other shapes.
         """
         if not file.is_file():
-            raise InputError(f"there is no file {file}; make one with crowdbot train navigator --out DIR")
+            raise InputError(f"there is no file {file}; make one with examples/train_navigator.py --out DIR")
         try:
             with file.open("rb") as stream, np.load(stream, allow_pickle=False) as entries:
                 arrays = {name: entries[name] for name in entries.files}

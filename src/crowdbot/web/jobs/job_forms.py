@@ -127,22 +127,6 @@ def _train_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
     return ["train", values["predictor"], "--data", *data, *_numbers(values, "epochs", "seed")]
 
 
-def _policy_rows(space: Workspace) -> list[Row]:
-    note = "with values, separated by commas; empty: the crossings of CrowdNav with 5 to 20 people"
-    return [
-        {**_text("trials", "Trials", ""), "note": note},
-        _whole("rounds", "Rounds", 6, 1, 1000),
-        _whole("environments", "Environments", 1024, 1, 100_000),
-        _whole("seed", "Seed", 0, 0, 2**31),
-        _text("name", "Name of the results", "policy"),
-    ]
-
-
-def _policy_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
-    trials = [f"--trials={values['trials']}"] if values["trials"] else []
-    return ["train", "navigator", *trials, *_numbers(values, "rounds", "environments", "seed")]
-
-
 def _generate_rows(space: Workspace) -> list[Row]:
     sources = [*((name, f"{name} (recipe)") for name in RECIPES), *((name, name) for name in _trials(space))]
     note = "presets on the first robot, separated by commas: sick-tim571, front=realsense-d435"
@@ -211,10 +195,6 @@ def _switch(name: str, label: str) -> Row:
 FORMS = {
     "train": JobForm(
         "Train a predictor", "AnchorNet or Social Ways on recordings of people.", "trainings", _train_rows, _train_words
-    ),
-    "policy": JobForm(
-        "Train a navigator", "The navigator policy, by reinforcement learning in simulated crowds.",
-        "trainings", _policy_rows, _policy_words,
     ),
     "generate": JobForm(
         "Generate data", "Sensor readings with the true people, from trials and many seeds.",
