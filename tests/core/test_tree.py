@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, tree
+from crowdbot.core import InputError, RandomStreams, StateError, StateMark, Storage, storable, tree
 
 
 @dataclass(frozen=True)
@@ -120,3 +121,88 @@ def test_errors_name_the_path_of_the_array() -> None:
         tree.check(value, 3, "state")
     with pytest.raises(InputError, match=r"state\['beams'\] is a object, which has no environments"):
         tree.count({"beams": object()}, "state")
+
+
+@storable
+@dataclass(frozen=True)
+class StoredBeams:
+    """A value with a field of its own, and one that belongs to the trial."""
+
+    ranges: np.ndarray
+    walls: Any
+    largest: float = field(init=False)
+    storage = Storage(constants=("walls",))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "largest", float(self.ranges.max()))
+
+
+class Motor:
+    """An object that exists in every run."""
+
+    storage = Storage(constants=("limit",), properties=("turns",))
+
+    def __init__(self, limit: float) -> None:
+        self.limit, self.angle, self.load = limit, 0.0, np.zeros(2)
+
+    @property
+    def turns(self) -> int:
+        return int(self.angle // 6.28)
+
+    @turns.setter
+    def turns(self, turns: int) -> None:
+        if turns > self.limit:
+            raise InputError(f"{turns} turns are more than {self.limit}")
+
+
+class Geared(Motor):
+    """A subclass with constants of its own and an array whose length changes."""
+
+    storage = Storage(constants=("ratio",), resized=("teeth",))
+
+    def __init__(self, limit: float) -> None:
+        super().__init__(limit)
+        self.ratio, self.teeth = 3.0, np.zeros(0)
+
+
+def machine(angle: float, ratio: float = 3.0) -> dict[str, Any]:
+    motor = Geared(9.0)
+    motor.angle, motor.ratio, motor.teeth, motor.load = angle, ratio, np.arange(angle), np.full(2, angle)
+    values = StoredBeams(np.full((1, 2), angle), object())
+    history: deque[Any] = deque([motor.load, None, np.float64(angle)], maxlen=4)
+    return {"motor": motor, "beams": values, "history": history, "rngs": RandomStreams([int(angle)], "tree")}
+
+
+def test_a_stored_tree_restores_the_objects_that_exist() -> None:
+    first, second = machine(7.0), machine(2.0, ratio=5.0)
+    first["rngs"][0].random(3)
+    motor, walls = second["motor"], second["beams"].walls
+    restored = tree.unflatten(tree.flatten(first), second)
+    assert restored["motor"] is motor
+    assert (motor.angle, motor.ratio, motor.teeth.tolist()) == (7.0, 5.0, [0, 1, 2, 3, 4, 5, 6])
+    assert (restored["beams"].largest, restored["beams"].walls) == (7.0, walls)
+    assert restored["history"][0] is motor.load
+    assert (restored["history"].maxlen, type(restored["history"][2])) == (4, np.float64)
+    assert restored["rngs"][0].random() == first["rngs"][0].random()
+    assert tree.flatten(restored).keys() == tree.flatten(first).keys()
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"tree/0/value/turns": 12}, "tree/0/value/turns: 12 turns are more than 9.0"),
+        ({"tree/0/value/load": np.zeros(3)}, r"has the shape \[3\], but the trial has \[2\]"),
+        ({"tree/0/value/load": np.zeros((1, 2))}, "has 2 axes of float64, but the trial has 1"),
+        ({"tree/0/value": StateMark("value", "Popen")}, "is a 'Popen', which is unknown"),
+        ({"tree/3/value": StateMark("plain", [])}, "not one random stream for each environment"),
+        ({"tree/9": 1}, "has a value 'tree/9', which this trial does not have"),
+    ],
+)
+def test_leaves_that_do_not_fit_are_refused(change: dict[str, Any], problem: str) -> None:
+    with pytest.raises(StateError, match=problem):
+        tree.unflatten(tree.flatten(machine(7.0)) | change, machine(2.0))
+
+
+def test_an_object_of_an_unknown_class_is_not_stored() -> None:
+    with pytest.raises(StateError, match="tree/0 is a Pair, which cannot be stored"):
+        tree.flatten([Pair(1, 2)])

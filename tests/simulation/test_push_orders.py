@@ -19,11 +19,11 @@ from crowdbot.simulation import (
     RemoveOrder,
     Simulation,
     read_order,
+    restore_state,
     simulate,
     state_of,
     write_order,
 )
-from crowdbot.simulation.state.state_restore import restore_state
 from crowdbot.trials import parse_trial
 
 TRIAL = """<trial name="pushed" duration="{duration}" {world} step="0.05" seed="1"><stage>{walls}</stage>

@@ -106,12 +106,12 @@ def test_a_restored_simulation_continues_to_the_last_bit(world: str, seeds: Any,
 
 def test_the_state_has_samples_goals_joints_and_moved_sensors() -> None:
     state = state_of(begun(TRIALS["planar"], 3, 12))
-    assert len(state["simulation/world/avatars/sources/0/guide/time"]) > 4
+    assert len(state["simulation/world/avatars/streams/0/0/time"]) > 4
     assert state["simulation/robots/0/goal"].tolist() == [[2.0, 1.0]]
     assert np.nanmax(state["simulation/robots/0/joints"]) == 0.3
     assert state["simulation/robots/0/sensors/0/moved"].shape == (1, 6)
     kind, rows = state["simulation/robots/0/sensors/0/rngs"]
-    assert kind == "streams"
+    assert kind == "plain"
     assert (rows[0][:2], rows[0][2]["bit_generator"]) == ([3, ["sensor", "pepper", "eyes"]], "PCG64")
 
 
@@ -161,11 +161,11 @@ def test_a_removed_robot_and_changed_props_of_the_physics_world_have_no_state() 
 
 
 CHANGES: dict[str, tuple[Any, str]] = {
-    "simulation/robots/0/sensors/0/rngs": (StateMark("streams", []), "one random stream for each environment"),
+    "simulation/robots/0/sensors/0/rngs": (StateMark("plain", []), "one random stream for each environment"),
     "simulation/world/rigid/ghosts": (StateMark("dict", 0), r"has the parts \[\], but the trial has \[4\]"),
     "simulation/robots": (StateMark("list", 1), "has 1 parts, but the trial has 2"),
     "simulation/world/rigid/main/engine": (np.zeros(3), "has the shape"),
-    "simulation/world/avatars/sources/0/guide/rows": (np.zeros((2, 3)), "rows must have shape"),
+    "simulation/world/avatars/streams/0/0/rows": (np.zeros((2, 3)), "rows must have shape"),
 }
 
 

@@ -49,6 +49,7 @@ from .systems.memory import machine_memory, peak_memory
 from .systems.refusal import refuse_system, system_name
 from .systems.user_folders import user_data_folder
 from .tick_schedule import TickSchedule, whole_ticks
+from .tree import StateError, StateMark, Storage, storable
 from .version import source_digest
 from .walls import Walls
 
@@ -118,6 +119,9 @@ __all__ = [
     "Scene",
     "Skins",
     "SpatialPose",
+    "StateError",
+    "StateMark",
+    "Storage",
     "TickSchedule",
     "TrialError",
     "Twist",
@@ -178,6 +182,7 @@ __all__ = [
     "run_saved_jobs",
     "source_digest",
     "sources_of",
+    "storable",
     "stream",
     "stream_states",
     "system_name",

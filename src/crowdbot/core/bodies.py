@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
-from .tree import take
+from .tree import storable, take
 
 __all__ = ["STAGE", "Bodies", "Skins"]
 
@@ -61,6 +61,7 @@ class Skins:
         return cls(points, corners, *labels)
 
 
+@storable
 @dataclass(frozen=True)
 class Bodies:
     """Limbs, props and skins in E environments: capsules, boxes and upright cylinders, each with its owner.

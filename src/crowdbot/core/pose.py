@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .tree import storable
+
 __all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap_angle"]
 
 Floats = NDArray[np.float64]
@@ -26,6 +28,7 @@ def wrap_angle(angle: float) -> float:
     return math.pi - (math.pi - angle) % (2.0 * math.pi)
 
 
+@storable
 class Twist(NamedTuple):
     """A velocity command in the frame of the robot (REP-103: x forward, y left).
 
@@ -41,6 +44,7 @@ class Twist(NamedTuple):
     """[m/s]; not supported by differential drives."""
 
 
+@storable
 @dataclass(frozen=True)
 class Pose:
     """Planar pose of one object in each environment: positions ``[E, 2]`` [m] and headings ``[E]`` [rad].
@@ -75,6 +79,7 @@ class Pose:
         return SpatialPose.of(np.column_stack([self.position, height]), roll, pitch, self.heading)
 
 
+@storable
 @dataclass(frozen=True)
 class SpatialPose:
     """Spatial pose of one object in each environment.

@@ -13,6 +13,7 @@ from .errors import InputError
 from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
 from .kernels import kernel
 from .random import stream, stream_text
+from .tree import Storage
 
 __all__ = ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"]
 
@@ -48,6 +49,8 @@ class RandomStreams(Sequence[np.random.Generator]):
     >>> streams[1].random() == stream(5, "sensor", "scan").random()
     True
     """
+
+    storage = Storage(plain="states")
 
     def __init__(self, seeds: Iterable[int], *path: str | int) -> None:
         self._cells: list[_Cell] = [_Cell(int(seed), path) for seed in seeds]
@@ -85,6 +88,13 @@ class RandomStreams(Sequence[np.random.Generator]):
     def states(self) -> list[list[Any]]:
         """Seed, path and state of each generator as plain values; the state is None before the first use."""
         return [cell.state for cell in self._cells]
+
+    @states.setter
+    def states(self, states: Any) -> None:
+        """Continue from the states of as many generators."""
+        if not isinstance(states, list) or len(states) != len(self):
+            raise InputError("there is not one random stream for each environment")
+        self._cells = self.of_states(states)._cells
 
     @classmethod
     def of_states(cls, states: Sequence[Any]) -> RandomStreams:

@@ -16,7 +16,7 @@ from .bodies import Bodies
 from .errors import InputError
 from .kernels import kernel
 from .model_parameter import BOOL, FLOAT, dense
-from .tree import take
+from .tree import Storage, storable, take
 from .walls import Walls
 
 __all__ = ["Scene"]
@@ -47,6 +47,7 @@ TURNING_SPEED = 0.05
 """Speed [m/s] below which an agent keeps its heading."""
 
 
+@storable
 @dataclass(frozen=True)
 class Scene:
     """Agents and walls at one instant in E environments that share the walls.
@@ -97,6 +98,7 @@ class Scene:
     height: Floats | None = None
     wall_height: float = WALL_HEIGHT
     shared_fields: ClassVar[tuple[str, ...]] = ("walls",)
+    storage = Storage(constants=("walls",))
 
     @classmethod
     def of(

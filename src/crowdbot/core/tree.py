@@ -1,4 +1,4 @@
-"""Trees of arrays: count, check, select, join and replace their environments.
+"""Trees of arrays: count, check, select, join and replace their environments, and store them by path.
 
 A tree is a nest of dataclasses, tuples, lists and dicts. Its leaves are arrays, whose first axis is the environments,
 and numbers, texts and None, which belong to all environments. The class variable ``shared_fields`` of a dataclass names
@@ -7,6 +7,7 @@ its fields without environments. Functions return new trees and leave their argu
 
 from __future__ import annotations
 
+import collections
 import dataclasses
 import enum
 import functools
@@ -20,7 +21,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
-__all__ = ["check", "count", "environment_index", "join", "put", "resize", "take"]
+__all__ = [
+    "StateError",
+    "StateMark",
+    "Storage",
+    "check",
+    "count",
+    "environment_index",
+    "flatten",
+    "join",
+    "put",
+    "resize",
+    "storable",
+    "take",
+    "unflatten",
+]
 
 Ints = NDArray[np.int64]
 Tree = TypeVar("Tree")
@@ -279,3 +294,329 @@ def _join_arrays(trees: Sequence[Any], places: Sequence[Ints | slice], environme
     for tree, place in zip(trees, places, strict=True):
         joined[place] = tree
     return joined
+
+
+class StateError(InputError):
+    """A state cannot be stored or restored."""
+
+
+class StateMark(NamedTuple):
+    """A container or a special value in a stored tree.
+
+    Fields:
+        kind: ``holder``, ``plain``, ``value``, ``list``, ``tuple``, ``dict``, ``deque``, ``objects``, ``number``,
+            ``random`` or ``same``.
+        content: name of the class, number of parts, state of random generators, or path of the same object.
+    """
+
+    kind: str
+    content: Any = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Storage:
+    """What :func:`flatten` stores of a class; its class attribute ``storage``. Base classes add theirs.
+
+    Objects of such a class are part of the structure: :func:`unflatten` sets the fields of the objects that exist. In a
+    :func:`storable` class, constants have the value of the object that is replaced.
+
+    Fields:
+        constants: fields that are not stored.
+        properties: properties that are stored, too; each needs a setter.
+        resized: fields with arrays whose lengths change.
+        last: fields that refer to objects in other fields.
+        plain: property that holds everything as plain values (JSON) instead of fields.
+    """
+
+    constants: tuple[str, ...] = ()
+    properties: tuple[str, ...] = ()
+    resized: tuple[str, ...] = ()
+    last: tuple[str, ...] = ()
+    plain: str = ""
+
+
+SCALARS = (bool, int, float, str)
+KINDS = "biuf"
+STORABLE: dict[str, type[Any]] = {}
+"""Classes of values that are stored, by name."""
+Kind = TypeVar("Kind", bound=type[Any])
+
+
+def storable(kind: Kind) -> Kind:
+    """Let :func:`flatten` store the values of a dataclass or named tuple by the name of its class (a decorator)."""
+    STORABLE[kind.__name__] = kind
+    return kind
+
+
+def flatten(tree: Any, name: str = "tree") -> dict[str, Any]:
+    """Arrays, numbers, texts and marks of containers by path; no code and no classes other than storable ones.
+
+    Args:
+        tree: a tree that may also have deques, random generators and objects whose class has a :class:`Storage`. A
+            list, dict or object in several places stays one object.
+        name: begin of all paths.
+
+    Raises:
+        StateError: an object of another class.
+
+    >>> flatten({"speed": np.zeros(2)}, "state")["state/0/value"]
+    array([0., 0.])
+    """
+    writer = _Writer()
+    writer.put(name, tree)
+    return writer.leaves
+
+
+def unflatten(leaves: Mapping[str, Any], tree: Any = None, name: str = "tree") -> Any:
+    """Tree of :func:`flatten`; objects whose class has a :class:`Storage` are those of ``tree`` with new fields.
+
+    Raises:
+        StateError: the leaves do not fit ``tree``, or are damaged.
+
+    >>> unflatten(flatten((1, {"speed": np.zeros(2)})))
+    (1, {'speed': array([0., 0.])})
+    """
+    reader = _Reader(leaves)
+    value = reader.get(name, tree)
+    if unknown := sorted(set(leaves) - reader.used):
+        raise StateError(f"the state has a value {unknown[0]!r}, which this trial does not have")
+    return value
+
+
+def _is_storable(kind: Any) -> bool:
+    return STORABLE.get(kind.__name__) is kind
+
+
+def _storage(value: Any) -> Storage | None:
+    """Storage of the class of an object that is part of the structure; None for others."""
+    kind: Any = type(value)
+    return None if _is_storable(kind) else _storage_of(kind)
+
+
+@functools.cache
+def _storage_of(kind: Any) -> Storage | None:
+    rows = [row for base in kind.__mro__ if isinstance(row := vars(base).get("storage"), Storage)]
+    names = ("constants", "properties", "resized", "last")
+    every: dict[str, Any] = {name: tuple(part for row in rows for part in getattr(row, name)) for name in names}
+    return Storage(**every, plain=rows[0].plain) if rows else None
+
+
+def _stored_fields(value: Any, storage: Storage) -> list[str]:
+    """Fields and properties of an object that are stored, in their order."""
+    names = {*vars(value), *storage.properties}
+    if dataclasses.is_dataclass(value):
+        names |= {field.name for field in dataclasses.fields(value)}
+    return sorted(names.difference(storage.constants), key=lambda name: (name in storage.last, name))
+
+
+@functools.cache
+def _value_fields(kind: Any) -> tuple[str, ...]:
+    """Fields of a storable class that are stored."""
+    storage = _storage_of(kind) or Storage()
+    names = [field.name for field in dataclasses.fields(kind)] if dataclasses.is_dataclass(kind) else kind._fields
+    return tuple(name for name in names if name not in storage.constants)
+
+
+class _Writer:
+    def __init__(self) -> None:
+        self.leaves: dict[str, Any] = {}
+        self._known: dict[int, tuple[str, Any]] = {}
+
+    def put(self, path: str, value: Any) -> None:
+        kind = type(value)
+        if value is None or kind in SCALARS:
+            self.leaves[path] = value
+        elif isinstance(value, np.generic) and value.dtype.kind in KINDS:
+            self.leaves[path] = StateMark("number", [value.dtype.str, value.item()])
+        elif isinstance(value, tuple):  # equal tuples may be one object in one run and two in another
+            self._parts(path, value)
+        elif id(value) in self._known:
+            self.leaves[path] = StateMark("same", self._known[id(value)][0])
+        else:
+            self._known[id(value)] = (path, value)
+            self._object(path, value)
+
+    def _object(self, path: str, value: Any) -> None:
+        storage = _storage(value)
+        if type(value) is np.ndarray:
+            self._array(path, value)
+        elif storage is not None and storage.plain:
+            self.leaves[path] = StateMark("plain", getattr(value, storage.plain))
+        elif storage is not None:
+            self.leaves[path] = StateMark("holder", type(value).__name__)
+            for name in _stored_fields(value, storage):
+                self.put(f"{path}/{name}", getattr(value, name))
+        elif isinstance(value, np.random.Generator) and isinstance(value.bit_generator, np.random.PCG64):
+            self.leaves[path] = StateMark("random", value.bit_generator.state)
+        else:
+            self._parts(path, value)
+
+    def _array(self, path: str, value: Any) -> None:
+        if value.dtype.kind in KINDS:
+            self.leaves[path] = np.ascontiguousarray(value).reshape(value.shape)
+        elif value.dtype == object and value.ndim == 1:
+            self._numbered(path, value, StateMark("objects", len(value)))
+        else:
+            raise StateError(f"{path} is an array of {value.dtype}, which cannot be stored")
+
+    def _parts(self, path: str, value: Any) -> None:
+        kind: Any = type(value)
+        if _is_storable(kind):
+            self.leaves[path] = StateMark("value", kind.__name__)
+            for field in _value_fields(kind):
+                self.put(f"{path}/{field}", getattr(value, field))
+        elif kind in (list, tuple):
+            self._numbered(path, value, StateMark(kind.__name__, len(value)))
+        elif kind is collections.deque:
+            self._numbered(path, value, StateMark("deque", [len(value), value.maxlen]))
+        elif kind is dict:
+            self.leaves[path] = StateMark("dict", len(value))
+            for k, (key, part) in enumerate(value.items()):
+                self.put(f"{path}/{k}/key", key)
+                self.put(f"{path}/{k}/value", part)
+        else:
+            raise StateError(f"{path} is a {kind.__name__}, which cannot be stored; plain values can")
+
+    def _numbered(self, path: str, parts: Any, mark: StateMark) -> None:
+        self.leaves[path] = mark
+        for k, part in enumerate(parts):
+            self.put(f"{path}/{k}", part)
+
+
+class _Reader:
+    def __init__(self, leaves: Mapping[str, Any]) -> None:
+        self.leaves, self.used = leaves, set[str]()
+        self._known: dict[str, Any] = {}
+
+    def get(self, path: str, old: Any = None, fixed: bool = False) -> Any:
+        """Value at a path; ``fixed``: an array must keep the shape of ``old``."""
+        if path not in self.leaves:
+            raise StateError(f"the state lacks {path!r}")
+        leaf = self.leaves[path]
+        self.used.add(path)
+        if isinstance(leaf, np.ndarray):
+            value = _array(path, leaf, old, fixed)
+        elif not isinstance(leaf, StateMark):
+            value = leaf
+        elif leaf.kind == "same":
+            if not isinstance(leaf.content, str) or leaf.content not in self._known:
+                raise StateError(f"{path} refers to {leaf.content!r}, which is not before it")
+            value = self._known[leaf.content]
+        else:
+            value = self._marked(path, leaf, old)
+        self._known[path] = value
+        _check_kind(path, value, old)
+        return value
+
+    def _marked(self, path: str, leaf: StateMark, old: Any) -> Any:
+        kind, content = leaf
+        if kind in ("holder", "plain"):
+            return self._holder(path, leaf, old)
+        if kind == "value":
+            return self._value(path, str(content), old)
+        if kind == "random":
+            return _generator(path, content)
+        if kind == "number":
+            return np.dtype(content[0]).type(content[1])
+        if kind == "dict":
+            return self._dict(path, int(content), old)
+        if kind in ("list", "tuple"):
+            parts = self._numbered(path, int(content), old)
+            return parts if kind == "list" else tuple(parts)
+        if kind == "deque":
+            return collections.deque(self._numbered(path, int(content[0]), None), maxlen=content[1])
+        if kind == "objects":
+            parts = self._numbered(path, int(content), old)
+            objects = np.empty(len(parts), dtype=object)
+            for k, part in enumerate(parts):
+                objects[k] = part
+            return objects
+        raise StateError(f"{path} is a {kind!r}, which is unknown")
+
+    def _numbered(self, path: str, count: int, old: Any) -> list[Any]:
+        known = old if isinstance(old, list | tuple) else ()
+        if count != len(known) and any(_storage(part) for part in known):
+            raise StateError(f"{path} has {count} parts, but the trial has {len(known)}")
+        return [self.get(f"{path}/{k}", known[k] if k < len(known) else None) for k in range(count)]
+
+    def _dict(self, path: str, count: int, old: Any) -> dict[Any, Any]:
+        known, found = old if isinstance(old, dict) else {}, {}
+        for k in range(count):
+            key = self.get(f"{path}/{k}/key")
+            found[key] = self.get(f"{path}/{k}/value", known.get(key))
+        if any(_storage(part) for part in known.values()) and found.keys() != known.keys():
+            raise StateError(f"{path} has the parts {sorted(found)}, but the trial has {sorted(known)}")
+        return found
+
+    def _holder(self, path: str, leaf: StateMark, old: Any) -> Any:
+        storage = _storage(old)
+        if storage is None or bool(storage.plain) != (leaf.kind == "plain"):
+            raise StateError(f"{path} is not a part of this trial")
+        self._known[path] = old
+        if storage.plain:
+            _set(path, old, storage.plain, leaf.content)
+        for name in () if storage.plain else _stored_fields(old, storage):
+            part = f"{path}/{name}"
+            _set(part, old, name, self.get(part, getattr(old, name), name not in storage.resized))
+        return old
+
+    def _value(self, path: str, name: str, old: Any) -> Any:
+        kind: Any = STORABLE.get(name)
+        if kind is None:
+            raise StateError(f"{path} is a {name!r}, which is unknown")
+        constants = getattr(_storage_of(kind), "constants", ())
+        if constants and type(old) is not kind:
+            raise StateError(f"{path} is a {name}, which this trial does not have there")
+        values = {constant: getattr(old, constant) for constant in constants}
+        for field in _value_fields(kind):
+            values[field] = self.get(f"{path}/{field}", getattr(old, field) if constants else None, bool(constants))
+        fields = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+        late = {field.name: values.pop(field.name) for field in fields if not field.init}
+        made = kind(**values)
+        for field, value in late.items():
+            object.__setattr__(made, field, value)
+        return made
+
+
+def _set(path: str, value: Any, name: str, new: Any) -> None:
+    try:
+        setattr(value, name, new)
+    except InputError as error:
+        raise StateError(f"{path}: {error}") from None
+
+
+def _array(path: str, leaf: NDArray[Any], old: Any, fixed: bool) -> NDArray[Any]:
+    if isinstance(old, np.ndarray):
+        if leaf.dtype != old.dtype or leaf.ndim != old.ndim:
+            raise StateError(
+                f"{path} has {leaf.ndim} axes of {leaf.dtype}, but the trial has {old.ndim} of {old.dtype}"
+            )
+        if fixed and leaf.shape != old.shape:
+            raise StateError(f"{path} has the shape {list(leaf.shape)}, but the trial has {list(old.shape)}")
+    return leaf.copy()
+
+
+def _generator(path: str, content: Any) -> np.random.Generator:
+    bits = np.random.PCG64(0)
+    try:
+        bits.state = content
+    except (ValueError, TypeError, KeyError, OverflowError) as error:
+        raise StateError(f"{path} is not the state of a random generator: {str(error)[:80]}") from None
+    return np.random.Generator(bits)
+
+
+def _check_kind(path: str, value: Any, old: Any) -> None:
+    """Raise :class:`StateError` if a value has another kind than in the tree that is restored."""
+    kind: Any = type(old)
+    if old is None or value is None or (isinstance(old, SCALARS) and isinstance(value, np.ndarray | np.generic)):
+        fits = _storage(old) is None
+    elif isinstance(old, tuple):
+        fits = isinstance(value, tuple) or type(value).__name__ in STORABLE
+    elif isinstance(old, np.ndarray):
+        fits = isinstance(value, np.ndarray) or (isinstance(value, float) and path.endswith("/time"))
+    elif isinstance(old, (*SCALARS, list, dict, np.random.Generator)) or _storage_of(kind) is not None:
+        fits = type(value) is kind
+    else:
+        fits = not isinstance(value, (*SCALARS, list, dict))
+    if not fits:
+        raise StateError(f"{path} is a {type(value).__name__}, but the trial has a {type(old).__name__}")

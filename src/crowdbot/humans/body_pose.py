@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, storable
 
 from .quaternions import slerp
 
@@ -31,6 +31,7 @@ LOWEST, HIGHEST = -1.0, 4.0
 _SEVEN = "x, y, z [m] and a quaternion w, x, y, z"
 
 
+@storable
 @dataclass(frozen=True)
 class BodyPose:
     """The pose of a person at one instant, in the world frame (x forward, y left, z up).

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import kernel
+from crowdbot.core import kernel, storable
 
 from .stride import (
     LANDED,
@@ -52,6 +52,7 @@ PUSH_SPEED = 0.55
 """Speed of the ankle at toe-off relative to the body speed."""
 
 
+@storable
 class Gaits(NamedTuple):
     """Gait state of N people at one instant, as arrays.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, storable
 
 from .body_pose import PARTS, ROW, BodyPose, blend_rows, shift_row
 
@@ -66,6 +66,7 @@ class PoseSource(ABC):
         return PoseMotion(here.row(), vx, vy) if math.hypot(vx, vy) <= MAX_SPEED else PoseMotion(here.row(), 0.0, 0.0)
 
 
+@storable
 @dataclass(frozen=True, eq=False)
 class PoseTrack(PoseSource):
     """Samples of a pose with time stamps, interpolated.

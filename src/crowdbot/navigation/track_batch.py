@@ -9,7 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, kernel
+from crowdbot.core import InputError, kernel, storable
 
 from .track_history import LENGTH, TrackHistory
 
@@ -20,6 +20,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
+@storable
 @dataclass(frozen=True, eq=False)
 class TrackBatch(Sequence[TrackHistory]):
     """Positions of at most A people at the last T instants in each of N environments.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Walls, stream
+from crowdbot.core import InputError, Walls, storable, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 
@@ -24,6 +24,7 @@ SAME = 1e-6
 """Tolerance of times [s]."""
 
 
+@storable
 @dataclass(frozen=True, eq=False)
 class TrackHistory:
     """Positions of N people at the last T instants, at most ``length``.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import storable
+
 from .motion_filter import FilterState
 from .tracks import Tracks
 
@@ -17,6 +19,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
+@storable
 @dataclass(frozen=True)
 class TrackerState:
     """State of a :class:`GlobalNearestNeighbor` with N tracks and M motion models.

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import storable
+
 __all__ = ["Tracks"]
 
 Floats = NDArray[np.float64]
 
 
+@storable
 @dataclass(frozen=True)
 class Tracks:
     """People followed by a tracker at one instant, in the world frame.

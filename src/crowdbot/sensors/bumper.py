@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, storable
 
 from .noise import Randomness, apply_noise
 from .ray_shapes import NOTHING, PROP, WALLS
@@ -23,6 +23,7 @@ TURN = 2.0 * math.pi
 MOST_SECTORS = 100_000
 
 
+@storable
 @dataclass(frozen=True)
 class BumperReading(Reading):
     """Pressed sectors of a bumper in E environments, K sectors.

@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, SpatialPose, check_number
+from crowdbot.core import InputError, Pose, SpatialPose, check_number, storable
 
 from .beams import Beams, sort_beams
 from .lens import ImageSource, Lens, pixel_directions, stereo_depth
@@ -28,6 +28,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+@storable
 @dataclass(frozen=True)
 class DepthImage(Reading):
     """Depth and labels of the pixels in E environments, rows from the top, columns from the left.

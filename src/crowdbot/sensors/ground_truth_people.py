@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, check_number, dense, kernel
+from crowdbot.core import InputError, check_number, dense, kernel, storable
 
 from .lidar import Lidar2D
 from .noise import Randomness, apply_noise
@@ -24,6 +24,7 @@ Bools = NDArray[np.bool_]
 FLOAT, BOOL = np.dtype(np.float64), np.dtype(np.bool_)
 
 
+@storable
 @dataclass(frozen=True)
 class TrackedPeople(Reading):
     """Tracked agents in E environments; arrays keep the indices of the agents, NaN if not tracked.

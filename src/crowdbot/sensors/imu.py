@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, SpatialPose, check_number, product
+from crowdbot.core import InputError, Pose, SpatialPose, check_number, product, storable
 
 from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, spatial_pose
@@ -22,6 +22,7 @@ GRAVITY = 9.80665
 """Standard gravity [m/s^2]."""
 
 
+@storable
 @dataclass(frozen=True)
 class ImuReading(Reading):
     """The reading of an IMU in E environments, in its own frame.
@@ -41,6 +42,7 @@ class ImuReading(Reading):
     turn_bias: Floats
 
 
+@storable
 @dataclass(frozen=True)
 class ImuState:
     """State of an IMU after a measurement, in E environments.

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange, storable
 from crowdbot.core.geometry import nearest_on_segment
 
 from .beams import Beams, sort_beams, unit_vectors
@@ -206,6 +206,7 @@ def _scan_parallel(
         )  # fmt: skip
 
 
+@storable
 @dataclass(frozen=True)
 class Scan(Reading):
     """One scan of a planar laser scanner in E environments, R beams (infinities as in ROS REP-117).

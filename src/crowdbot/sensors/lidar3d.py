@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, storable
 
 from .beams import Beams, sort_beams, unit_vectors
 from .lidar import visible_agents
@@ -28,6 +28,7 @@ TURN = 2.0 * math.pi
 SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16))
 
 
+@storable
 @dataclass(frozen=True)
 class PointCloud(Reading):
     """One scan of a 3-D laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).

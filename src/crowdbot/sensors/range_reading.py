@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.core import Pose, Scene, SpatialPose, storable
 
 from .beams import Beams
 from .noise import Randomness
@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+@storable
 @dataclass(frozen=True)
 class RangeReading(Reading):
     """The smallest distance within a zone in E environments (infinities as in ROS REP-117).

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, SpatialPose
+from crowdbot.core import InputError, Scene, SpatialPose, storable
 
 from .depth_camera import pixel_beams
 from .lens import Lens, distort_image
@@ -47,6 +47,7 @@ def check_renderer(who: str, renderer: str, antialiasing: int) -> None:
         raise InputError(f"{who}: antialiasing = {antialiasing} needs renderer = 'software'")
 
 
+@storable
 @dataclass(frozen=True)
 class RgbImage(Reading):
     """A colour image in E environments, rows from the top, columns from the left.

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Protocol, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, tree
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, storable, tree
 
 from .lens import ImageSource
 from .noise import Noise, Randomness
@@ -23,6 +23,7 @@ ReadingKind = TypeVar("ReadingKind", bound="Reading")
 Reading_co = TypeVar("Reading_co", bound="Reading", covariant=True)
 
 
+@storable
 @dataclass(frozen=True)
 class Reading:
     """The result of one measurement in E environments. Each sensor adds its own arrays.

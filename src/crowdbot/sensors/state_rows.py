@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, tree
+from crowdbot.core import InputError, storable, tree
 
 from .noise import Randomness
 from .sensor import Reading, Sensor, join_readings
@@ -19,6 +19,7 @@ __all__ = ["StateGroups", "measure_rows", "put_state_rows", "take_state_rows"]
 Ints = NDArray[np.int64]
 
 
+@storable
 @dataclass(frozen=True)
 class StateGroups:
     """States of one sensor that have different structures, for example None before the first measurement.

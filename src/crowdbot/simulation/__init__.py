@@ -1,5 +1,7 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
+from crowdbot.core import StateError, StateMark
+
 from .decision_timer import decision_times
 from .door_orders import DoorOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
@@ -34,9 +36,8 @@ from .simulation_run import (
     StopRequest,
 )
 from .state.resumable_hash import ResumableHash
+from .state.simulation_state import restore_state, state_of
 from .state.state_codec import decode_state, encode_state
-from .state.state_restore import restore_state
-from .state.state_tree import StateError, StateMark, state_of
 from .statistics import EpisodeStatistics, RunSummary, robot_metrics
 from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import Storage
 from crowdbot.navigation import (
     Decisions,
     HungNavigatorError,
@@ -56,6 +57,7 @@ class DecisionTimer:
     clock: Callable[[], float] = time.perf_counter
     spent: list[list[float]] = field(default_factory=list)
     _warm: bool = field(default=False, init=False)
+    storage = Storage(constants=("recorded", "clock", "spent", "_warm"))
 
     @classmethod
     def of(cls, count: int) -> DecisionTimer:

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, SpatialPose
+from crowdbot.core import Pose, SpatialPose, StateError
 from crowdbot.sensors import Reading, TrackedPeople
 
 from .mounted_sensor import SensorReadings
 from .orders.order import Order, write_order
 from .state.resumable_hash import ResumableHash
-from .state.state_tree import StateError
 from .step_batch import BatchReadings, StepBatch
 from .step_record import StepRecord
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+from crowdbot.core import storable
+
 __all__ = ["RunEnd", "RunFailure", "RunFailureWarning"]
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -19,6 +21,7 @@ class RunFailureWarning(UserWarning):
     """An exception ended a run; the outcome of its episode is ``error``."""
 
 
+@storable
 @dataclass(frozen=True)
 class RunFailure:
     """An exception in a navigator, sensor, crowd model or bridge that ended a run.

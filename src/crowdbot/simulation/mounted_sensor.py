@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose
+from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose, Storage, storable
 from crowdbot.sensors import (
     Reading,
     SensorSchedule,
@@ -35,6 +35,7 @@ LEVEL = 1e-9
 Floats = NDArray[np.float64]
 
 
+@storable
 @dataclass(frozen=True)
 class SensorReadings:
     """Readings of one sensor in some environments, with agent indices until they are read.
@@ -124,6 +125,9 @@ class MountedSensor:
     wheels: WheelGeometry | None = None
     lateness: Ints | None = None
     keeps_people: bool = False
+    storage = Storage(
+        constants=("mount", "placed", "schedule", "space", "together", "wheels", "lateness", "keeps_people"),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if not len(self.latest):

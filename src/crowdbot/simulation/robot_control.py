@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, TickSchedule, Twist, Walls
+from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls
 from crowdbot.navigation import (
     AgentsInView,
     DriveLimits,
@@ -127,6 +127,7 @@ class RobotControl:
     faults: FaultState | None = None
     perceived: list[PerceivedPeople] = field(default_factory=list)
     wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
+    storage = Storage(constants=("robot", "agent", "limits", "control", "wanted", "planner"))
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:

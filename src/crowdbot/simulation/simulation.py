@@ -24,7 +24,18 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Clock, Disc, InputError, Path2D, Twist, draw_svg
+from crowdbot.core import (
+    PERSON_COLOR,
+    ROBOT_COLOR,
+    WALL_COLOR,
+    Clock,
+    Disc,
+    InputError,
+    Path2D,
+    Storage,
+    Twist,
+    draw_svg,
+)
 from crowdbot.metrics import HOLD
 from crowdbot.navigation import Observation
 from crowdbot.sensors import Reading
@@ -96,6 +107,8 @@ class Simulation:
     >>> simulation.ticks.tolist(), simulation.record(1).nanoseconds
     ([1, 1], 50000000)
     """
+
+    storage = Storage(constants=("trial", "people", "around", "_ways_out", "_template"), last=("readings",))
 
     def __init__(
         self, trial: Trial | WorldTemplate, seeds: Seeds = 0, clock: Clock | None = None, *, posed: bool = False

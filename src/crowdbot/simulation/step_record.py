@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
+from crowdbot.core import Scene, storable
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec
 
@@ -25,6 +25,7 @@ WALL = -2
 """Code of a wall instead of an agent id, as in scans."""
 
 
+@storable
 class RobotContact(NamedTuple):
     """A contact of a robot during a step: ids of both agents (-2: a wall) and the smallest clearance [m], negative."""
 

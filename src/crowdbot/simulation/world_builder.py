@@ -192,7 +192,9 @@ def avatars_of(trial: Trial, end: int, first: int) -> Avatars | None:
     sources += [pose.source_from(robot.x, robot.y, robot.heading) for _, robot, pose in led]
     names = [avatar.name for avatar in trial.avatars] + [f"robot/{robot.name}" for _, robot, _ in led]
     delays = [avatar.delay for avatar in trial.avatars] + [pose.delay for _, _, pose in led]
-    return Avatars([*range(end - count, end), *robots], names, [sources], delays, robots)
+    kinds = [avatar.source for avatar in trial.avatars] + [pose.source for _, _, pose in led]
+    external = [name for name, kind in zip(names, kinds, strict=True) if kind == "external"]
+    return Avatars([*range(end - count, end), *robots], names, [sources], delays, robots, external)
 
 
 def journeys_of(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:

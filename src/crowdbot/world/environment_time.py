@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, FreeClock
+from crowdbot.core import Clock, FreeClock, InputError, Storage
 
 __all__ = ["EnvironmentTime"]
 
@@ -38,6 +38,7 @@ class EnvironmentTime:
     clock: Clock
     first_tick: Ints
     begin: Floats
+    storage = Storage(constants=("clock", "first_tick"), properties=("ticks",))
 
     @classmethod
     def of(cls, clock: Clock, begin: float | Floats, count: int) -> EnvironmentTime:
@@ -49,6 +50,18 @@ class EnvironmentTime:
     def ticks(self) -> Ints:
         """Number of steps since each environment began, ``[E]``."""
         return self.clock.tick - self.first_tick
+
+    @ticks.setter
+    def ticks(self, ticks: Ints) -> None:
+        """Set the number of steps, and the clock to the largest.
+
+        Raises:
+            InputError: a number is out of range.
+        """
+        if ticks.min() < 0 or ticks.max() > 2**53:
+            raise InputError("a step number is outside 0 to 2^53")
+        self.clock.tick = int(ticks.max())
+        self.first_tick = self.clock.tick - ticks
 
     @property
     def age(self) -> Any:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, SpatialPose, Twist, Walls
+from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, SpatialPose, Storage, Twist, Walls
 from crowdbot.metrics import step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
@@ -171,6 +171,13 @@ class PlanarWorld(World):
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
+    storage = Storage(
+        constants=(
+            "model", "drives", "dt", "seed", "leave_radius", "robot_margin", "router", "contact", "limits",
+            "journeys", "sources", "exits", "portals", "script", "heading_jitter", "substeps", "latency", "ghosts",
+            "reactions", "joined", "_models", "_segments", "_surfaces", "_plain_router",
+        ),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         self._check()

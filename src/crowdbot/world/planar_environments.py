@@ -224,7 +224,7 @@ def _join_flows(flows: Sequence[PeopleFlow], agents: int) -> PeopleFlow:
 def _put_twists(twists: Twists, index: Ints, rows: Twists) -> Twists:
     """Replace the twists of some environments; those of a car have a steering angle after its first step, 0 before."""
     kind = type(twists) if isinstance(twists, type(rows)) else type(rows)
-    names = [field.name for field in dataclasses.fields(kind)]
+    names = [field.name for field in dataclasses.fields(kind) if field.init]
     whole, part = (kind(*(getattr(one, name, np.zeros_like(one.forward)) for name in names)) for one in (twists, rows))
     return tree.put(whole, index, part)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls
+from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls, storable
 from crowdbot.world.robots.drives.drive import Twists
 
 from .environment_time import EnvironmentTime
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Contact", "World"]
 
 
+@storable
 class Contact(NamedTuple):
     """A contact between a robot and another agent during a step.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Twist, Walls, tree
+from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Storage, Twist, Walls, tree
 from crowdbot.world.crowd.environment_rows import pad_ids, resize_scene, stack_scenes
 from crowdbot.world.environment_time import EnvironmentTime
 from crowdbot.world.planar_live_changes import (
@@ -47,6 +47,8 @@ class WorldBatch(World):
         worlds: the worlds; they must not be used any more.
         clock: the common clock; None: that of the first world.
     """
+
+    storage = Storage(constants=("dt", "_stacked"))
 
     def __init__(self, worlds: Sequence[Any], clock: Clock | None = None) -> None:
         first = worlds[0]

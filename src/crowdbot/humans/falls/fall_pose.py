@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import kernel
+from crowdbot.core import kernel, storable
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.people import People
 from crowdbot.humans.posture import Posture, place_chain
@@ -39,6 +39,7 @@ UPPER = 20
 """Number of the first bone of the legs; those below are trunk, head and arms."""
 
 
+@storable
 class FallPose(NamedTuple):
     """How a person leans, falls or lies.
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, SpatialPose, check_number
+from crowdbot.core import Pose, SpatialPose, check_number, storable
 from crowdbot.sensors.imu import elapsed_time
 from crowdbot.sensors.noise import Randomness, apply_noise, normals
 from crowdbot.sensors.sensor import Reading, Sensor, finite_or_nan, planar_pose
@@ -27,6 +27,7 @@ SAME = 1e-9
 """Relative difference below which two lengths are the same."""
 
 
+@storable
 @dataclass(frozen=True)
 class Odometry(Reading):
     """The pose by wheel odometry in E environments.
@@ -44,6 +45,7 @@ class Odometry(Reading):
     ticks: NDArray[np.int64]
 
 
+@storable
 @dataclass(frozen=True)
 class OdometryState:
     """State of wheel odometry after a measurement, in E environments.

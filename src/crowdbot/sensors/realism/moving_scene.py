@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.core import Pose, Scene, SpatialPose, storable
 from crowdbot.sensors.sensor import planar_pose
 
 __all__ = ["SweepState", "move_scene", "sensor_motion"]
@@ -20,6 +20,7 @@ LONGEST = 1.0
 """Time between two measurements [s] above which the sensor counts as at rest."""
 
 
+@storable
 @dataclass(frozen=True)
 class SweepState:
     """Time [s] and pose of the last measurement, in E environments."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, Walls, check_number
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, Walls, check_number, storable
 from crowdbot.sensors.beams import sort_beams, unit_vectors
 from crowdbot.sensors.lidar import Lidar2D, Scan, beam_angles
 from crowdbot.sensors.noise import Randomness
@@ -40,6 +40,7 @@ GOLDEN = 0.6180339887498949
 REPORTS = ("first", "strongest", "last")
 
 
+@storable
 @dataclass(frozen=True)
 class PulsedScan(Scan):
     """A scan with the time and the power of each beam.

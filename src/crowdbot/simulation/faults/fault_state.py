@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import RandomStreams, kebab_case, stream
+from crowdbot.core import RandomStreams, Storage, kebab_case, stream
 from crowdbot.navigation import ObservationBatch
 from crowdbot.simulation.mounted_sensor import MountedSensor
 from crowdbot.trials import BlindSensor, Fault, FrozenSensor, LateSensor, RobotSpec, SensorFault
@@ -47,6 +47,7 @@ class FaultState:
     numbers: Floats
     draws: Floats
     rngs: tuple[RandomStreams, ...]
+    storage = Storage(constants=("faults", "names"))
 
     @classmethod
     def of(cls, robot: RobotSpec, seeds: Sequence[int]) -> FaultState | None:

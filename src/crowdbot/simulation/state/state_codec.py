@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .state_tree import SCALARS, StateError, StateMark
+from crowdbot.core import StateError, StateMark, tree
 
 __all__ = ["decode_state", "encode_state"]
 
@@ -88,7 +88,7 @@ def _parsed(whole: bytes) -> dict[str, Any]:
             if len(row) != 2 or not isinstance(row[0], str):
                 raise StateError(f"{path} has no kind and content")
             found[path] = StateMark(*row)
-        elif row is None or isinstance(row, SCALARS):
+        elif row is None or isinstance(row, tree.SCALARS):
             found[path] = row
         else:
             raise StateError(f"{path} is not a value of a state")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, RandomStreams, Scene, draw_uniform, stream_states
+from crowdbot.core import InputError, RandomStreams, Scene, Storage, draw_uniform, stream_states
 from crowdbot.models.mixture import MODEL
 
 from .agent_arrays import BOOL, dense
@@ -71,6 +71,7 @@ class _Queues:
     after: Words
     places: Words
     streams: list[RandomStreams]
+    storage = Storage(constants=("sources",))
 
     @classmethod
     def of(cls, sources: Sequence[PeopleSource], seeds: Sequence[int], first: int = 0) -> _Queues:
@@ -197,6 +198,8 @@ class Arrivals:
     >>> new.tolist(), scene.active.tolist()
     ([[True, True, False]], [[True, True, False]])
     """
+
+    storage = Storage(constants=("_first_journey", "_fresh"))
 
     def __init__(
         self,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, Storage
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
 from crowdbot.world.robots.drives.drive import Twists
 
@@ -41,6 +41,7 @@ class Avatars:
         sources: source of each avatar in each environment ``[E][K]``.
         delay: time [s] by which each avatar follows its source later ``[K]``.
         robots: those of ``agents`` that are robots.
+        external: names of the avatars whose samples come from outside while the world runs.
 
     Attributes:
         rows: latest pose of each avatar ``[E, K, 139]``, see :meth:`crowdbot.humans.BodyPose.row`.
@@ -52,6 +53,11 @@ class Avatars:
     ([0.5, 1.0], [1.0, 2.0])
     """
 
+    storage = Storage(
+        constants=("agents", "names", "sources", "delay", "robots", "_latest", "external"),
+        properties=("streams",),
+    )  # fmt: skip
+
     def __init__(
         self,
         agents: Sequence[int] | Ints,
@@ -59,7 +65,9 @@ class Avatars:
         sources: Sequence[Sequence[PoseSource]],
         delay: Sequence[float],
         robots: Sequence[int] = (),
+        external: Iterable[str] = (),
     ) -> None:
+        self.external = frozenset(external)
         self.robots = tuple(int(agent) for agent in robots)
         self.agents = np.asarray(agents, dtype=np.int64)
         self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
@@ -71,6 +79,23 @@ class Avatars:
     def people(self) -> Ints:
         """The agents that are persons, without robots."""
         return np.asarray(self.agents[~np.isin(self.agents, self.robots)])
+
+    @property
+    def streams(self) -> list[list[PoseSource]]:
+        """Sources of the external avatars in each environment; the others do not change."""
+        return [
+            [source for name, source in zip(self.names, row, strict=True) if name in self.external]
+            for row in self.sources
+        ]
+
+    @streams.setter
+    def streams(self, streams: list[list[PoseSource]]) -> None:
+        """Set the sources of the external avatars in each environment."""
+        rows = [iter(row) for row in streams]
+        self.sources = [
+            tuple(next(row) if name in self.external else source for name, source in zip(self.names, old, strict=True))
+            for row, old in zip(rows, self.sources, strict=True)
+        ]
 
     def __deepcopy__(self, memo: Any) -> Avatars:
         """Return an independent copy; sources do not change, so they are shared."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, kernel
+from crowdbot.core import InputError, Scene, Storage, kernel
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
@@ -48,6 +48,7 @@ class PeopleFlow:
     arrivals: Arrivals | None
     mixture: Mixture | None
     _turns: tuple[float, Numbers, Numbers, Floats, Floats] | None = field(default=None, init=False, repr=False)
+    storage = Storage(constants=("router", "journeys", "mixture"))
 
     @classmethod
     def of(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, Walls
+from crowdbot.core import Scene, Storage, Walls
 from crowdbot.world.crowd.routing import Router
 from crowdbot.world.physics.scenery import add_rings
 
@@ -53,6 +53,8 @@ class Doors:
     >>> doors.share.tolist(), doors.blocked
     ([1.0], [False])
     """
+
+    storage = Storage(constants=("leaves", "pushed", "_walls", "_routers", "_base"))
 
     def __init__(
         self, leaves: Sequence[DoorLeaf], wanted: Mapping[str, bool] | None = None, pushed: bool = False

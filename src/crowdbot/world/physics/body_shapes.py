@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import storable
+
 from .mjcf_model import LIMB_COUNT
 
 __all__ = ["BodyShapes"]
@@ -15,6 +17,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+@storable
 class BodyShapes(NamedTuple):
     """Limbs and masses of the bodies, which are parts of the engine model; S bodies, L limbs.
 

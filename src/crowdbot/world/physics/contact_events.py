@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import Storage, storable
 from crowdbot.humans import LIMBS
 from crowdbot.metrics import HOLD, cause_of
 
@@ -29,6 +30,7 @@ ANEW = 0.05
 PARTS = {limb.name: limb.region for limb in LIMBS}
 
 
+@storable
 class ContactForce(NamedTuple):
     """Force between two bodies, averaged over one step of the world.
 
@@ -54,6 +56,7 @@ class ContactForce(NamedTuple):
     point: tuple[float, float, float]
 
 
+@storable
 @dataclass(frozen=True)
 class BodyContactEvent:
     """Contact of two bodies, from the first contact until they are separated for 0.5 s.
@@ -115,6 +118,7 @@ class BodyContactEvent:
         return max(impact, steady)
 
 
+@storable
 @dataclass
 class _Pressed:
     """Force on a limb or on all limbs in a contact event; under pressure since ``since``, last at ``last``."""
@@ -124,6 +128,7 @@ class _Pressed:
     recent: deque[float]
 
 
+@storable
 @dataclass
 class _Running:
     """An open contact event."""
@@ -151,6 +156,8 @@ class BodyContactTracker:
             normal ``[3]``.
         heading_of: returns the heading of a person [rad].
     """
+
+    storage = Storage(constants=("_step", "_window", "_mass_of", "_limb_mass_of", "_heading_of"))
 
     def __init__(
         self, step: float, mass_of: Callable[[ContactBody], float],

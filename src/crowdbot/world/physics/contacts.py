@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import storable
+
 from .body_region_limits import DAMPING, peak_share
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
@@ -24,6 +26,7 @@ SLOW = 0.05
 WORDS = {ROBOT: "robot", PROP: "prop", PERSON: "person", WALL: "wall"}
 
 
+@storable
 class ContactBody(NamedTuple):
     """One of the two bodies in a contact.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, Walls
+from crowdbot.core import Scene, Storage, Walls
 from crowdbot.humans import People
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.robot import Robot
@@ -43,6 +43,8 @@ class KinematicBodies:
         doors: doors of the world, whose leaves the bodies show.
         joints: joint positions of robots that differ from their posture [rad or m], by agent and name.
     """
+
+    storage = Storage(constants=("robots", "stage", "walls", "_renderer", "doors"))
 
     def __init__(
         self,

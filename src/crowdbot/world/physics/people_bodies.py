@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import Storage
+
 from .balance.balance import Balance
 from .balance.force_pushes import ForcePushes
 from .balance.recovery import BRACE, GRAVITY, GRIP, REACTION, recovery_force
@@ -64,6 +66,11 @@ class PeopleBodies:
         balance: balance of the agents; None: nobody loses it.
         pushes: forces from outside during this step of the world.
     """
+
+    storage = Storage(
+        constants=("pushes", "_model", "_data", "step", "geoms", "bodies", "_place", "_speed", "_hold"),
+        resized=("_begin", "_heading", "_limbs", "led"),
+    )  # fmt: skip
 
     def __init__(self, model: Any, data: Any, slots: int, step: float, shapes: BodyShapes | None = None) -> None:
         self.step = step

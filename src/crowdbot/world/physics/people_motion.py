@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, stream
+from crowdbot.core import InputError, Scene, Storage, stream
 from crowdbot.humans import (
     ACTIVITIES,
     CHAIR,
@@ -77,6 +77,8 @@ class PeopleMotion:
     Raises:
         InputError: the number of bodies is wrong.
     """
+
+    storage = Storage(constants=("agents", "people", "row", "gait", "radius", "ground"))
 
     def __init__(
         self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0, riders: Sequence[int] = (),

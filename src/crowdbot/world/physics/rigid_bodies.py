@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import InputError, Storage
 from crowdbot.world.physics.robots.link_forces import LinkForces
 from crowdbot.world.physics.robots.robot_body import RobotBody
 
@@ -34,6 +35,8 @@ class RigidBodies:
         robots: bodies of the robots by agent.
     """
 
+    storage = Storage(constants=("compiled", "data"), properties=("engine",))
+
     def __init__(
         self, design: BodyDesign, known: Mapping[int, RobotBody] | None = None, *, settled: bool = True
     ) -> None:
@@ -53,6 +56,26 @@ class RigidBodies:
     def design(self) -> BodyDesign:
         """Content of the engine model."""
         return self.compiled.design
+
+    @property
+    def engine(self) -> Floats:
+        """State of the engine as one vector; its frames are computed after a change."""
+        mj, model = engine(), self.compiled.base
+        state = np.zeros(mj.mj_stateSize(model, mj.mjtState.mjSTATE_INTEGRATION))
+        mj.mj_getState(model, self.data, state, mj.mjtState.mjSTATE_INTEGRATION)
+        return state
+
+    @engine.setter
+    def engine(self, state: Floats) -> None:
+        """Set the state of the engine.
+
+        Raises:
+            InputError: a value is not finite.
+        """
+        if not np.isfinite(state).all():
+            raise InputError("a value of the engine is not finite")
+        mj = engine()
+        mj.mj_setState(self.compiled.base, self.data, state, mj.mjtState.mjSTATE_INTEGRATION)
 
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
+from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Storage, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.ghosts import hide_ghosts
@@ -138,6 +138,9 @@ class PhysicsWorld(PlanarWorld):
 
     people_shape = "limbs"
     walls_fixed = True
+    storage = Storage(
+        constants=("stage", "physics_dt", "_steps", "_outlined", "_plane", "_renderers", "_prop_names", "_slots_fixed"),
+    )  # fmt: skip
 
     def __init__(
         self,

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from crowdbot.core import Walls
+from crowdbot.core import Storage, Walls
 from crowdbot.world.physics.robots.link_forces import LinkForces
 from crowdbot.world.physics.robots.robot_body import RobotBody
 
@@ -43,6 +43,8 @@ class WorldBodies:
         links: drag and kinematic links of its robots.
         model: model of ``main`` during a step, see :meth:`engine_steps`.
     """
+
+    storage = Storage(constants=("walls", "step", "stage", "starts", "slots", "reader", "links", "model"))
 
     def __init__(
         self,

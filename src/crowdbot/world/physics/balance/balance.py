@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import kernel
+from crowdbot.core import Storage, kernel
 from crowdbot.humans import People
 
 from .ability import RESPONSE, balance_ability
@@ -128,6 +128,8 @@ class Balance:
     >>> int(balance.steps[0]), int(balance.phase[0]) == STANDING
     (1, True)
     """
+
+    storage = Storage(constants=("rate", "center", "base", "reach"))
 
     def __init__(self, people: People, agents: Ints, count: int) -> None:
         self.shift, self.speed, self.pulled = (np.zeros((count, 2)) for _ in range(3))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Paper
+from crowdbot.core import Paper, storable
 from crowdbot.humans import LIMBS, LYING, FallPose, People, Posture, fall_postures
 from crowdbot.metrics import HIC15_LIMIT
 
@@ -60,6 +60,7 @@ SOURCES = (
 )
 
 
+@storable
 @dataclass(frozen=True)
 class Fall:
     """The fall of a person.

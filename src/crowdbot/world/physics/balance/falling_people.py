@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, stream
+from crowdbot.core import Scene, Storage, stream
 from crowdbot.humans import LYING, FallPose, People, Posture
 from crowdbot.metrics import HIC15_LIMIT, fall_hic15
 from crowdbot.world.physics.scenery import add_rings
@@ -48,6 +48,8 @@ class FallingPeople:
         balance: balance of all agents.
         falls: falls so far, also those that are not over, by time.
     """
+
+    storage = Storage(constants=("get_up",))
 
     def __init__(self, motion: PeopleMotion, count: int, get_up: float | None) -> None:
         self.get_up = get_up

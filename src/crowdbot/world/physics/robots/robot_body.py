@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
+from crowdbot.core import InputError, Pose, SpatialPose, Storage, Twist, did_you_mean
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.wheels.friction import WheelFriction
 from crowdbot.world.physics.wheels.skid_steering import SlipControl, SlipState
@@ -45,6 +45,13 @@ class RobotBody:
         friction: wheels whose friction has a direction.
         loads: normal forces [N] of these wheels in the last engine step.
     """
+
+    storage = Storage(
+        constants=(
+            "robot", "prefix", "step", "_model", "_data", "_mj", "body", "_sites", "_servo", "_wheels", "_steers",
+            "_step_robots", "_rolling", "_delay", "_slip", "friction", "_forces", "_lag", "_base",
+        ),
+    )  # fmt: skip
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
         self.robot, self.prefix, self.step = robot, prefix, step
@@ -314,7 +321,7 @@ def _row(twist: Twists) -> Floats:
 
 
 def _same(one: Twists, other: Twists) -> bool:
-    names = [part.name for part in dataclasses.fields(one)]
+    names = [part.name for part in dataclasses.fields(one) if part.init]
     return type(one) is type(other) and all(getattr(one, name)[0] == getattr(other, name)[0] for name in names)
 
 

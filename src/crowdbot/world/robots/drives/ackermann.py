@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core import InputError, Pose, Twist, check_number
+from crowdbot.core import InputError, Pose, Twist, check_number, storable
 
 from .drive import Drive, Floats, Twists, check_step, integrate_twist
 
 __all__ = ["AckermannDrive", "SteeredTwists"]
 
 
+@storable
 @dataclass(frozen=True)
 class SteeredTwists(Twists):
     """Twist of a car with its steering angle: ``steering`` ``[E]`` [rad], left is positive."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Twist, check_number, kernel
+from crowdbot.core import InputError, Pose, Twist, check_number, kernel, storable
 
 __all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "integrate_twist"]
 
@@ -103,6 +103,7 @@ def put_robot(
         out_velocity[e, robot, 1] = sin * forward[e] + cos * left[e]
 
 
+@storable
 @dataclass(frozen=True)
 class Twists:
     """Twist of one robot in every environment, in the frame of the robot.
@@ -118,6 +119,8 @@ class Twists:
     forward: Floats
     turn: Floats
     left: Floats
+    _count: int | None = field(default=None, init=False, repr=False, compare=False)
+    """Number of environments, once the values are checked."""
 
     @classmethod
     def of(cls, twist: Twist | Twists, count: int) -> Twists:
@@ -126,7 +129,7 @@ class Twists:
         Raises:
             InputError: a value is not finite, or the number of twists is wrong.
         """
-        if twist.__class__ is Twists and getattr(twist, "_count", 0) == count:
+        if twist.__class__ is Twists and twist._count == count:
             return twist
         found = cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
         if cls is Twists:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Twist, check_number, kernel
+from crowdbot.core import InputError, Pose, Twist, check_number, kernel, storable
 
 from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 
@@ -88,6 +88,7 @@ class VelocityServo(Drive):
         return integrate_twist(pose, after, dt), after
 
 
+@storable
 class Pending(NamedTuple):
     """A delayed command and the time [s] until it takes effect."""
 
