@@ -82,11 +82,23 @@ def test_settings_are_given_together_or_one_by_one() -> None:
         parse_settings(["a=1", "a=2"])
 
 
-def test_an_argument_after_a_setting_is_refused_with_a_hint(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_argument_may_follow_settings(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="2"):
-        main(["run", "--set", "duration=1", "frontal"])
-    sentence = "TRIAL; arguments come before options with several values, such as --set"
-    assert sentence in capsys.readouterr().err
+        main(["run", "--set", "duration=1", "people=3", "no-such-trial", "--seed", "x"])
+    assert "argument --seed" in capsys.readouterr().err
+    parser = CommandParser()
+    parser.add_argument("trial")
+    add_settings(parser)
+    options = parser.parse_args(["--set", "a=1", "b=2", "frontal"])
+    assert (options.trial, options.set) == ("frontal", ["a=1", "b=2"])
+
+
+def test_an_argument_after_an_option_of_several_values_is_refused_with_a_hint(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["measure", "--methods", "density", "tracks.csv"])
+    assert "PATH; arguments come before options that take several values" in capsys.readouterr().err
 
 
 def test_every_command_has_the_same_grammar_for_values_seeds_and_robots() -> None:
@@ -98,7 +110,7 @@ def test_every_command_has_the_same_grammar_for_values_seeds_and_robots() -> Non
                     kind = "--set" if name in ("--set-predictor", "--trial") else name
                     found.setdefault(kind, set()).add((type(action).__name__, action.nargs, action.metavar))
     assert found == {
-        "--set": {("_ExtendAction", "+", "NAME=VALUE")},
+        "--set": {("_AppendAction", None, "NAME=VALUE")},
         "--seeds": {("_StoreAction", None, "SEEDS")},
         "--robots": {("_StoreAction", None, "LIST")},
     }

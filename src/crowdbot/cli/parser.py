@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import textwrap
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-__all__ = ["CommandParser"]
+__all__ = ["SETTING", "CommandParser"]
+
+SETTING = "NAME=VALUE"
+"""Metavar of options that take one or several settings, such as ``--set``."""
 
 
 class CommandHelp(argparse.HelpFormatter):
@@ -80,10 +84,31 @@ class CommandParser(argparse.ArgumentParser):
         self._rare_groups.append(group)
         return group
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse words; an option of settings takes the following words with an equals sign, and no argument after them.
+
+        >>> parser = CommandParser(prog="crowdbot run")
+        >>> for name, how in {"trial": {}, "--set": {"action": "append", "metavar": SETTING}}.items():
+        ...     _ = parser.add_argument(name, **how)
+        >>> parser.parse_args(["--set", "people=3", "seed=4", "frontal"])
+        Namespace(trial='frontal', set=['people=3', 'seed=4'])
+        """
+        options = {name for action in self._actions if action.metavar == SETTING for name in action.option_strings}
+        words: list[str] = []
+        option = ""  # the option of settings that the next word belongs to
+        for word in sys.argv[1:] if args is None else args:
+            if option and words[-1] != option and "=" in word and not word.startswith("-"):
+                words.append(option)
+            elif words[-1:] != [option]:
+                option = ""
+            option = word if word in options else option
+            words.append(word)
+        return super().parse_known_args(words, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Print the usage and the message, and exit with status 2."""
         if message.startswith("the following arguments are required"):  # an option has taken them as its values
-            message += "; arguments come before options with several values, such as --set"
+            message += "; arguments come before options that take several values"
         super().error(message)
 
     def format_usage(self) -> str:

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .parser import SETTING
+
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
@@ -34,9 +36,7 @@ def add_settings(parser: argparse._ActionsContainer, values: str = TRIAL_VALUES,
         values: what the command sets.
         option: name of the option.
     """
-    parser.add_argument(
-        option, nargs="+", action="extend", default=[], metavar="NAME=VALUE", help=f"{values}; repeatable"
-    )
+    parser.add_argument(option, action="append", default=[], metavar=SETTING, help=f"{values}; one or several")
 
 
 def parse_settings(words: Iterable[str], option: str = "--set") -> dict[str, str]:

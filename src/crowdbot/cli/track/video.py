@@ -24,7 +24,7 @@ REACH, FAR = 1.0, 10.0
 
 def add_video(parser: CommandParser) -> None:
     """Declare the options."""
-    group = parser.add_rare_group("video of a camera, instead of SOURCE")
+    group = parser.add_rare_group("video instead of SOURCE, and recording of --truth")
     add = group.add_argument
     add("--video", type=Path, metavar="FILE", help="video of a camera on a robot")
     add("--camera", type=Path, metavar="FILE", help="calibration: camera_info of ROS as YAML, with the place on the"
@@ -35,7 +35,7 @@ def add_video(parser: CommandParser) -> None:
     add("--truth", type=Path, metavar="FILE", help="recording of the true people, such as a CSV with id, time, x,"
         " y, on the clock of --odometry (default: no scores)")  # fmt: skip
     add("--out", type=Path, metavar="DIR", help="folder for tracks.csv and forecasts.csv (default: none)")
-    add_file_options(parser.add_argument_group("recording of --truth"), agents="all")
+    add_file_options(group, agents="all")
 
 
 def track_from_video(options: argparse.Namespace) -> int:
