@@ -168,7 +168,7 @@ def _falsify_rows(space: Workspace) -> list[Row]:
 
 def _falsify_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
     over = [f"--over={one.strip()}" for one in values["over"].split(";") if one.strip()]
-    plain = [f"--{name}={values[name]}" for name in ("navigator", "robots", "failure", "search")]
+    plain = [f"--{name}={values[name]}" for name in ("navigator", "robots", "failure", "search") if values[name]]
     return ["falsify", values["trial"], *plain, *over, *_numbers(values, "runs", "seed")]
 
 
