@@ -239,7 +239,7 @@ def test_the_hash_changes_with_everything(folder: Path, tmp_path: Path) -> None:
         ('["frontal"]', "[]", "must be a list of texts that is not empty"),
         ('"success-rate high"', '"success-rate"', "must be one of the statistics, followed by high or low"),
         ('statistics = ["success-rate"', 'statistics = ["wrong:x"', "'wrong' is unknown"),
-        ('"0:2"', '"2:0"', "must have 1 to 1000000 numbers"),
+        ('"0:2"', '"2:0"', "must have 1 to 1000000 seeds"),
         ("title =", "title", "is not a challenge"),
     ],
 )
