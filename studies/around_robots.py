@@ -32,8 +32,7 @@ from crowdbot.evaluation import ClearanceRow, ClearanceTable, RobotRecording, lo
 from crowdbot.models import CrowdModel, People
 from crowdbot.simulation import Episode, simulate_seeds
 from crowdbot.trials import Trial, load_trial
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 CLEARANCES = Path(__file__).parents[1] / "src" / "crowdbot" / "assets" / "evaluation" / "around-robots.json"
 FITTED = ("people",)

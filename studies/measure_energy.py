@@ -29,8 +29,7 @@ from crowdbot.measurement import (
     time_edges,
 )
 from crowdbot.models import ORCA, CrowdModel, People, PowerLaw
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 RADII = (0.1, 0.15, 0.2)
 """Radii of the discs that collide [m]."""

@@ -12,15 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 from crowdbot.validation import select_models
 from people.experiments import KINDS, RecordedExperiment, read_experiments
 from people.track_errors import keep_velocity, measure_tracks, ttc_distance
-
-Floats = NDArray[np.float64]
 
 FIRST = 3
 """Shift of the windows: these are not the windows of ``studies/fit_people.py``."""

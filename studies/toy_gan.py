@@ -35,8 +35,7 @@ from crowdbot.prediction import (
     torch_threads,
     train,
 )
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 METHODS: dict[str, dict[str, Any]] = {
     "vanilla": {},

@@ -19,9 +19,8 @@ from rich.progress import track
 from crowdbot.measurement import lane_order
 from crowdbot.simulation import Episode, simulate_seeds
 from crowdbot.trials import Trial, load_trial, parse_trial
+from crowdbot.typing import Floats
 from crowdbot.validation.literature import line_speed, weidmann_speed
-
-Floats = NDArray[np.float64]
 
 SEEDS = 20
 BATCH = 25

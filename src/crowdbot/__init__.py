@@ -44,15 +44,10 @@ JOBS: dict[str, dict[str, tuple[str, ...]]] = {
 }
 """Public names by the job of the user and the module that defines them."""
 
-_MODULES = {
-    module: [name for modules in JOBS.values() for name in modules.get(module, ())]
-    for modules in JOBS.values()
-    for module in modules
-}
-__getattr__, __dir__ = lazy_exports(__name__, _MODULES)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [  # noqa: PLE0604
-    *(name for names in _MODULES.values() for name in names),
+    *(name for modules in JOBS.values() for names in modules.values() for name in names),
     "__version__",
 ]
 

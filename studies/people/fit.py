@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.calibration import CMAES
 from crowdbot.core import InputError, stream
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_values import CrowdValues, measure_crowds
 from .experiments import KINDS, RecordedExperiment
@@ -21,7 +21,6 @@ from .track_errors import keep_velocity, measure_tracks, ttc_distance
 
 __all__ = ["BOX", "Candidate", "PopulationFit", "set_of"]
 
-Floats = NDArray[np.float64]
 
 FOLLOW = "follow_gap"
 """Time gap less anticipation: the time gap of people who follow each other at the same speed [s]."""

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.typing import Floats
 
 from .experiments import FOLDS, RecordedExperiment
 from .fit import BOX, WEIGHTS, Candidate, PopulationFit
 
 __all__ = ["SetProfile", "fit_report", "fold_rows", "pareto_set", "profile_sets"]
 
-Floats = NDArray[np.float64]
 
 BINS = 6
 """Parts of the range of a parameter."""

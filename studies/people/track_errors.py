@@ -14,13 +14,12 @@ from crowdbot.calibration import Rollout
 from crowdbot.core import Scene
 from crowdbot.data import Windows
 from crowdbot.models import CrowdModel, CurrentDirection
+from crowdbot.typing import Floats, Ints
 
 from .experiments import RecordedExperiment
 
 __all__ = ["TTC_EDGES", "TrackErrors", "keep_velocity", "measure_tracks", "time_to_collision_counts", "ttc_distance"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 BODY, CART = 0.2, 0.9
 """Radii of people, as in all checks of the validation, and of the golf cart of CITR [m]."""
@@ -47,11 +46,11 @@ class TrackErrors:
         ttc_real: ``[B]`` numbers of pairs of the recorded people.
     """
 
-    person: Integers
+    person: Ints
     early: Floats
     mean: Floats
-    ttc: Integers
-    ttc_real: Integers
+    ttc: Ints
+    ttc_real: Ints
 
 
 def measure_tracks(
@@ -91,7 +90,7 @@ def keep_velocity(experiment: RecordedExperiment) -> tuple[float, float]:
     return float(np.concatenate(early).mean()), float(np.concatenate(mean).mean())
 
 
-def ttc_distance(found: Integers, real: Integers) -> Floats:
+def ttc_distance(found: Ints, real: Ints) -> Floats:
     """Return the mean absolute logarithm of the ratio of numbers of pairs, over the bins; 0 for equal distributions.
 
     >>> float(ttc_distance(np.array([[95, 45]]), np.array([95, 45]))[0])
@@ -130,7 +129,7 @@ def _run(rollout: Rollout, scene: Scene, past: Windows, sets: Sequence[Mapping[s
     return found.reshape(len(sets), W, steps, -1, 2)
 
 
-def time_to_collision_counts(last: Floats, place: Floats, people: NDArray[np.bool_], dt: float) -> Integers:
+def time_to_collision_counts(last: Floats, place: Floats, people: NDArray[np.bool_], dt: float) -> Ints:
     """Return the numbers of pairs ``[B]`` by time to collision of bodies of 0.2 m, at some rows.
 
     Args:

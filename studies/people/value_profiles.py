@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_values import CrowdValues, measure_crowds
 from .experiments import FOLDS, KINDS, RecordedExperiment
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RANGES", "ValueProfile", "ValueStudy", "draw_profiles", "study_values", "write_study"]
 
-Floats = NDArray[np.float64]
 
 RANGES: dict[str, tuple[float, float]] = {
     "headway_time_gap": (1.2, 2.2),

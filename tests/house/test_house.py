@@ -101,7 +101,7 @@ def _type_checked_names(path):
 
 
 def test_names_that_a_room_loads_on_first_use_are_there_for_type_checkers():
-    rooms = [path for path in SOURCES if path.name == "__init__.py" and "def __getattr__" in path.read_text("utf-8")]
+    rooms = [path for path in SOURCES if path.name == "__init__.py" and "__getattr__" in path.read_text("utf-8")]
     assert rooms
     for path in rooms:
         room = importlib.import_module(".".join(["crowdbot", *path.parent.relative_to(ROOT / "src/crowdbot").parts]))

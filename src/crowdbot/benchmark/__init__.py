@@ -5,44 +5,11 @@ Names are loaded on first use.
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-_MODULES = {
-    "drives": (
-        "DRIVE_BARS",
-        "DRIVE_COLUMNS",
-        "DriveFigures",
-        "DriveReport",
-        "DriveRow",
-        "DriveTrace",
-        "Manoeuvre",
-        "compare_traces",
-        "grid_cells",
-        "manoeuvres",
-        "measure_drives",
-        "speed_grid",
-        "trace_physics",
-        "trace_planar",
-    ),
-    "engines": ("EngineReport", "EngineRow", "EngineSizes", "MillionRow", "measure_engines"),
-    "environments": ("BenchmarkSizes", "EnvironmentReport", "EnvironmentRow", "PeerRate", "measure_environments"),
-    "speed": ("Gauge", "Measurement", "SpeedRow", "measure", "measurements"),
-}
-_HOME = {name: module for module, names in _MODULES.items() for name in names}
+from crowdbot.lazy import lazy_exports
 
-__all__ = [*_HOME]  # noqa: PLE0604
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME])
-
+__getattr__, __dir__, __all__ = lazy_exports(__name__)
 
 if TYPE_CHECKING:
     from .drives import DRIVE_BARS as DRIVE_BARS

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper
+from crowdbot.typing import Floats
 
 from .cooling import Cooling, Geometric
 from .search import Search
-from .search_state import Floats, SearchState, own_best
+from .search_state import SearchState, own_best
 
 __all__ = ["Annealing"]
 

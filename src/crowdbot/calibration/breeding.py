@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["breed", "keep_fittest"]
-
-Floats = NDArray[np.float64]
 
 
 @kernel

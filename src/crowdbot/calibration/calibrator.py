@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, kebab_case, stream
 from crowdbot.data import Windows
 from crowdbot.models import CrowdModel, Goal
+from crowdbot.typing import Floats, Ints
 
 from .cost import Cost
 from .fit import Fit
@@ -26,8 +27,6 @@ from .search import Search, SearchResult
 
 __all__ = ["Calibrator"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
 """Callback with the number of completed evaluations (candidates times windows)."""
@@ -252,7 +251,7 @@ class _Task:
         self.counted = np.zeros(past.id.shape, dtype=np.bool_)
         self.done = 0
 
-    def __call__(self, values: Floats, which: Integers) -> Floats:
+    def __call__(self, values: Floats, which: Ints) -> Floats:
         T, A = self.resimulation.past.position.shape[1:3]
         each = np.broadcast_to(values, (len(values), len(which), *values.shape[2:]))
         largest = max(1, AGENTS_PER_CALL // max(1, A * (T - 1)))
@@ -274,7 +273,7 @@ class _Task:
             self.report(self.done)
         return cost
 
-    def _measure(self, values: Floats, which: Integers) -> Floats:
+    def _measure(self, values: Floats, which: Ints) -> Floats:
         A, D = self.given.shape[1:]
         everyone = np.broadcast_to(values, (len(values), len(which), A, D))
 
@@ -294,7 +293,7 @@ class _SharedTask:
         self.report = report
         self.done = 0
 
-    def __call__(self, values: Floats, which: Integers) -> Floats:
+    def __call__(self, values: Floats, which: Ints) -> Floats:
         total, persons = np.zeros(len(values)), np.zeros(len(values), dtype=np.int64)
         for part in self.parts:
             cost = part(values, np.arange(len(part.given)))

@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from crowdbot.core import InputError, Paper
+from crowdbot.typing import Floats
 
 from .search import Search
-from .search_state import Floats, SearchState, own_best
+from .search_state import SearchState, own_best
 
 __all__ = ["CMAES"]
 

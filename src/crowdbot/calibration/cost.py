@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Paper
+from crowdbot.typing import Floats
 
 from .resimulation import ResimulatedTracks
 
 __all__ = ["METRICS", "Cost", "mean_over_rows"]
 
-Floats = NDArray[np.float64]
 
 METRICS = Paper(
     "Wolinski, Guy, Olivier, Lin, Manocha, Pettré",

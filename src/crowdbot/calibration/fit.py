@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .fit_prediction import futures
 from .parameter_space import PREFERRED_SPEED, ParameterSpace
 from .rollout import Rollout
 
 __all__ = ["Fit"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

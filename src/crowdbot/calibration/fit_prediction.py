@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene, parameters
 from crowdbot.data import Windows
+from crowdbot.typing import Floats
 
 from .rollout import Rollout
 
 __all__ = ["futures"]
-
-Floats = NDArray[np.float64]
 
 
 def futures(

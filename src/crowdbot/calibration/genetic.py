@@ -8,10 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from crowdbot.core import InputError, Paper
+from crowdbot.typing import Floats
 
 from .breeding import breed, keep_fittest
 from .search import Search
-from .search_state import Floats, SearchState
+from .search_state import SearchState
 
 __all__ = ["Genetic"]
 

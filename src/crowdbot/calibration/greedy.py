@@ -8,9 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from crowdbot.core import InputError, Paper
+from crowdbot.typing import Floats, Ints
 
 from .search import Search
-from .search_state import Floats, Integers, SearchState
+from .search_state import SearchState
 
 __all__ = ["Greedy"]
 
@@ -80,7 +81,7 @@ class Greedy(Search):
         chance = np.where(np.repeat(state.counts, D, axis=1), chance, np.inf)
         return np.argsort(chance, axis=2, kind="stable").astype(np.float64)
 
-    def _values(self, state: SearchState, present: Floats, parameter: Integers) -> Floats:
+    def _values(self, state: SearchState, present: Floats, parameter: Ints) -> Floats:
         """Return new values ``[trials, L]`` for a parameter of each problem."""
         low, high, side = state.low[parameter], state.high[parameter], state.span[parameter]
         chance = state.draw(lambda rng: rng.random(self.trials))

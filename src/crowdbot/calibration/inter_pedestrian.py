@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
+from crowdbot.typing import Bools, Floats
 
 from .cost import Cost
 from .resimulation import ResimulatedTracks
 
 __all__ = ["InterPedestrian"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @kernel(parallel=True)

@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab_case, parameters
 from crowdbot.data import Windows, fill_gaps, observed_velocity
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .rollout import Rollout, set_preferred_speed
 
 __all__ = ["PREFERRED_SPEED", "RADIUS", "ParameterSpace"]
 
-Floats = NDArray[np.float64]
 
 RADIUS = Parameter("radius", "m", 0.25, 0.1, 0.4, "half the width of shoulders", 0.01)
 """Radius of people. It belongs to the scene, and is calibrated together with the model parameters."""

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .parameter_space import PREFERRED_SPEED, ParameterSpace
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PopulationPrior"]
 
-Floats = NDArray[np.float64]
 
 EDGE = 0.01
 """Minimum distance of a value from its bounds, relative to the range, before the transformation."""

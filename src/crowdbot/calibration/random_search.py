@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .search import Search
-from .search_state import Floats, SearchState, own_best
+from .search_state import SearchState, own_best
 
 __all__ = ["RandomSearch"]
 

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.data import Windows, fill_gaps, slice_rows
+from crowdbot.typing import Floats, Ints
 
 from .rollout import Rollout
 
 __all__ = ["ResimulatedTracks", "Resimulation"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
 """Assigns the parameters of candidates to copies of a scene, in which each window is repeated ``copies`` times."""
 
@@ -58,7 +57,7 @@ class Resimulation:
         self.whole = fill_gaps(past)
         self._repeated: tuple[object, Scene] | None = None
 
-    def resimulate(self, candidate: Candidate, copies: int, which: Integers) -> ResimulatedTracks:
+    def resimulate(self, candidate: Candidate, copies: int, which: Ints) -> ResimulatedTracks:
         """Return the tracks of ``copies`` candidates in the windows ``which``."""
         return ResimulatedTracks(
             self.past[which],
@@ -83,7 +82,7 @@ class Resimulation:
     def _tracks(self) -> _RecordedTracks:
         return _recorded_tracks(self.whole)
 
-    def _from_first_row(self, candidate: Candidate, copies: int, which: Integers) -> Floats:
+    def _from_first_row(self, candidate: Candidate, copies: int, which: Ints) -> Floats:
         T, A = self.past.position.shape[1:3]
         index = np.tile(which, copies)
         place = np.zeros((len(index), T - 1, A, 2))
@@ -94,7 +93,7 @@ class Resimulation:
             place[:, row] = scene.position
         return place.reshape(copies, len(which), T - 1, A, 2)
 
-    def _row_by_row(self, candidate: Candidate, copies: int, which: Integers) -> Floats:
+    def _row_by_row(self, candidate: Candidate, copies: int, which: Ints) -> Floats:
         T, A = self.past.position.shape[1:3]
         if T < 3:
             return np.zeros((copies, len(which), 0, A, 2))
@@ -102,7 +101,7 @@ class Resimulation:
         place = rollout.next_positions(scene, self.past.dt)
         return place.reshape(copies, len(which), T - 2, A, 2)
 
-    def _copies(self, copies: int, which: Integers) -> Scene:
+    def _copies(self, copies: int, which: Ints) -> Scene:
         """Return the scenes of all rows of some windows, repeated; they are kept, because most calls use them again."""
         key = copies, which.tobytes()
         if self._repeated is None or self._repeated[0] != key:
@@ -122,10 +121,10 @@ class _RecordedTracks:
     position: Floats
     velocity: Floats
     present: NDArray[np.bool_]
-    last: Integers
+    last: Ints
     changes: bool
 
-    def apply(self, scene: Scene, row: int, index: Integers) -> Scene:
+    def apply(self, scene: Scene, row: int, index: Ints) -> Scene:
         """Return the scene with external agents at their recorded states of ``row``, without people who have left."""
         if not self.changes:
             return scene

@@ -6,15 +6,14 @@ import dataclasses
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.data import Windows, fill_gaps, slice_rows
 from crowdbot.models import CrowdModel, Goal
+from crowdbot.typing import Floats
 
 __all__ = ["Rollout"]
 
-Floats = NDArray[np.float64]
 
 HASTE = 1.3
 """Maximum speed relative to the walking speed (Helbing & Molnár 1995)."""

@@ -12,17 +12,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats, Ints
 
 from .search_state import SearchState
 
-__all__ = ["Floats", "Function", "Integers", "Search", "SearchResult", "check_box"]
+__all__ = ["Function", "Search", "SearchResult", "check_box"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Function = Callable[[Floats, Integers], Floats]
+Function = Callable[[Floats, Ints], Floats]
 """From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to the cost of each person,
 ``[P, L, N]``, as one batch; NaN if a person does not count."""
 
@@ -41,7 +39,7 @@ class SearchResult:
 
     best: Floats
     cost: Floats
-    evaluations: Integers
+    evaluations: Ints
     history: Floats = field(repr=False)
 
 

@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["SearchState", "own_best"]
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 class SearchState:
@@ -29,7 +27,7 @@ class SearchState:
 
     def __init__(
         self,
-        function: Callable[[Floats, Integers], Floats],
+        function: Callable[[Floats, Ints], Floats],
         low: Floats,
         high: Floats,
         rngs: Sequence[np.random.Generator],
@@ -42,13 +40,13 @@ class SearchState:
         self.function, self.rngs, self.budget = function, rngs, budget
         self.low, self.high, self.span = low, high, high - low
         self.tolerance, self.patience = tolerance, patience
-        self.live: Integers = np.arange(W)
+        self.live: Ints = np.arange(W)
         self.best = first.copy()
         self.cost = np.full(W, np.inf)
-        self.evaluations: Integers = np.zeros(W, dtype=np.int64)
+        self.evaluations: Ints = np.zeros(W, dtype=np.int64)
         self._history = np.full((W, budget), np.inf)
         self._first, self._spent = first, 0
-        self._gained: Integers = np.zeros(W, dtype=np.int64)
+        self._gained: Ints = np.zeros(W, dtype=np.int64)
         self._counts: NDArray[np.bool_] = np.ones((W, N), dtype=bool)
 
     @property

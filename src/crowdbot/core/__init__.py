@@ -65,21 +65,7 @@ if TYPE_CHECKING:
     from .random_streams import RandomStreams, draw_uniform, next_uniform, stream_states
     from .workers import each, run_saved_jobs
 
-__getattr__, __dir__ = lazy_exports(
-    __name__,
-    {
-        "hashes.blake2b": ["HASH_BLOCK", "hash_blocks", "hash_start"],
-        "compiling": ["notify_compiling"],
-        "kernels": ["cache_folder", "cache_root", "is_cold", "kernel", "prange"],
-        "neighbors": ["CHUNK", "SMALL", "Neighbors"],
-        "random_streams": ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"],
-        "workers": ["each", "run_saved_jobs"],
-        "markup.gltf": ["GltfFile", "read_gltf"],
-        "markup.gltf_table": ["MOST_PARTS", "MOST_TRIANGLES", "check_gltf_table", "glb_table", "table_rows"],
-        "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
-        "markup.yaml": ["parse_yaml"],
-    },
-)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "CHUNK",

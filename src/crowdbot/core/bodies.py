@@ -9,13 +9,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.typing import Floats, Ints
+
 from .errors import InputError
 from .tree import storable, take
 
 __all__ = ["STAGE", "Bodies", "Skins"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 STAGE = -1
 """Owner of shapes that belong to the stage instead of an agent."""

@@ -9,11 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.typing import Floats
+
 from .tree import storable
 
 __all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap_angle"]
 
-Floats = NDArray[np.float64]
 
 MOUNT_HEIGHT = 0.4
 """Default height [m] of a sensor with a planar pose, typical for laser scanners of indoor robots."""

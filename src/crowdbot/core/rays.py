@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
+from crowdbot.typing import Floats
 
 from .kernels import kernel
 
@@ -30,7 +29,6 @@ __all__ = [
     "within",
 ]
 
-Floats = NDArray[np.float64]
 
 CAPSULE, CYLINDER, WALL, BOX, TRIANGLE = 0, 1, 2, 3, 4
 """Kinds of shapes, and the columns of their rows:

@@ -12,6 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.typing import Bools, Floats
+
 from .bodies import Bodies
 from .errors import InputError
 from .kernels import kernel
@@ -21,8 +23,6 @@ from .walls import Walls
 
 __all__ = ["Scene"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 PERSON_HEIGHT = 1.7
 """Default height [m] of an agent."""

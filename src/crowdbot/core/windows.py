@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
+from crowdbot.typing import Floats
 
 from .kernels import kernel
 
@@ -23,7 +22,6 @@ __all__ = [
     "rod_width",
 ]
 
-Floats = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 

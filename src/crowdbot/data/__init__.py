@@ -32,32 +32,7 @@ if TYPE_CHECKING:
     from .walkable import walkable_rings
     from .windows import Windows
 
-__getattr__, __dir__ = lazy_exports(
-    __name__,
-    {
-        "degrade": ["Degradation", "DegradedTracks"],
-        "example": ["example_windows"],
-        "file_formats": ["FORMATS", "TIME_BASES", "detect_format", "load"],
-        "file_options": ["FILE_OPTIONS", "FileOption", "parse_columns", "split_columns"],
-        "forecast": ["Forecast"],
-        "forecast_files": ["check_forecast_suffix", "read_forecasts", "write_forecasts"],
-        "homography": ["read_homography"],
-        "mcap_reader": ["MCAP_MAGIC", "McapError", "McapOpcode", "McapReader", "has_summary", "read_attachment"],
-        "motion": ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"],
-        "place_layout": ["PlaceLayout"],
-        "trajnet_scenes": ["TRAJNET_CATEGORIES", "primary_windows", "scenes_of_category"],
-        "protocols": ["PROTOCOLS", "NoWindowError"],
-        "readers.hdf5_arrays": ["read_hdf5_arrays"],
-        "readers.time_base": ["RowRateError"],
-        "readers.ucy": ["UCY_TO_METRES"],
-        "recording": ["Recording"],
-        "source": ["folder_files"],
-        "track_writers": ["save"],
-        "trajectories": ["PrimaryScene", "Trajectories"],
-        "walkable": ["walkable_rings"],
-        "windows": ["Windows"],
-    },
-)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "FILE_OPTIONS",

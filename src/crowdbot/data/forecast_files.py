@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
+from crowdbot.typing import Floats, Ints
 
 from .forecast import Forecast
 from .rows import LARGEST
@@ -22,8 +22,6 @@ from .windows import Windows
 
 __all__ = ["ForecastRows", "check_forecast_suffix", "read_forecasts", "write_forecasts"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 COLUMNS = ("frame", "id", "sample", "step", "x", "y")
 """Columns of npz and Parquet; ``weight`` is optional."""
@@ -43,10 +41,10 @@ class ForecastRows(NamedTuple):
         weight: weight of the future.
     """
 
-    frame: Integers
-    id: Integers
-    sample: Integers
-    step: Integers
+    frame: Ints
+    id: Ints
+    sample: Ints
+    step: Ints
     x: Floats
     y: Floats
     weight: Floats

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats
 
 from .trajectories import Trajectories
 from .walkable import walkable_rings
 
 __all__ = ["write_jupedsim", "write_petrack"]
 
-Floats = NDArray[np.float64]
 
 VERSION = 2
 """Version of the database layout of JuPedSim 1."""

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats
 
 __all__ = ["PlaceLayout"]
 
-Floats = NDArray[np.float64]
 Ring = tuple[tuple[float, float], ...]
 
 MOST = 20_000

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
+from crowdbot.typing import Bools, Floats, Ints
 
 from .rows import Runs, runs
 from .track_table import TrackTable
@@ -39,10 +40,6 @@ SHORTEST_FUTURE = 2
 MAX_BYTES = 4 * 1024**3
 """Maximum memory of windows [bytes]."""
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
 
 class NoWindowError(DataError):
     """A recording has no window of the protocol, for example because its tracks are too short."""
@@ -53,7 +50,7 @@ class _Rows:
     """The rows of a recording by id, then frame, with their runs, and whether each is a robot."""
 
     runs: Runs
-    id: Integers
+    id: Ints
     position: Floats
     robot: Bools
 
@@ -184,7 +181,7 @@ def _shortest(observe: int, late: str) -> int:
 def _fill_windows(
     tracks: TrackTable,
     rows: _Rows,
-    chosen: Integers,
+    chosen: Ints,
     scored: Bools,
     observe: int,
     predict: int,
@@ -267,7 +264,7 @@ def _positions(rows: _Rows, members: NDArray[np.intp], offset: int) -> tuple[Boo
     return np.ones(len(members), np.bool_), place
 
 
-def _frames(tracks: TrackTable, rows: _Rows, chosen: Integers, observe: int, predict: int, protocol: str) -> Integers:
+def _frames(tracks: TrackTable, rows: _Rows, chosen: Ints, observe: int, predict: int, protocol: str) -> Ints:
     """Return the frames [W, observe + predict]; they continue after the end of the file."""
     offsets = np.arange(1 - observe, predict + 1)
     frames, step = rows.runs.frames, tracks.frame_step

@@ -11,22 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["Runs", "check_rows", "floats", "frame_step", "integers", "runs", "where"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 LARGEST = 2.0**53
 """Largest range of integers that float64 represents exactly."""
 
 
-def where(name: str, index: int, line: Integers | None) -> str:
+def where(name: str, index: int, line: Ints | None) -> str:
     """Return the location of a row for messages: its line in the file if known, else its row, counted from 1."""
     return f"{name} row {index + 1}" if line is None else f"{name} line {int(line[index])}"
 
 
-def integers(values: ArrayLike, what: str, name: str, line: Integers | None = None) -> Integers:
+def integers(values: ArrayLike, what: str, name: str, line: Ints | None = None) -> Ints:
     """Return ``values`` as int64.
 
     Raises:
@@ -56,9 +55,7 @@ def floats(values: ArrayLike, what: str, name: str) -> Floats:
         raise DataError(f"{name}: the column {what} must hold numbers") from None
 
 
-def check_rows(
-    id: Integers, frame: Integers, x: Floats, y: Floats, name: str, line: Integers | None = None
-) -> NDArray[np.intp]:
+def check_rows(id: Ints, frame: Ints, x: Floats, y: Floats, name: str, line: Ints | None = None) -> NDArray[np.intp]:
     """Return the order that sorts the rows by frame, then id.
 
     Raises:
@@ -85,7 +82,7 @@ def check_rows(
     return order
 
 
-def frame_step(id: Integers, frame: Integers) -> int:
+def frame_step(id: Ints, frame: Ints) -> int:
     """Return the frames between two rows of a track: the most frequent difference.
 
     >>> frame_step(np.array([1, 1, 1, 2]), np.array([0, 10, 20, 10]))
@@ -114,13 +111,13 @@ class Runs:
     """
 
     order: NDArray[np.intp]
-    instant: Integers
-    behind: Integers
-    ahead: Integers
-    frames: Integers
+    instant: Ints
+    behind: Ints
+    ahead: Ints
+    frames: Ints
 
 
-def runs(id: Integers, frame: Integers, step: int | None = None) -> Runs:
+def runs(id: Ints, frame: Ints, step: int | None = None) -> Runs:
     """Find the runs of a table.
 
     Args:

@@ -8,16 +8,13 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats, Ints
 
 from .rows import check_rows, floats, frame_step, integers
 
 __all__ = ["PrimaryScene", "TrackTable"]
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 class PrimaryScene(NamedTuple):
@@ -37,8 +34,8 @@ class TrackTable:
     Functions that cut windows or resample depend on this table only.
     """
 
-    id: Integers
-    frame: Integers
+    id: Ints
+    frame: Ints
     x: Floats
     y: Floats
     row_rate: float
@@ -96,7 +93,7 @@ class TrackTable:
         return self.frame_step * self.row_rate
 
     @property
-    def ids(self) -> Integers:
+    def ids(self) -> Ints:
         """The distinct ids in ascending order."""
         return np.unique(self.id)
 

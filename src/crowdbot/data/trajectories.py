@@ -23,6 +23,7 @@ from crowdbot.core import (
     did_you_mean,
     draw_svg,
 )
+from crowdbot.typing import Floats
 
 from .protocols import NoWindowError, cut_past, cut_windows
 from .resample import resample
@@ -40,9 +41,6 @@ OTHER_AGENTS = frozenset(
      "scooter", "skateboarder", "skater", "trailer", "tram", "truck", "truck_bus", "van", "veh", "vehicle")
 )  # fmt: skip
 """Labels of tracks that are not of pedestrians, in lower case, as in SDD, inD and CITR."""
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .track_table import TrackTable
 
 __all__ = ["walkable_rings"]
 
-Floats = NDArray[np.float64]
 
 HALF = 0.01
 """Half width of a thin wall [m]."""

@@ -9,111 +9,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.lazy import lazy_exports
 
-_MODULES = {
-    "comparison": ("PairedComparison", "paired_comparison"),
-    "decision_metrics": ("DECISION_METRICS",),
-    "run_metrics": ("PAIRED_FAMILIES", "episode_log", "episode_metrics", "families_of"),
-    "factor_sweep": ("FactorSweep", "parse_factors", "sweep_trials"),
-    "intervals": ("Estimate", "bootstrap_estimate", "proportion_interval"),
-    "job": ("RunRow", "row_of", "row_values"),
-    "junit": ("junit_xml",),
-    "method": ("Method", "own_method", "parse_methods", "with_safety"),
-    "pareto": ("pareto_front",),
-    "plan": ("EvaluationCell", "EvaluationPlan", "parse_robots", "parse_seeds"),
-    "prediction": (
-        "DegradedScore",
-        "DegradedTask",
-        "Demo",
-        "FrameResults",
-        "PredictionResult",
-        "PredictorEvaluation",
-        "PredictorJob",
-        "PredictorJobResult",
-        "PredictorResult",
-        "WindowResults",
-        "animate_window",
-        "plot_degradation",
-        "plot_errors",
-        "plot_frames",
-        "predict_windows",
-        "run_demo",
-        "score_predictor",
-        "sweep_degradations",
-        "write_demo_report",
-    ),
-    "realism": (
-        "ClearanceRow",
-        "ClearanceTable",
-        "CrowdRealism",
-        "load_clearances",
-        "model_digest",
-        "realism_notice",
-        "trial_realism",
-    ),
-    "reality": ("FEWEST_RUNS", "RealPlacement", "place_reality", "reality_svg"),
-    "recorded_scans": (
-        "OGM_PERIOD",
-        "AnnotatedScan",
-        "DetectionScores",
-        "find_ogm_split",
-        "read_drow",
-        "read_frog",
-        "read_lcas",
-        "read_ogm",
-        "score_detections",
-        "score_positions",
-    ),
-    "report": ("write_report",),
-    "requirement": ("Requirement", "RequirementVerdict", "parse_requirement"),
-    "result": ("CellResult", "EvaluationResult", "load_evaluation", "remark_lines", "result_schema"),
-    "robot_recording": ("RobotRecording", "load_robot_recording"),
-    "runner": ("evaluate",),
-    "scan_prediction": (
-        "SCAN_SCORES",
-        "SOGMP",
-        "ScanProtocol",
-        "ScanScores",
-        "TruePeople",
-        "plot_scan_scores",
-        "score_scans",
-    ),
-    "statistic": ("Statistic", "check_metrics", "metric_unit", "parse_statistic"),
-    "sweep_effects": ("FactorEffect", "factor_effects"),
-    "tracking": (
-        "BAND_LIMITS",
-        "DOWNSTREAM_INPUTS",
-        "DOWNSTREAM_SCORES",
-        "STRATA",
-        "CameraCalibration",
-        "LoggedReading",
-        "ReadingLog",
-        "ReturnsOfPeople",
-        "RobotOdometry",
-        "TrackingRun",
-        "TruePaths",
-        "VideoForecast",
-        "VideoRun",
-        "estimate_downstream",
-        "estimate_scores",
-        "estimate_strata",
-        "log_readings",
-        "plot_tracks",
-        "plot_video_run",
-        "read_camera",
-        "read_odometry",
-        "read_readings",
-        "read_true_paths",
-        "scan_statistics",
-        "track_people",
-        "track_video",
-    ),
-    "trial_of_recording": ("recorded_trial",),
-    "verdict": ("SafetyVerdict", "judge_cell", "runs_without_event"),
-    "worst_run": ("PersonContact", "WorstRun", "person_contacts", "worst_rows", "worst_runs"),
-}
-__getattr__, __dir__ = lazy_exports(__name__, _MODULES)
-
-__all__ = [name for names in _MODULES.values() for name in names]
+__getattr__, __dir__, __all__ = lazy_exports(__name__)
 
 
 if TYPE_CHECKING:
@@ -139,25 +35,25 @@ if TYPE_CHECKING:
     from .plan import EvaluationPlan as EvaluationPlan
     from .plan import parse_robots as parse_robots
     from .plan import parse_seeds as parse_seeds
-    from .prediction import DegradedScore as DegradedScore
-    from .prediction import DegradedTask as DegradedTask
-    from .prediction import Demo as Demo
-    from .prediction import FrameResults as FrameResults
-    from .prediction import PredictionResult as PredictionResult
-    from .prediction import PredictorEvaluation as PredictorEvaluation
-    from .prediction import PredictorJob as PredictorJob
-    from .prediction import PredictorJobResult as PredictorJobResult
-    from .prediction import PredictorResult as PredictorResult
-    from .prediction import WindowResults as WindowResults
-    from .prediction import animate_window as animate_window
-    from .prediction import plot_degradation as plot_degradation
-    from .prediction import plot_errors as plot_errors
-    from .prediction import plot_frames as plot_frames
-    from .prediction import predict_windows as predict_windows
-    from .prediction import run_demo as run_demo
-    from .prediction import score_predictor as score_predictor
-    from .prediction import sweep_degradations as sweep_degradations
-    from .prediction import write_demo_report as write_demo_report
+    from .prediction.degraded import DegradedScore as DegradedScore
+    from .prediction.degraded import DegradedTask as DegradedTask
+    from .prediction.degraded import sweep_degradations as sweep_degradations
+    from .prediction.degraded_plot import plot_degradation as plot_degradation
+    from .prediction.demo import Demo as Demo
+    from .prediction.demo import run_demo as run_demo
+    from .prediction.demo_report import PredictionResult as PredictionResult
+    from .prediction.demo_report import write_demo_report as write_demo_report
+    from .prediction.evaluation import PredictorEvaluation as PredictorEvaluation
+    from .prediction.evaluation import PredictorJob as PredictorJob
+    from .prediction.evaluation import PredictorJobResult as PredictorJobResult
+    from .prediction.evaluation import PredictorResult as PredictorResult
+    from .prediction.plots import animate_window as animate_window
+    from .prediction.plots import plot_errors as plot_errors
+    from .prediction.plots import plot_frames as plot_frames
+    from .prediction.predictor_score import score_predictor as score_predictor
+    from .prediction.window_results import FrameResults as FrameResults
+    from .prediction.window_results import WindowResults as WindowResults
+    from .prediction.window_results import predict_windows as predict_windows
     from .realism import ClearanceRow as ClearanceRow
     from .realism import ClearanceTable as ClearanceTable
     from .realism import CrowdRealism as CrowdRealism
@@ -169,16 +65,16 @@ if TYPE_CHECKING:
     from .reality import RealPlacement as RealPlacement
     from .reality import place_reality as place_reality
     from .reality import reality_svg as reality_svg
-    from .recorded_scans import OGM_PERIOD as OGM_PERIOD
-    from .recorded_scans import AnnotatedScan as AnnotatedScan
-    from .recorded_scans import DetectionScores as DetectionScores
-    from .recorded_scans import find_ogm_split as find_ogm_split
-    from .recorded_scans import read_drow as read_drow
-    from .recorded_scans import read_frog as read_frog
-    from .recorded_scans import read_lcas as read_lcas
-    from .recorded_scans import read_ogm as read_ogm
-    from .recorded_scans import score_detections as score_detections
-    from .recorded_scans import score_positions as score_positions
+    from .recorded_scans.annotated_scan import AnnotatedScan as AnnotatedScan
+    from .recorded_scans.detection_scores import DetectionScores as DetectionScores
+    from .recorded_scans.detection_scores import score_detections as score_detections
+    from .recorded_scans.detection_scores import score_positions as score_positions
+    from .recorded_scans.drow_files import read_drow as read_drow
+    from .recorded_scans.frog_files import read_frog as read_frog
+    from .recorded_scans.lcas_files import read_lcas as read_lcas
+    from .recorded_scans.ogm_files import OGM_PERIOD as OGM_PERIOD
+    from .recorded_scans.ogm_files import find_ogm_split as find_ogm_split
+    from .recorded_scans.ogm_files import read_ogm as read_ogm
     from .report import write_report as write_report
     from .requirement import Requirement as Requirement
     from .requirement import RequirementVerdict as RequirementVerdict
@@ -195,45 +91,45 @@ if TYPE_CHECKING:
     from .run_metrics import episode_metrics as episode_metrics
     from .run_metrics import families_of as families_of
     from .runner import evaluate as evaluate
-    from .scan_prediction import SCAN_SCORES as SCAN_SCORES
-    from .scan_prediction import SOGMP as SOGMP
-    from .scan_prediction import ScanProtocol as ScanProtocol
-    from .scan_prediction import ScanScores as ScanScores
-    from .scan_prediction import TruePeople as TruePeople
-    from .scan_prediction import plot_scan_scores as plot_scan_scores
-    from .scan_prediction import score_scans as score_scans
+    from .scan_prediction.scan_plot import plot_scan_scores as plot_scan_scores
+    from .scan_prediction.scan_protocol import SOGMP as SOGMP
+    from .scan_prediction.scan_protocol import ScanProtocol as ScanProtocol
+    from .scan_prediction.scan_scores import SCAN_SCORES as SCAN_SCORES
+    from .scan_prediction.scan_scores import ScanScores as ScanScores
+    from .scan_prediction.scan_scores import TruePeople as TruePeople
+    from .scan_prediction.scan_scores import score_scans as score_scans
     from .statistic import Statistic as Statistic
     from .statistic import check_metrics as check_metrics
     from .statistic import metric_unit as metric_unit
     from .statistic import parse_statistic as parse_statistic
     from .sweep_effects import FactorEffect as FactorEffect
     from .sweep_effects import factor_effects as factor_effects
-    from .tracking import BAND_LIMITS as BAND_LIMITS
-    from .tracking import DOWNSTREAM_INPUTS as DOWNSTREAM_INPUTS
-    from .tracking import DOWNSTREAM_SCORES as DOWNSTREAM_SCORES
-    from .tracking import STRATA as STRATA
-    from .tracking import CameraCalibration as CameraCalibration
-    from .tracking import LoggedReading as LoggedReading
-    from .tracking import ReadingLog as ReadingLog
-    from .tracking import ReturnsOfPeople as ReturnsOfPeople
-    from .tracking import RobotOdometry as RobotOdometry
-    from .tracking import TrackingRun as TrackingRun
-    from .tracking import TruePaths as TruePaths
-    from .tracking import VideoForecast as VideoForecast
-    from .tracking import VideoRun as VideoRun
-    from .tracking import estimate_downstream as estimate_downstream
-    from .tracking import estimate_scores as estimate_scores
-    from .tracking import estimate_strata as estimate_strata
-    from .tracking import log_readings as log_readings
-    from .tracking import plot_tracks as plot_tracks
-    from .tracking import plot_video_run as plot_video_run
-    from .tracking import read_camera as read_camera
-    from .tracking import read_odometry as read_odometry
-    from .tracking import read_readings as read_readings
-    from .tracking import read_true_paths as read_true_paths
-    from .tracking import track_people as track_people
-    from .tracking import track_video as track_video
+    from .tracking.camera_files import CameraCalibration as CameraCalibration
+    from .tracking.camera_files import RobotOdometry as RobotOdometry
+    from .tracking.camera_files import TruePaths as TruePaths
+    from .tracking.camera_files import read_camera as read_camera
+    from .tracking.camera_files import read_odometry as read_odometry
+    from .tracking.camera_files import read_true_paths as read_true_paths
+    from .tracking.downstream import DOWNSTREAM_INPUTS as DOWNSTREAM_INPUTS
+    from .tracking.downstream import DOWNSTREAM_SCORES as DOWNSTREAM_SCORES
+    from .tracking.downstream import estimate_downstream as estimate_downstream
+    from .tracking.reading_log import LoggedReading as LoggedReading
+    from .tracking.reading_log import ReadingLog as ReadingLog
+    from .tracking.reading_log import log_readings as log_readings
+    from .tracking.reading_log import read_readings as read_readings
+    from .tracking.scan_statistics import BAND_LIMITS as BAND_LIMITS
+    from .tracking.scan_statistics import ReturnsOfPeople as ReturnsOfPeople
     from .tracking.scan_statistics import scan_statistics as scan_statistics
+    from .tracking.strata import STRATA as STRATA
+    from .tracking.strata import estimate_strata as estimate_strata
+    from .tracking.track_plot import plot_tracks as plot_tracks
+    from .tracking.tracking_run import TrackingRun as TrackingRun
+    from .tracking.tracking_run import estimate_scores as estimate_scores
+    from .tracking.tracking_run import track_people as track_people
+    from .tracking.video_plot import plot_video_run as plot_video_run
+    from .tracking.video_run import VideoForecast as VideoForecast
+    from .tracking.video_run import VideoRun as VideoRun
+    from .tracking.video_run import track_video as track_video
     from .trial_of_recording import recorded_trial as recorded_trial
     from .verdict import SafetyVerdict as SafetyVerdict
     from .verdict import judge_cell as judge_cell

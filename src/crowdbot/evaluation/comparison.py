@@ -6,15 +6,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.typing import Floats
 
 from .intervals import Estimate, bootstrap_estimate
 
 __all__ = ["PairedComparison", "paired_comparison"]
 
-Floats = NDArray[np.float64]
 PERMUTATIONS = 10_000
 EXACT = 12
 """Largest number of pairs of which all sign flips are tried."""

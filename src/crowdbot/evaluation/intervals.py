@@ -7,14 +7,13 @@ from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.metrics import corrected_interval
+from crowdbot.typing import Floats
 
 __all__ = ["Estimate", "bootstrap_estimate", "proportion_interval"]
 
-Floats = NDArray[np.float64]
 RESAMPLES = 2000
 
 

@@ -9,17 +9,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, check_number
 from crowdbot.data import Recording, Trajectories
 from crowdbot.metrics import AgentLog, NavigationMetrics, RobotLog, log_metrics
+from crowdbot.typing import Floats
 
 from .run_metrics import REGIONS
 
 __all__ = ["RobotRecording", "load_robot_recording"]
 
-Floats = NDArray[np.float64]
 LONGEST_GAP = 2.0
 """Longest gap in a track [s] that is interpolated."""
 PERSON_RADIUS = 0.25

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import (
@@ -28,6 +27,7 @@ from crowdbot.metrics import (
 from crowdbot.navigation import PathPlanner
 from crowdbot.simulation import WALL, Episode
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 from crowdbot.world import BODY_REGION_LIMITS
 
 from .own_metric import is_own_metric, load_metric, metric_name
@@ -42,7 +42,6 @@ __all__ = [
     "shortest_path",
 ]
 
-Floats = NDArray[np.float64]
 PAIRED_FAMILIES = ("empty-scene", "crowd-disturbance")
 """Families of metrics that need further runs with the same seed."""
 SHIFT = 0.001

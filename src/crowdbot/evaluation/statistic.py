@@ -9,17 +9,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import Metric, metric_table
+from crowdbot.typing import Floats
 
 from .intervals import Estimate, bootstrap_estimate, proportion_interval
 from .own_metric import metric_name
 
 __all__ = ["RATES", "Statistic", "check_metrics", "metric_unit", "parse_statistic"]
 
-Floats = NDArray[np.float64]
 RATES = {
     "success-rate": "success",
     "collision-rate": "collision",

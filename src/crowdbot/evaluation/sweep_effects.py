@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.metrics import draw_counts, percentile_interval
+from crowdbot.typing import Floats
 
 from .intervals import Estimate
 from .result import CellResult, EvaluationResult
 
 __all__ = ["FactorEffect", "factor_effects"]
 
-Floats = NDArray[np.float64]
 RESAMPLES = 1000
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import explain_write_errors
 from crowdbot.models import ORCA
@@ -24,13 +23,13 @@ from crowdbot.trials import (
     Trial,
     Wall,
 )
+from crowdbot.typing import Floats
 from crowdbot.world import DifferentialDrive
 
 from .robot_recording import PERSON_RADIUS, RobotRecording
 
 __all__ = ["recorded_trial"]
 
-Floats = NDArray[np.float64]
 JITTER = 0.2
 """Starts and goals are drawn from a square of twice this size [m] around the recorded ones."""
 SPEED_SPREAD = 0.1

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .intervals import Estimate, proportion_interval
 from .requirement import Requirement
@@ -16,7 +17,6 @@ from .result import CellResult
 
 __all__ = ["SafetyVerdict", "judge_cell", "row_name", "runs_without_event"]
 
-Floats = NDArray[np.float64]
 CONFIDENCE = 0.95
 SMALL_RATE = 0.01
 """Rate of contacts for which the number of runs is named without a requirement."""

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .sample import Sample
 
 __all__ = ["FailureCluster", "find_clusters"]
 
-Floats = NDArray[np.float64]
 MOST = 2000
 """Failures of one event that are compared with each other; others join the nearest cluster."""
 CUT = 1.1

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .estimate import mixture_estimate
 from .proposal import Proposal, fit_proposal, mixture_weights
@@ -18,7 +18,6 @@ from .sampling import Sampling, SamplingResult
 
 __all__ = ["CrossEntropy"]
 
-Floats = NDArray[np.float64]
 WIDE, NARROW = 1.5, 1.2
 """Factor of the standard deviations of a proposal that still moves, and of one that is fitted to failures."""
 CLIP = 10.0

@@ -11,13 +11,13 @@ from scipy import special
 
 from crowdbot.calibration import Search
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
 __all__ = ["AIMS", "DirectedSearch"]
 
-Floats = NDArray[np.float64]
 AIMS = ("worst", "likely")
 EDGE = 1e-6
 """Distance of the box from 0 and 1, in shares of the distributions."""

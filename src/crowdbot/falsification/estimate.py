@@ -11,10 +11,10 @@ from scipy import special
 from crowdbot.core import stream
 from crowdbot.evaluation import Estimate
 from crowdbot.metrics import corrected_interval
+from crowdbot.typing import Floats
 
 __all__ = ["mixture_estimate", "replicate_estimate"]
 
-Floats = NDArray[np.float64]
 FEW = 5
 """Least number of failures for a bootstrap."""
 REPLICATES = 4000

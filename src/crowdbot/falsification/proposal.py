@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
+
+from crowdbot.typing import Floats
 
 __all__ = ["Proposal", "fit_proposal", "mixture_weights"]
 
-Floats = NDArray[np.float64]
 STEPS = 40
 """Steps of the expectation-maximisation."""
 FLOOR = 0.3

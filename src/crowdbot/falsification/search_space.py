@@ -8,16 +8,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.trials import Trial, apply_values
+from crowdbot.typing import Floats
 
 from .factor import Factor
 
 __all__ = ["SearchSpace"]
 
-Floats = NDArray[np.float64]
 Chain = tuple[str | int, ...]
 PROBES = (-0.5, 0.5, 1.25)
 """Points at which the place of a factor in the trial is found and checked."""

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.evaluation import Estimate
+from crowdbot.typing import Floats
 
 from .estimate import replicate_estimate
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
 __all__ = ["Splitting"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass

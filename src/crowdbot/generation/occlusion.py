@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["occluded_shares"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 SIGHT_LINES = 16
 """Number of sight lines over the width of a person."""
 

@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 from crowdbot.core import Pose, SpatialPose, Walls
 from crowdbot.sensors import Reading, RgbImage, TrackedPeople, spatial_pose
 from crowdbot.simulation import StepBatch, StepRecord
+from crowdbot.typing import Floats, Ints
 
 from .occlusion import occluded_shares
 
 __all__ = ["SampleLog", "Table"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Table = dict[str, NDArray[Any]]
 """Arrays by name with the same first axis, the samples; names that begin with ``shared.`` have no such axis."""
 

@@ -22,19 +22,7 @@ if TYPE_CHECKING:
 
 import_optional("gymnasium", "crowdbot.gym", "gym")
 
-__getattr__, __dir__ = lazy_exports(
-    __name__,
-    {
-        "action_form": ["ActionForm"],
-        "crowd_task": ["CrowdTask", "TaskStep"],
-        "environment": ["CrowdEnv"],
-        "observation_form": ["PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"],
-        "parallel_environment": ["ParallelCrowdEnv", "parallel_env"],
-        "registration": ["register_environments"],
-        "reward": ["Reward"],
-        "vector_environment": ["CrowdVectorEnv"],
-    },
-)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "PERSON_VALUES",

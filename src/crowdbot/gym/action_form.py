@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.navigation import DriveLimits
+from crowdbot.typing import Floats
 
 __all__ = ["ActionForm"]
 
-Floats = NDArray[np.float64]
 FORMS = ("velocity", "acceleration", "holonomic")
 
 

@@ -14,6 +14,7 @@ from crowdbot.core import CrowdbotError, InputError
 from crowdbot.navigation import DriveLimits
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
+from crowdbot.typing import Bools, Floats, Ints
 
 from .action_form import ActionForm
 from .observation_form import ObservationForm
@@ -22,9 +23,6 @@ from .robot_port import RobotPort, free_robots
 
 __all__ = ["CrowdTask", "TaskStep"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 Arrays = dict[str, NDArray[np.float32]]
 
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.navigation import ObservationBatch
+from crowdbot.typing import Floats
 
 from .occupancy_grid import occupancy_grids
 
 __all__ = ["FORMS", "PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"]
 
-Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[np.float32]]
 
 FORMS = ("people", "scan", "both", "occupancy")

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.navigation import ObservationBatch
+from crowdbot.typing import Floats
 
 __all__ = ["occupancy_grids"]
-
-Floats = NDArray[np.float64]
 
 
 def occupancy_grids(batch: ObservationBatch, cells: int, cell: float) -> Floats:

@@ -13,14 +13,13 @@ from crowdbot.navigation import DriveLimits, ExternalNavigator
 from crowdbot.sensors import Lidar2D, Scan, main_scanner
 from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats, Ints
 
 from .action_form import ActionForm
 from .observation_form import ObservationForm
 
 __all__ = ["RobotPort", "free_robots"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Arrays = dict[str, NDArray[np.float32]]
 
 

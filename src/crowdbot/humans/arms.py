@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 from .activities import FIRST_POSE
 from .feet import Gaits
@@ -15,7 +13,6 @@ from .vectors import Vector, cross_product, normalize, rotate, write_frame
 
 __all__ = ["pose_arm"]
 
-Floats = NDArray[np.float64]
 Angles = tuple[float, float, float, float, float]
 SWING = math.radians(17.0)
 """Amplitude of the upper arm swing at a vigour of 1 [rad]."""

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats, Ints
+
 __all__ = ["LEVELS", "Level", "Shapes", "read_asset", "shapes"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 LEVELS = 3
 """Levels of detail: 0 is the finest."""
 UNIT = 1e-4

@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, storable
+from crowdbot.typing import Floats
 
 from .quaternions import slerp
 
 __all__ = ["PARTS", "ROW", "BodyPose", "blend_rows", "shift_row"]
 
-Floats = NDArray[np.float64]
 
 SKELETON = 3 + 28 * 4
 PARTS = {"head": (3, 10), "left_hand": (10, 17), "right_hand": (17, 24), "skeleton": (24, 24 + SKELETON)}

@@ -11,9 +11,9 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 from .asset import shapes
 from .body_pose import PARTS
@@ -24,8 +24,6 @@ from .turns import about, align_frame, cross, unit
 
 __all__ = ["eye_offsets", "reach_poses"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ROUNDS = 25
 """Number of corrections of the trunk; 10 reach 1 mm in most postures."""

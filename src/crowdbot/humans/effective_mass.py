@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .limbs import LIMBS
 
 __all__ = ["limb_chain", "striking_mass"]
 
-Floats = NDArray[np.float64]
 CHAINS = (("pelvis", "thigh", "shank", "foot"), ("chest", "upperarm", "forearm", "hand"))
 NAMES = tuple(limb.name for limb in LIMBS)
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel, storable
+from crowdbot.typing import Floats
 
 from .stride import (
     LANDED,
@@ -26,7 +24,6 @@ from .vectors import Vector
 
 __all__ = ["Gaits", "advance", "foot_now"]
 
-Floats = NDArray[np.float64]
 
 CREEP = 0.12
 """Speed [m/s] below which people stand; they step only to correct a misplaced foot."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper, stream
+from crowdbot.typing import Floats
 
 from .activities import activity_index
 from .clips.activity_poses import pose_activities
@@ -20,7 +21,6 @@ from .seat import CHAIR, Seat, seat_rows
 
 __all__ = ["Gait", "posing_and_skinning"]
 
-Floats = NDArray[np.float64]
 FASTEST = 12.0
 """Maximum speed [m/s]."""
 

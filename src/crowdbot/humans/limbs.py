@@ -6,17 +6,15 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper
+from crowdbot.typing import Floats, Ints
 
 from .asset import Shapes, shapes
 from .person import persons
 
 __all__ = ["LIMBS", "REGIONS", "Limb", "fit_capsules", "main_bones", "mass_shares", "rest_capsules"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 ROUNDS = 12
 """Number of fit iterations; about 10 converge to 0.1 mm."""
 HOLD = 0.02

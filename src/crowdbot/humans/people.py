@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats, Ints
 
 from .activities import ACTIVITIES
 from .asset import LEVELS, Level, shapes
@@ -26,8 +27,6 @@ from .wardrobe import Outfit, outfit, region_colors, worn_parts
 
 __all__ = ["Capsules", "People"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 SMALLEST, TALLEST = 0.5, 2.5
 """Allowed statures [m]."""
 

@@ -10,15 +10,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, storable
+from crowdbot.typing import Floats
 
 from .body_pose import PARTS, ROW, BodyPose, blend_rows, shift_row
 
 __all__ = ["PoseMotion", "PoseSource", "PoseTrack"]
 
-Floats = NDArray[np.float64]
 MAX_SPEED = 8.0
 """Default speed [m/s] above which a change of position is a teleport."""
 EARLY = 1e-6

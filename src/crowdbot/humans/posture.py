@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 from .arms import pose_arm
 from .asset import shapes
@@ -19,8 +19,6 @@ from .vectors import Vector, cross_product, normalize, rotate, write_frame, writ
 
 __all__ = ["Posture", "bend_leg", "place_chain", "posture"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PELVIS_TURN, PELVIS_ROLL, CHEST_TURN = math.radians(5.0), math.radians(3.0), math.radians(4.0)
 SWAY = 0.022

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["from_matrix", "limit_rotation", "multiply", "slerp", "to_matrix", "transpose_times", "twist_angle"]
-
-Floats = NDArray[np.float64]
 
 
 @kernel

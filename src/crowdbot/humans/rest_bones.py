@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from crowdbot.typing import Floats
 
 from .asset import shapes
 from .people import People
 
 __all__ = ["RestSkeleton", "rest_skeleton"]
-
-Floats = NDArray[np.float64]
 
 
 class RestSkeleton(NamedTuple):

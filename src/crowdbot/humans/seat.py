@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["CHAIR", "WHEELCHAIR", "Seat", "seat_rows"]
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 

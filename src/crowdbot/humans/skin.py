@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["SkinnedMesh", "skin_vertices"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class SkinnedMesh(NamedTuple):

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 from .vectors import Vector
 
@@ -28,7 +26,6 @@ __all__ = [
     "wrap_angle",
 ]
 
-Floats = NDArray[np.float64]
 Foot = tuple[float, float, float, float, float, float]
 """Ankle x, y, z [m], yaw, pitch and toe pitch [rad]."""
 RESTING_CYCLE = 1.15

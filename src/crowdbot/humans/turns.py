@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["about", "align_frame", "cross", "unit"]
-
-Floats = NDArray[np.float64]
 
 
 @kernel

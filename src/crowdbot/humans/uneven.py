@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 from .asset import shapes
 from .people import People
@@ -15,8 +15,6 @@ from .posture import SOFT, STRAIGHT, Posture, bend_leg, place_chain
 
 __all__ = ["ankle_positions", "stand_on_ground"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 LEGS = (20, 24)
 """First bones of the left and right leg: thigh, shank, foot, toes."""
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["Vector", "cross_product", "normalize", "rotate", "write_frame", "write_turn"]
 
-Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.typing import Floats
 
 from .asset import shapes
 from .person import Person
 
 __all__ = ["Outfit", "outfit", "region_colors", "worn_parts"]
 
-Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
 
 SKIN: dict[str, tuple[str, ...]] = {

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
 from crowdbot.metrics import bootstrap_interval
+from crowdbot.typing import Floats
 
-from .rows import Floats, table
+from .rows import table
 
 if TYPE_CHECKING:
     import pandas as pd

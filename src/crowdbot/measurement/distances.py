@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats
 
-from .rows import Floats, check_metres, table
+from .rows import check_metres, table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,8 +13,9 @@ import numpy as np
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats, Ints
 
-from .rows import Floats, Integers, check_metres, rows_at, table
+from .rows import check_metres, rows_at, table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -181,7 +182,7 @@ def distribution(values: Floats, bin_size: float, low: float, high: float) -> pd
     )
 
 
-def _pairs(tracks: Trajectories, rows: Integers, frame: Integers, reach: float) -> tuple[Integers, Integers]:
+def _pairs(tracks: Trajectories, rows: Ints, frame: Ints, reach: float) -> tuple[Ints, Ints]:
     """Return pairs of numbers in ``rows`` with the same frame whose centres are in reach, each pair once."""
     place = tracks.position[rows]
     order = np.lexsort((tracks.id[rows], frame))
@@ -195,7 +196,7 @@ def _pairs(tracks: Trajectories, rows: Integers, frame: Integers, reach: float) 
     return np.concatenate(one), np.concatenate(other)
 
 
-def _strangers(id: Integers, one: Integers, other: Integers) -> tuple[Integers, Integers]:
+def _strangers(id: Ints, one: Ints, other: Ints) -> tuple[Ints, Ints]:
     """Return the pairs of different people."""
     apart = id[one] != id[other]
     return one[apart], other[apart]

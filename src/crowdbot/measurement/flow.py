@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats
 
 from .geometry import MeasurementLine
-from .rows import Floats, check_metres, every_frame, rows_at, table
+from .rows import check_metres, every_frame, rows_at, table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories, walkable_rings
+from crowdbot.typing import Floats
 
 __all__ = ["MeasurementArea", "MeasurementLine", "WalkableArea"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,10 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.metrics import draw_counts, percentile_interval
+from crowdbot.typing import Floats
 
 from .encounters import REACH, compute_encounters, expected_times, time_edges
-from .rows import Floats, table
+from .rows import table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,8 +11,9 @@ import numpy as np
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats
 
-from .rows import Floats, check_metres, table
+from .rows import check_metres, table
 
 if TYPE_CHECKING:
     import pandas as pd

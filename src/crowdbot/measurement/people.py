@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats, Ints
 
 from .geometry import WalkableArea
-from .rows import Floats, Integers, check_metres, check_step, table
+from .rows import check_metres, check_step, table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,8 +75,8 @@ class ContinuousTracks:
     """
 
     data: Any
-    owner: Integers
-    shift: Integers
+    owner: Ints
+    shift: Ints
     frame_step: int
 
     @classmethod

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .geometry import WalkableArea
-from .rows import Floats, table
+from .rows import table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
 from crowdbot.data import Trajectories
+from crowdbot.typing import Ints
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Floats", "Integers", "check_metres", "check_step", "every_frame", "rows_at", "select_rows", "table"]
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+__all__ = ["check_metres", "check_step", "every_frame", "rows_at", "select_rows", "table"]
 
 
 def table(**columns: Any) -> pd.DataFrame:
@@ -50,12 +48,12 @@ def check_step(tracks: Trajectories, frame_step: int) -> None:
         )
 
 
-def every_frame(tracks: Trajectories) -> Integers:
+def every_frame(tracks: Trajectories) -> Ints:
     """Return the frames from the first to the last of a recording, also those without people."""
     return np.arange(tracks.frame[0], tracks.frame[-1] + 1, tracks.frame_step)
 
 
-def rows_at(tracks: Trajectories, frame: Integers, id: Integers | None = None) -> Integers:
+def rows_at(tracks: Trajectories, frame: Ints, id: Ints | None = None) -> Ints:
     """Return the row of a person at a frame, -1 where there is none.
 
     Args:

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
-
-from .rows import Floats
+from crowdbot.typing import Floats
 
 __all__ = ["SteadyState", "combine_steady_states", "detect_steady_state", "steady_threshold"]
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats
 
 from .lanes import walking_direction
-from .rows import Floats, check_metres, rows_at, table
+from .rows import check_metres, rows_at, table
 
 if TYPE_CHECKING:
     import pandas as pd

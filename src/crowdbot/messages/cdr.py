@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 __all__ = ["MAP", "Shape", "marker_bytes", "people_bytes"]
 
-Floats = NDArray[np.float64]
 
 START = b"\x00\x01\x00\x00"
 """Little-endian CDR header; alignment is counted after it."""

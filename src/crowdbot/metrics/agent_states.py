@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["AgentLog", "AgentStates"]
+from crowdbot.typing import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["AgentLog", "AgentStates"]
 
 
 @dataclass(frozen=True)

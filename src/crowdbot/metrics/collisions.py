@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Bools, Floats
 
 from .displacement import check
 from .proximity import swept_distance
 
 __all__ = ["CONTACT", "collision_mask", "collision_share", "neighbor_mask", "swept_collision_shares"]
 
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 CONTACT = 0.2
 """Two people closer than this [m] collide (TrajNet++)."""

@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Bools, Floats
 
 from .proximity import JUMP, clearance, swept_clearance
 
 __all__ = ["ContactEvent", "cause_of", "contact_events", "contact_stretches"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 RELEASE = 0.05
 """A contact ends if the clearance stays above this [m] ..."""

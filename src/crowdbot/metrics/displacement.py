@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Bools, Floats
 
 __all__ = [
     "MISS",
@@ -25,8 +26,6 @@ __all__ = [
     "miss_rate",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 RULES = ("person", "scene", "same")
 MISS = 2.0

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, kernel
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Bools, Floats, Ints
 
 from .displacement import ade, check
 
 __all__ = ["energy_score"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Integers = NDArray[np.int64]
 
 OVER = ("steps", "path")
 
@@ -33,7 +30,7 @@ def _distance(one: Floats, other: Floats, steps: int, path: bool) -> float:  # p
 
 @kernel
 def _scores(
-    samples: Floats, weight: Floats, truth: Floats, there: Bools, window: Integers, person: Integers, path: bool
+    samples: Floats, weight: Floats, truth: Floats, there: Bools, window: Ints, person: Ints, path: bool
 ) -> Floats:  # pragma: no cover - compiled
     """Return the score ``[N]`` of each person of each window."""
     K, T = samples.shape[1], samples.shape[2]

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 from .agent_states import AgentStates
 
 __all__ = ["FOOTPRINT_METRICS", "footprint_clearance"]
 
-Floats = NDArray[np.float64]
 
 FOOTPRINT_METRICS: dict[str, tuple[str, str]] = {
     "min_footprint_clearance": (

@@ -24,9 +24,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Bools, Floats
 
 from .agent_states import AgentLog, AgentStates
 from .contact_tracker import ContactTracker
@@ -37,8 +37,6 @@ from .record_clearance import log_clearance, record_clearance
 
 __all__ = ["CONTACT_METRICS", "NavigationMetrics", "NavigationOutcome"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 NEAR = 1.0
 """People closer than this [m] are tracked for contacts."""

@@ -17,9 +17,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
+from crowdbot.typing import Floats, Ints
 
 __all__ = [
     "Interval",
@@ -31,8 +31,6 @@ __all__ = [
     "percentile_interval",
 ]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Interval = tuple[float, float]
 
 RESAMPLES = 1000
@@ -123,12 +121,12 @@ class PersonValues:
         total, count: ``[M, 7]`` sum and number of the known values, columns as in :class:`Intervals`.
     """
 
-    id: Integers
+    id: Ints
     total: Floats
     count: Floats
 
     @classmethod
-    def of(cls, id: Integers, values: Sequence[Floats]) -> PersonValues:
+    def of(cls, id: Ints, values: Sequence[Floats]) -> PersonValues:
         """Add up values ``[N]`` by person ``[N]``; NaN is ignored."""
         known, row = np.unique(id, return_inverse=True)
         there = [~np.isnan(value) for value in values]
@@ -169,7 +167,7 @@ class PersonValues:
 
 
 def bootstrap_interval(
-    values: Floats, person: Integers, resamples: int = RESAMPLES, level: float = LEVEL, seed: int = 0
+    values: Floats, person: Ints, resamples: int = RESAMPLES, level: float = LEVEL, seed: int = 0
 ) -> Interval:
     """Return the percentile interval (low, high) of a mean over windows, drawn by person.
 

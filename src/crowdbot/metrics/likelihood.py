@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Floats
 
 from .displacement import check
 
 __all__ = ["FLOOR", "kde_nll"]
 
-Floats = NDArray[np.float64]
 
 FLOOR = -20.0
 """Lower bound of the log density [nat], as in the Trajectron and in TrajNet++."""

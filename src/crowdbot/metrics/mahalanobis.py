@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Floats
 
 from .displacement import check
 
 __all__ = ["mahalanobis"]
 
-Floats = NDArray[np.float64]
 
 FLAT = 1e-12
 """Minimum ratio of the eigenvalues of the covariance; samples on a line have no spread across it."""

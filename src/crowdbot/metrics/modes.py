@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .nearest_neighbor import path_distances
 
 __all__ = ["mode_count", "mode_coverage", "mode_shares"]
 
-Floats = NDArray[np.float64]
 
 FOUND = 0.25
 """A mode is found if it has at least this fraction of an equal share."""

@@ -10,9 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 __all__ = ["heading_change", "jerk", "longest_stall", "path_efficiency", "path_length", "stalled_time"]
 
-Floats = NDArray[np.float64]
 
 JERK_STEP = 0.1
 """Step [s] at which velocities are differentiated: jerk grows with one over its square."""

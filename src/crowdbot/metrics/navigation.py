@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Bools, Floats
 
 from .agent_states import AgentStates
 from .incremental import NavigationMetrics, NavigationOutcome
@@ -15,8 +15,6 @@ from .social.metric import metric_families
 
 __all__ = ["NAVIGATION_METRICS", "navigation_metrics", "outcome"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 NAVIGATION_METRICS: dict[str, tuple[str, str]] = {
     row.name: (row.unit, row.formula) for row in metric_families()["navigation"]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["nearest_neighbor_accuracy", "path_distances"]
 
-Floats = NDArray[np.float64]
 
 TIE = 1e-12
 """Relative tolerance of equal distances."""

@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .agent_states import AgentLog
 from .contacts import contact_events
 from .motion import jerk
@@ -16,7 +18,6 @@ from .proximity import ZONES, clearance, swept_clearance
 
 __all__ = ["PEOPLE_COLUMNS", "PersonImpact", "TableRobot", "people_table"]
 
-Floats = NDArray[np.float64]
 
 PEOPLE_COLUMNS: dict[str, tuple[str, str]] = {
     "id": ("1", "id of the person"),

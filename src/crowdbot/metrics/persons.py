@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Bools, Floats
 
 from .collisions import collision_mask, mean_over_samples, neighbor_mask
 from .displacement import best_of, chosen_sample, distances, mean_and_final
@@ -16,8 +17,6 @@ from .likelihood import kde_nll
 
 __all__ = ["MOST_FOR_ENERGY", "PersonErrors", "error_over_horizon", "person_errors"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 MOST_FOR_ENERGY = 100
 """Maximum number of samples for the energy score, whose computing time grows with their square."""

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Bools, Floats
 
 __all__ = [
     "ZONES",
@@ -24,8 +25,6 @@ __all__ = [
     "wall_clearance",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 JUMP = 15.0
 """A larger speed [m/s] between two samples means that the person left and entered again; nothing is swept."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 from .agent_states import AgentLog, AgentStates
 from .proximity import JUMP
@@ -16,8 +17,6 @@ from .step_clearance import step_wall_clearance, swept_length
 
 __all__ = ["LogClearance", "RecordClearance", "log_clearance", "record_clearance"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 REACH = 2.5
 """Radius [m] of the circle of the local density."""
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["step_clearance", "step_wall_clearance", "swept_length"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @kernel

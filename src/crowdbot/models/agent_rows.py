@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Neighbors, PerAgent, Scene, kernel, per_agent, prange
 from crowdbot.core.model_parameter import BOOL
 from crowdbot.core.neighbors import Seekers, nearest_of_rows
+from crowdbot.typing import Bools, Floats
 
 __all__ = [
     "COLUMNS",
@@ -33,8 +34,6 @@ __all__ = [
     "speed_limit",
 ]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 X, Y, VX, VY, RADIUS, WISH_X, WISH_Y, LIMIT = range(8)
 """Columns of :attr:`AgentRows.agents`: position, velocity, radius, desired velocity, maximum speed."""

@@ -8,9 +8,10 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper, Scene, stream
 from crowdbot.data import Windows, example_windows
+from crowdbot.typing import Floats
 
 from .goals import Goal
-from .model import CrowdModel, Floats
+from .model import CrowdModel
 
 __all__ = ["check_goal", "check_model"]
 

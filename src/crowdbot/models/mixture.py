@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Scene
+from crowdbot.typing import Floats, Ints
 
 from .model import CrowdModel
 
 __all__ = ["MODEL", "Mixture"]
 
-Floats = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 MODEL = "model"
 """Name in the memory of a scene: the model index of each agent ``[E, A]``, which overrides ``which``."""
@@ -58,7 +57,7 @@ class Mixture(CrowdModel):
     )
 
     models: tuple[CrowdModel, ...]
-    which: int | Sequence[int] | Numbers = 0
+    which: int | Sequence[int] | Ints = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -101,7 +100,7 @@ class Mixture(CrowdModel):
             memory=_memory(scene, after, own),
         )
 
-    def of(self, scene: Scene) -> Numbers:
+    def of(self, scene: Scene) -> Ints:
         """Return the model index of each agent ``[E, A]``."""
         which = self._check_indices(np.asarray(scene.memory.get(MODEL, self.which)))
         try:
@@ -112,8 +111,8 @@ class Mixture(CrowdModel):
                 f" {list(scene.shape)}; give one model index for each agent"
             ) from None
 
-    def _check_indices(self, which: NDArray[Any]) -> Numbers:
-        whole: Numbers | None = None
+    def _check_indices(self, which: NDArray[Any]) -> Ints:
+        whole: Ints | None = None
         if which.dtype == np.int64:
             whole = which
         elif which.dtype.kind in "iuf" and np.all(np.isfinite(which)):
@@ -128,7 +127,7 @@ class Mixture(CrowdModel):
         return whole
 
 
-def _memory(scene: Scene, after: Sequence[Scene], own: Numbers) -> dict[str, Floats]:
+def _memory(scene: Scene, after: Sequence[Scene], own: Ints) -> dict[str, Floats]:
     """Return the memory of all models; if several models write the same name, the agent's own model takes priority."""
     memory = dict(scene.memory)
     written: set[str] = set()

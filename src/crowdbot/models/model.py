@@ -23,6 +23,7 @@ from crowdbot.core import (
     per_agent,
 )
 from crowdbot.core.neighbors import nearest
+from crowdbot.typing import Bools, Floats
 
 from .agent_rows import LARGEST, StepStart, begin_step, speed_limit
 
@@ -39,9 +40,6 @@ __all__ = [
     "rows",
     "speed_limit",
 ]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

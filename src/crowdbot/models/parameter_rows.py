@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, per_agent
+from crowdbot.typing import Floats
 
 __all__ = ["limit_length", "parameter_columns", "parameter_rows"]
-
-Floats = NDArray[np.float64]
 
 
 def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:

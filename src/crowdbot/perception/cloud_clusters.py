@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls, check_number, kernel
 from crowdbot.sensors import PointCloud, Reading, planar_pose
+from crowdbot.typing import Floats, Ints
 
 from .cluster_kernels import hide_walls
 from .detections import Coverage, Detections
@@ -18,8 +18,6 @@ from .detector import Detector
 
 __all__ = ["CloudClusters"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LARGEST_GRID = 4_000_000
 """Largest number of cells of the grid on the ground."""

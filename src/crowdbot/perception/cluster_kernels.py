@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.typing import Bools, Floats, Ints
 
 __all__ = ["cut_clusters", "hide_walls", "place_clusters"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 FLAT = 0.15
 """A cluster is flat if it bulges towards the scanner by less than this share of its width."""

@@ -7,18 +7,16 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Walls, check_number
 from crowdbot.sensors import DepthImage, Reading, planar_pose
+from crowdbot.typing import Floats
 
 from .cloud_clusters import CloudClusters
 from .cluster_kernels import hide_walls
 from .detections import Coverage, Detections
 
 __all__ = ["DepthClusters"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

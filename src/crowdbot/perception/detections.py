@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, kernel
+from crowdbot.typing import Floats
 
 __all__ = ["Coverage", "Detections"]
 
-Floats = NDArray[np.float64]
 
 BODY = 0.25
 """Radius of a person [m] in the test whether a place is visible."""

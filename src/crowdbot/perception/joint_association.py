@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .motion_filter import FilterState, Innovation
 from .nearest_neighbor_tracker import Association, GlobalNearestNeighbor
 
 __all__ = ["JointProbabilisticDataAssociation", "association_probabilities"]
 
-Floats = NDArray[np.float64]
 
 ROUNDS = 100
 """Largest number of rounds of belief propagation."""

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats, Ints
 
 __all__ = ["join_legs"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 LONE_LEG = 0.08
 """Additional standard deviation [m] of a person of whom one leg is seen."""

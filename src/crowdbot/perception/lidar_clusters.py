@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls, check_number
 from crowdbot.sensors import Reading, Scan, planar_pose
+from crowdbot.typing import Floats
 
 from .cluster_kernels import cut_clusters, hide_walls, place_clusters
 from .detections import Coverage, Detections
@@ -19,7 +20,6 @@ from .leg_pairs import join_legs
 
 __all__ = ["LidarClusters"]
 
-Floats = NDArray[np.float64]
 
 FEWEST = 2.0
 """A person farther away than the distance at which this many beams meet it is not expected to be found."""

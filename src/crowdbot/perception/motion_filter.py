@@ -6,12 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["FilterState", "Innovation", "correct", "innovation", "mix", "predict", "start"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class FilterState(NamedTuple):

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number
+from crowdbot.typing import Bools, Floats, Ints
 
 from .detections import Detections
 from .motion_filter import FilterState, Innovation, correct, innovation, mix, predict, start
@@ -20,9 +20,6 @@ from .tracks import Tracks
 
 __all__ = ["Association", "GlobalNearestNeighbor", "InteractingMultipleModel"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 FORBIDDEN = 1e6
 """Cost of a pair outside the gate."""

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats
 
 __all__ = ["Layers", "read_layers", "run_layers"]
 
-Floats = NDArray[np.float64]
 Layers = tuple[NDArray[np.float32], ...]
 """Weights ``[I, O]`` and biases ``[O]`` of the layers, in turn."""
 

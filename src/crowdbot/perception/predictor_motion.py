@@ -6,18 +6,17 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import check_number
 from crowdbot.data import Windows
 from crowdbot.prediction import Predictor, Simulated
+from crowdbot.typing import Floats
 
 from .motion_filter import FilterState
 from .tracker_state import TrackerState
 
 __all__ = ["PredictorMotion"]
 
-Floats = NDArray[np.float64]
 
 ROWS = 8
 """Number of rows of predictors without a history in seconds."""

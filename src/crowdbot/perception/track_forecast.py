@@ -6,15 +6,13 @@ import dataclasses
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
+from crowdbot.typing import Floats
 
 __all__ = ["predict_uncertain"]
-
-Floats = NDArray[np.float64]
 
 
 def predict_uncertain(

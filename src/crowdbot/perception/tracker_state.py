@@ -4,19 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import storable
+from crowdbot.typing import Bools, Floats, Ints
 
 from .motion_filter import FilterState
 from .tracks import Tracks
 
 __all__ = ["TrackerState"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @storable

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import storable
+from crowdbot.typing import Floats
 
 __all__ = ["Tracks"]
-
-Floats = NDArray[np.float64]
 
 
 @storable

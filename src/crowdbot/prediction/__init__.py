@@ -49,47 +49,7 @@ if TYPE_CHECKING:
         train,
     )
 
-__getattr__, __dir__ = lazy_exports(
-    __name__,
-    {
-        "anchor_net": ["AnchorNet", "Anchors", "Modes"],
-        "constant": ["ConstantAcceleration", "ConstantVelocity", "LeastSquares", "SampledConstantVelocity"],
-        "contract": ["check_predictor"],
-        "degraded": ["DegradedWindows", "degraded_windows"],
-        "kalman": ["Kalman", "KalmanAcceleration"],
-        "learned_predictor": ["LearnedPredictor"],
-        "learners": ["WEIGHTS_FIELDS", "make_learner"],
-        "live": ["Live"],
-        "predictor": ["Predictor", "window_streams"],
-        "predictor_spec": ["PredictorSpec"],
-        "simulated": ["Simulated"],
-        "social_ways": ["PRESETS", "STEADY", "SocialWays", "SocialWaysConfig"],
-        "stored_forecasts": ["forecasts_of"],
-        "training": [
-            "BEST",
-            "LAST",
-            "LOG",
-            "LogRow",
-            "Samples",
-            "TimeSplit",
-            "Trainable",
-            "TrainingResult",
-            "TrainingSchedule",
-            "leave_out",
-            "load_checkpoint",
-            "recordings_with_windows",
-            "save_checkpoint",
-            "short_recordings",
-            "split_in_time",
-            "torch_device",
-            "torch_module",
-            "torch_threads",
-            "train",
-        ],
-        "tracker_plausibility": ["TrackerWarning"],
-        "social_ways.training": ["SocialWaysTraining"],
-    },
-)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "BEST",

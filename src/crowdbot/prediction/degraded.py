@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows
 from crowdbot.data.degrade import GHOST, DegradedTracks
+from crowdbot.typing import Bools, Ints
 
 __all__ = ["DegradedWindows", "degraded_windows"]
-
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -93,10 +91,10 @@ class _Table:
 
     degraded: DegradedTracks
     past: Windows
-    frames: Integers
-    first: Integers
-    ids: Integers
-    key: Integers
+    frames: Ints
+    first: Ints
+    ids: Ints
+    key: Ints
 
     @classmethod
     def of(cls, past: Windows, degraded: DegradedTracks) -> _Table:
@@ -106,7 +104,7 @@ class _Table:
         key = place * len(ids) + number  # ascending: rows are sorted by frame, then id
         return cls(degraded, past, frames, np.append(first, len(tracks)), ids, key)
 
-    def tracks_at_last_row(self, carry: int) -> tuple[Integers, Integers, Integers]:
+    def tracks_at_last_row(self, carry: int) -> tuple[Ints, Ints, Ints]:
         """Return window, last observed row and clean slot (-1 for a false track) of all tracks in the windows."""
         window, row, clean = self._at(0)
         for back in range(1, min(carry, self.past.position.shape[1] - 1) + 1):
@@ -119,7 +117,7 @@ class _Table:
             clean = np.append(clean, person[new])
         return window, row, clean
 
-    def _at(self, back: int) -> tuple[Integers, Integers, Integers]:
+    def _at(self, back: int) -> tuple[Ints, Ints, Ints]:
         """Return the same for the tracks observed ``back`` rows before the last row."""
         frame = self.past.frame[:, -1 - back]
         place = np.minimum(np.searchsorted(self.frames, frame), len(self.frames) - 1)
@@ -131,7 +129,7 @@ class _Table:
         kept = (clean >= 0) | (truth == GHOST)
         return window[kept], row[kept], clean[kept]
 
-    def _slots(self, window: Integers, truth: Integers) -> Integers:
+    def _slots(self, window: Ints, truth: Ints) -> Ints:
         """Return the slots of people in the clean windows, -1 if absent."""
         member, slot = np.nonzero(self.past.present[:, -1])
         people = np.unique(np.concatenate([self.past.id[member, slot], truth]))
@@ -141,7 +139,7 @@ class _Table:
         place = np.minimum(np.searchsorted(known[order], asked), len(known) - 1)
         return np.where(known[order][place] == asked, slot[order][place], -1)
 
-    def rows(self, window: Integers, slot: Integers, id: Integers, people: int) -> tuple[NDArray[np.float64], Bools]:
+    def rows(self, window: Ints, slot: Ints, id: Ints, people: int) -> tuple[NDArray[np.float64], Bools]:
         """Return position ``[W, T, A, 2]`` [m] and present ``[W, T, A]`` of the tracks of these ids."""
         W, T = self.past.frame.shape
         position = np.zeros((W, T, people, 2))
@@ -158,7 +156,7 @@ class _Table:
         return position, present
 
 
-def _coast(position: NDArray[np.float64], present: Bools, window: Integers, slot: Integers) -> None:
+def _coast(position: NDArray[np.float64], present: Bools, window: Ints, slot: Ints) -> None:
     """Extrapolate tracks to the last row with the velocity of their last two rows."""
     T = position.shape[1]
     for w, a in zip(window.tolist(), slot.tolist(), strict=True):

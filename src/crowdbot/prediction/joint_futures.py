@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Windows
+from crowdbot.typing import Floats
 
 from .joint_kernels import assign_futures, first_crossing, separate_paths
 
 __all__ = ["coordinate_draws", "coordinate_modes", "separate_people", "stop_at_walls"]
 
-Floats = NDArray[np.float64]
 
 SWEEPS = 8
 """Maximum number of passes over all people when futures are exchanged."""

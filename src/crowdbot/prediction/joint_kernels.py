@@ -8,15 +8,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats, Ints
 
 __all__ = ["assign_futures", "first_crossing", "separate_paths"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 FLAT = 1e-9
 
@@ -65,7 +62,7 @@ def _find_collisions(
 
 
 @kernel
-def assign_futures(path: Floats, room: Floats, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
+def assign_futures(path: Floats, room: Floats, order: float, sweeps: int) -> Ints:  # pragma: no cover - compiled
     """Return ``[A, K]``: the future of each person in each of K joint futures; each future is used exactly once.
 
     The futures ``[A, K, T, 2]`` [m] are sorted by decreasing probability. One person after the other, two futures are
@@ -114,7 +111,7 @@ def assign_futures(path: Floats, room: Floats, order: float, sweeps: int) -> Int
 
 
 @kernel
-def _exchange(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
+def _exchange(choice: Ints, cost: Floats) -> bool:  # pragma: no cover - compiled
     """Exchange futures of one person while the cost ``[future, joint]`` decreases; return whether any was exchanged."""
     K = len(choice)
     changed = False
@@ -207,7 +204,7 @@ def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Flo
 
 
 @kernel
-def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
+def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Ints:  # pragma: no cover - compiled
     """Return ``[N, K]`` the first step at which a path ``start [N, 2] + path [N, K, T, 2]`` crosses a segment, else T.
 
     The segments connect ``one [M, 2]`` and ``other [M, 2]`` [m].

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
+from crowdbot.typing import Floats
 
 from .predictor import Predictor
 
 __all__ = ["Kalman", "KalmanAcceleration"]
 
-Floats = NDArray[np.float64]
 
 KALMAN = Paper(
     "Kalman", 1960, "A new approach to linear filtering and prediction problems", "J. Basic Engineering",

@@ -10,17 +10,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Windows, fill_gaps
+from crowdbot.typing import Floats
 
 from .predictor import Predictor
 from .pretrained_weights import AUTO, FOLDS, OPEN, STEP, fold_of, incompatibility, pretrained_file
 
 __all__ = ["LearnedPredictor", "complete_tracks"]
 
-Floats = NDArray[np.float64]
 
 ELSEWHERE = "eth"
 """Fold of the shipped weights for other places: trained on all places except this one, the smallest."""

@@ -9,16 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
 from crowdbot.data import Forecast, Windows, read_forecasts
+from crowdbot.typing import Floats
 
 from .predictor import Predictor
 
 __all__ = ["StoredForecasts", "forecasts_of"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,12 @@ from numbers import Real
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["TrackerFrame"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,18 +7,15 @@ from collections.abc import Hashable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Bools, Floats, Ints
 
 from .tracker_frame import TrackerFrame
 from .tracker_plausibility import TrackerPlausibility
 
 __all__ = ["TrackedRows", "TrackerHistory"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 FIRST_NUMBER = 1 << 40
 """Numbers of identities that are not integers start here."""
@@ -34,7 +31,7 @@ SHORTEST_JUMP = 0.5
 
 class _Row(NamedTuple):
     time: float
-    who: Integers
+    who: Ints
     place: Floats
     robots: frozenset[int]
     covariance: Floats | None
@@ -56,7 +53,7 @@ class TrackedRows(NamedTuple):
     position: Floats
     present: Bools
     robot: Bools
-    id: Integers
+    id: Ints
     existence: Floats
     covariance: Floats
     radius: Floats | None
@@ -130,7 +127,7 @@ class TrackerHistory:
         people = ~np.isin(row.who, list(row.robots)) if row.robots else slice(None)
         self.plausibility.judge_speeds(row.time, row.who[people], row.place[people])
 
-    def numbers(self) -> Integers:
+    def numbers(self) -> Ints:
         """Return the numbers ``[A]`` of the agents in the last row and of the hidden ones, sorted."""
         if not self._rows:
             return np.zeros(0, dtype=np.int64)
@@ -139,7 +136,7 @@ class TrackerHistory:
         kept += [row.who for row in self._rows if self.coast > 0.0 and now - row.time <= self.coast + 1e-9]
         return np.unique(np.concatenate(kept))
 
-    def labels(self, numbers: Integers) -> list[Hashable]:
+    def labels(self, numbers: Ints) -> list[Hashable]:
         """Return the identities of numbers."""
         return [self._labels[int(number)] for number in numbers]
 
@@ -176,7 +173,7 @@ class TrackerHistory:
         return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence, self._last_covariances(id),
                            self._last_radii(id))  # fmt: skip
 
-    def _last_covariances(self, id: Integers) -> Floats:
+    def _last_covariances(self, id: Ints) -> Floats:
         """Return covariances ``[A, 2, 2]`` of the last observed positions."""
         found = np.zeros((len(id), 2, 2))
         if all(row.covariance is None for row in self._rows):
@@ -186,7 +183,7 @@ class TrackerHistory:
             found[slot] = 0.0 if row.covariance is None else row.covariance[np.searchsorted(row.who, id[slot])]
         return found
 
-    def _last_radii(self, id: Integers) -> Floats | None:
+    def _last_radii(self, id: Ints) -> Floats | None:
         """Return radii ``[A]`` [m], or None if none is known."""
         found = np.array([self._radii.get(int(number), (0.0, np.nan))[1] for number in id])
         return None if np.isnan(found).all() else found
@@ -228,7 +225,7 @@ class TrackerHistory:
         count = min(self.observe, max(count, min(2, len(self._rows))))
         return now - self.dt * np.arange(count - 1, -1, -1.0)
 
-    def _tracks(self, id: Integers) -> dict[int, tuple[Floats, Floats]]:
+    def _tracks(self, id: Ints) -> dict[int, tuple[Floats, Floats]]:
         """Return times ``[N]`` and positions ``[N, 2]`` of agents by number, since their last jump."""
         if not len(id):
             return {}
@@ -242,9 +239,7 @@ class TrackerHistory:
             self._cut_at_jumps(id, first, last, who, time, place)
         return {int(n): (time[a:b], place[a:b]) for n, a, b in zip(id, first, last, strict=True)}
 
-    def _cut_at_jumps(
-        self, id: Integers, first: Integers, last: Integers, who: Integers, time: Floats, place: Floats
-    ) -> None:
+    def _cut_at_jumps(self, id: Ints, first: Ints, last: Ints, who: Ints, time: Floats, place: Floats) -> None:
         """Let the tracks ``first[A]`` to ``last[A]``, in observations sorted by person, begin after their last jump."""
         gap, length = np.diff(time), np.hypot(*np.diff(place, axis=0).T)
         fast = length > np.maximum(SHORTEST_JUMP, self.plausibility.max_speed * gap)

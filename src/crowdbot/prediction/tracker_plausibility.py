@@ -7,12 +7,11 @@ from collections.abc import Hashable
 from statistics import median
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["TrackerPlausibility", "TrackerWarning"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 SPEED_TIME = 0.4
 """Shortest time over which the speed of people is measured [s]; over less, noise of positions looks like speed."""
@@ -58,7 +57,7 @@ class TrackerPlausibility:
         self._reported: set[str] = set()
         self._pending: list[str] = []
         self._steps: deque[float] = deque(maxlen=9)
-        self._reference: tuple[float, Integers, Floats] | None = None
+        self._reference: tuple[float, Ints, Floats] | None = None
         self._speeds: deque[float] = deque(maxlen=MOST_SPEEDS)
 
     def take_reports(self) -> list[str]:
@@ -81,7 +80,7 @@ class TrackerPlausibility:
             " frames",
         )
 
-    def judge_speeds(self, time: float, who: Integers, place: Floats) -> None:
+    def judge_speeds(self, time: float, who: Ints, place: Floats) -> None:
         """Judge positions ``[N, 2]`` [m] of people with numbers ``[N]``, sorted, at a time [s] after earlier ones."""
         if "units" in self._reported or np.isinf(self.max_speed):
             return

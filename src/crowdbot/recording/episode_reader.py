@@ -22,6 +22,7 @@ from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
 from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
 from crowdbot.trials import floor_plan_of_xml
+from crowdbot.typing import Floats
 from crowdbot.world import REACTIONS
 
 from .episode_repair import EpisodeEnd
@@ -30,7 +31,6 @@ from .step_records import RecordedContact, RecordedStep, read_steps
 
 __all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
 
-Floats = NDArray[np.float64]
 T = TypeVar("T")
 ODOM = "/odom"
 """Ending of the frame in which the root link of a robot moves."""

@@ -6,17 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import SpatialPose
 from crowdbot.messages import mount_pose
 from crowdbot.sensors import WheelGeometry
 from crowdbot.trials import RobotSpec
+from crowdbot.typing import Floats
 from crowdbot.world import quaternion
 
 __all__ = ["LinkFrames", "spatial_row"]
 
-Floats = NDArray[np.float64]
 Row = tuple[str, str, SpatialPose]
 """Parent frame, child frame, and pose of the child."""
 BASE, ODOM = "base_link", "odom"

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose
 from crowdbot.messages import MAP, Messages, codec_of
@@ -21,7 +20,6 @@ from .metadata import GROUND_TRUTH
 
 __all__ = ["RobotMessages"]
 
-Floats = NDArray[np.float64]
 STATIC = "/tf_static"
 
 

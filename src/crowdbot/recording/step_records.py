@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data import McapReader
@@ -39,8 +38,6 @@ from crowdbot.simulation import ScanRow, scan_row
 from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
 
 __all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
-
-Floats = NDArray[np.float64]
 
 
 class RecordedContact(NamedTuple):

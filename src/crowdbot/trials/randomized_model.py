@@ -9,16 +9,15 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Scene, did_you_mean, parameters, stream
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .distribution import Distribution
 
 __all__ = ["RandomizedModel", "is_drawn", "names_of", "own"]
 
-Floats = NDArray[np.float64]
 Values = Mapping[int, Mapping[str, float]]
 
 

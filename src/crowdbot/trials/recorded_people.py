@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import FILE_OPTIONS, parse_columns, split_columns
+from crowdbot.typing import Floats
 
 from .distribution import Distribution
 from .fields import FieldProblem, attribute, check, quote_value
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RecordedPeople", "Walk"]
 
-Floats = NDArray[np.float64]
 LONGEST_GAP = 2.0
 """Longest gap [s] that is interpolated; after a longer one the person returns as another."""
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot import world
 from crowdbot.core import (
@@ -27,6 +26,7 @@ from crowdbot.core import (
 from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Sensor, SensorSchedule
+from crowdbot.typing import Floats
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
 from .faults.fault import FaultSpec, fault_problems
@@ -43,7 +43,6 @@ from .robots.safety import SafetySpec, safety_problems
 
 __all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
 
-Floats = NDArray[np.float64]
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
 """Defaults of a robot without a type [m, m, kg]."""
 MOST_FILES = 500

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.measurement import MeasurementLine, crossing_times, mean_flow
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, simulate_open
 from .layouts import bottleneck_solids, inside_solids, rings
@@ -19,7 +20,6 @@ from .scenario import (
     RADIUS,
     Check,
     CrowdTracks,
-    Floats,
     Report,
     Row,
     Verdict,

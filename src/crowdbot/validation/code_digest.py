@@ -138,22 +138,11 @@ def _owner(base: str, wanted: str) -> Iterator[str]:
 
 @functools.cache
 def _exports(base: str, file: Path) -> dict[str, tuple[str, ...]]:
-    """Return the modules that define the names of a face, by name; lazy names are those of its tables."""
+    """Return the modules that define the names of a face, by name."""
     found: dict[str, tuple[str, ...]] = {}
     for node in ast.walk(_tree(file)):
         if isinstance(node, ast.ImportFrom):
             owner = _base(base, node)
             for one in node.names:
                 found[one.asname or one.name] = (owner,)
-        if isinstance(node, ast.Dict):
-            for key, value in zip(node.keys, node.values, strict=True):
-                for name in _texts(value):
-                    if isinstance(key, ast.Constant) and isinstance(key.value, str):
-                        found.setdefault(name, (f"{base}.{key.value.lstrip('.')}",))
     return found
-
-
-def _texts(node: ast.expr) -> list[str]:
-    if isinstance(node, ast.Tuple | ast.List):
-        return [one.value for one in node.elts if isinstance(one, ast.Constant) and isinstance(one.value, str)]
-    return []

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
 from .layouts import cabin_solids, inside_solids, rings, two_rooms, waiting_room
@@ -18,7 +19,6 @@ from .scenario import (
     STEP,
     Check,
     CrowdTracks,
-    Floats,
     Report,
     Row,
     Verdict,

@@ -9,9 +9,10 @@ import numpy as np
 
 from crowdbot.core import InputError, Scene
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Bools, Floats
 
 from .layouts import inside_solids
-from .scenario import RADIUS, SEEN, STEP, Bools, CrowdTracks, Floats, Report, Solid, substeps
+from .scenario import RADIUS, SEEN, STEP, CrowdTracks, Report, Solid, substeps
 
 __all__ = ["deepest_overlap", "each_start", "one_start", "safety_of", "simulate_open", "simulate_periodic"]
 

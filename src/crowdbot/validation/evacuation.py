@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
 from .layouts import hall_solids, inside_solids, long_corner_solids, rings, two_rooms
@@ -18,7 +19,6 @@ from .scenario import (
     STEP,
     Check,
     CrowdTracks,
-    Floats,
     Report,
     Row,
     Verdict,

@@ -10,19 +10,11 @@ from numpy.typing import NDArray
 
 from crowdbot.measurement import lane_order
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .corridor import corridor_crowd
 from .crowd_motion import deepest_overlap, one_start, simulate_periodic
-from .scenario import (
-    FREE_SPEED,
-    Check,
-    Floats,
-    Report,
-    Row,
-    Verdict,
-    share,
-    stream_of,
-)
+from .scenario import FREE_SPEED, Check, Report, Row, Verdict, share, stream_of
 from .statistics import ends_of, find_steady_window, summarize_starts, text_of, worst_of
 
 __all__ = ["LANES", "NARROW"]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .scenario import FREE_SPEED, Floats
+from crowdbot.typing import Floats
+
+from .scenario import FREE_SPEED
 
 __all__ = ["BOTTLENECK_FLOWS", "SOURCES", "SPECIFIC_FLOW", "line_speed", "weidmann_speed"]
 

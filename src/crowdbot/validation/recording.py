@@ -22,10 +22,11 @@ from crowdbot.measurement import (
     lane_order,
     walking_direction,
 )
+from crowdbot.typing import Floats
 
 from .bottleneck import steady_flow
 from .literature import line_speed, weidmann_speed
-from .scenario import Floats, Report
+from .scenario import Report
 from .section import METHOD, section_values
 
 __all__ = ["METHODS", "measure_recordings"]

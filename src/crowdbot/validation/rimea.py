@@ -10,24 +10,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 from .crowd_motion import each_start, safety_of, simulate_open
 from .layouts import CORNER_SOLIDS, rings
-from .scenario import (
-    RADIUS,
-    STEP,
-    Check,
-    Floats,
-    Report,
-    Row,
-    Solid,
-    Verdict,
-    crowds,
-    free_speeds,
-    gate,
-    share,
-    stream_of,
-)
+from .scenario import RADIUS, STEP, Check, Report, Row, Solid, Verdict, crowds, free_speeds, gate, share, stream_of
 from .statistics import mean_of, worst_of
 
 __all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "summarize_one"]

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.models import CrowdModel
 from crowdbot.trials import model_range
+from crowdbot.typing import Bools, Floats
 
 __all__ = [
     "FREE_SPEED",
@@ -21,7 +21,6 @@ __all__ = [
     "STEP",
     "Check",
     "CrowdTracks",
-    "Floats",
     "Report",
     "Row",
     "Solid",
@@ -52,8 +51,6 @@ SEEN = 6.0
 """Range [m] of the copies of people beyond the ends of a periodic track."""
 SEED = 20250
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Solid = tuple[float, float, float, float]
 """A solid rectangle x0, y0, x1, y1 [m]."""
 Report = Callable[[float], None]

@@ -11,8 +11,9 @@ from crowdbot.measurement import (
     compute_individual_voronoi_polygons,
     select_rows,
 )
+from crowdbot.typing import Floats
 
-from .scenario import CrowdTracks, Floats
+from .scenario import CrowdTracks
 
 __all__ = ["HALF_SECTION", "METHOD", "MIDDLE", "section_of", "section_values"]
 

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core import stream
 from crowdbot.measurement import detect_steady_state, mean_over_starts
-
-from .scenario import Floats
+from crowdbot.typing import Floats
 
 __all__ = [
     "STARTS",

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.simulation import Simulation
+from crowdbot.typing import Floats
 from crowdbot.world import two_body_force
 
 __all__ = ["AvatarContacts"]
 
-Floats = NDArray[np.float64]
 REGION = "chest"
 """Region of the body that a disc of the planar world touches."""
 STRONG = 60.0

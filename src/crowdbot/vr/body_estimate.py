@@ -6,10 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import wrap_angle
 from crowdbot.humans import BodyPose, People, eye_offsets, rest_skeleton
+from crowdbot.typing import Floats
 
 from .headset_sample import HeadsetSample
 from .rigid_transform import RigidTransform
@@ -17,7 +17,6 @@ from .rotation_matrices import matrices, unit_quaternions
 
 __all__ = ["BodyEstimator", "BodySize"]
 
-Floats = NDArray[np.float64]
 NECK = math.radians(50.0)
 """Largest angle between head and trunk; beyond it the trunk turns with the head."""
 SETTLE, SETTLE_WALKING = 2.0, 0.4

@@ -7,17 +7,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.humans import People, eye_offsets, names, rest_skeleton
+from crowdbot.typing import Floats
 
 from .body_estimate import BodySize
 from .headset_sample import HeadsetSample
 
 __all__ = ["POSE_SAMPLES", "BodyMeasure", "measure_pose"]
 
-Floats = NDArray[np.float64]
 POSE_SAMPLES = 30
 """Samples of which the median is taken."""
 STILL = 0.03

@@ -11,16 +11,16 @@ from types import TracebackType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 from crowdbot.web import StateFrame
 
 from .headset_sample import HeadsetSample
 
 __all__ = ["HeadsetClock", "HeadsetRecord", "HeadsetRecorder", "read_headset_clock", "read_headset_recording"]
 
-Floats = NDArray[np.float64]
 MAGIC = b"CBHR1\n"
 ENTRY = struct.Struct("<BdI")
 """Kind, time of the server [s] and number of bytes of an entry."""

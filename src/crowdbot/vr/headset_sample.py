@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 from crowdbot.web import StateFrame
 
 from .rotation_matrices import matrices, quaternion_blend, unit_quaternions
 
 __all__ = ["AXES", "CHANNEL", "HeadsetSample"]
 
-Floats = NDArray[np.float64]
 CHANNEL = "headset"
 AXES = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Rotation from the axes of WebXR (x right, y up, z backward) to those of the room (x forward, y left, z up)."""

@@ -7,9 +7,6 @@ import dataclasses
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import InputError, stream
 
 from .headset_sample import PARTS, HeadsetSample
@@ -17,7 +14,6 @@ from .latency import ClockSync, LatencyLog
 
 __all__ = ["HeadsetStream", "StreamSettings"]
 
-Floats = NDArray[np.float64]
 HISTORY = 2.0
 """Samples older than the longest delay by this time [s] are left out."""
 LONGEST = 2.0

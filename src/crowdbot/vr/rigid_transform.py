@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["RigidFit", "RigidTransform", "fit_rigid"]
 
-Floats = NDArray[np.float64]
 FLAT = 1e-3
 """Smallest spread [m] of points across their main direction; below it they define no rotation."""
 

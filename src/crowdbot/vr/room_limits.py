@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
 __all__ = ["RoomLimits"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 __all__ = ["matrices", "quaternion_blend", "unit_quaternions"]
-
-Floats = NDArray[np.float64]
 
 
 def matrices(q: Floats) -> Floats:

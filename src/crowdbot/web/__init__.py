@@ -27,32 +27,7 @@ if TYPE_CHECKING:
     from .window import CREDIT, Window
     from .workspace import Workspace
 
-__getattr__, __dir__ = lazy_exports(
-    __name__,
-    {
-        "access": ["AccessPolicy", "is_loopback"],
-        "app_server": ["AppServer"],
-        "app_session": ["AppSession", "Viewer"],
-        "command": ["call_command", "command_names"],
-        "desk": ["Desk", "DeskWindows", "Resource"],
-        "jobs": ["JobBoard"],
-        "scene": [
-            "PlayerFile",
-            "scene_description",
-            "scene_frame",
-            "scene_resource",
-            "write_player",
-        ],
-        "scene.measurements": ["app_measurements"],
-        "session_limits": ["CLASSROOM", "SessionLimits"],
-        "experiments": ["ExperimentDesk"],
-        "simulator": ["LiveRun", "SimulatorDesk", "navigator_orders"],
-        "state_frame": ["StateFrame"],
-        "tabs": ["DESKS", "FirstView", "opened_first", "with_streams"],
-        "window": ["CREDIT", "Window"],
-        "workspace": ["Workspace"],
-    },
-)
+__getattr__, __dir__, _ = lazy_exports(__name__)
 # A submodule has the name of this function and would hide it.
 from .command import command  # noqa: E402
 

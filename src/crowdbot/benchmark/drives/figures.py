@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
 from crowdbot.world import Drive
 
 from .manoeuvre import Manoeuvre
@@ -16,7 +16,6 @@ from .traces import SAMPLE, DriveTrace
 
 __all__ = ["DRIVE_COLUMNS", "FALLEN", "DriveFigures", "compare_traces", "grid_cells"]
 
-Floats = NDArray[np.float64]
 SLOPE = 2
 """Samples over which accelerations are measured: 0.04 s."""
 STEADY = 1.0

@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
 from crowdbot.humans import People, names
 from crowdbot.models import ORCA
+from crowdbot.typing import Floats
 from crowdbot.world import CommandDelay, Pending, PhysicsStage, PhysicsWorld, Robot, Twists
 
 __all__ = ["SAMPLE", "DriveTrace", "trace_physics", "trace_planar"]
 
-Floats = NDArray[np.float64]
 SAMPLE = 0.02
 """Time [s] between two samples of a trace, in which the command is constant."""
 

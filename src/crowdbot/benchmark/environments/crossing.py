@@ -7,18 +7,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.sensors import GroundTruthPeople, Lidar2D
 from crowdbot.simulation import Simulation, simulate_seeds
 from crowdbot.trials import Mount, Trial, load_trial
+from crowdbot.typing import Floats
 
 from .work_rate import TimedWork
 
 __all__ = ["BEAMS", "CrossingTask", "advance_work", "crossing_trial", "episode_work", "reset_work"]
 
-Floats = NDArray[np.float64]
 
 BEAMS, RANGE = 180, 10.0
 """Beams of the scanner, and the range of the robot's sensors [m]."""

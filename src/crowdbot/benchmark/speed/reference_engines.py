@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, import_optional
+from crowdbot.typing import Floats
 
 __all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
 
-Floats = NDArray[np.float64]
 
 JUPEDSIM = ("SocialForceModel", "CollisionFreeSpeedModelV2", "AnticipationVelocityModel")
 """Timed models of JuPedSim; the first was the fastest at 10 000 people."""

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .motion_recording import MOST_FRAMES, MotionRecording, RecordedSubject
 from .pose_stream import MotionSample
@@ -16,7 +16,6 @@ from .source_skeleton import MOST_JOINTS, SourceSkeleton, body_axes
 
 __all__ = ["read_bvh"]
 
-Floats = NDArray[np.float64]
 LEG = 0.85
 UNITS = (1.0, 0.01, 0.001, 0.056444)
 """Metres in one unit of length: m, cm, mm, and that of the CMU library (1/0.45 inch). A BVH file does not name it."""

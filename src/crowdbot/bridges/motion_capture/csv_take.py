@@ -8,9 +8,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .motion_recording import MOST_FRAMES, MotionRecording, RecordedSubject
 from .pose_stream import MotionSample
@@ -18,7 +18,6 @@ from .rotations import normalize, rotate_about, to_matrices
 
 __all__ = ["read_csv"]
 
-Floats = NDArray[np.float64]
 UNITS = {"meters": 1.0, "centimeters": 0.01, "millimeters": 0.001}
 FROM_Y_UP = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """From the axes of Motive (x left, y up, z forward) to x forward, y left, z up."""

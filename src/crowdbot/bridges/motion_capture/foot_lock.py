@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.humans import BodyPose
+from crowdbot.typing import Floats
 
 from .retargeting import Retargeting
 from .rotations import align_vectors, yaw_of
 
 __all__ = ["FootLock"]
 
-Floats = NDArray[np.float64]
 LIFTED = 0.05
 """Height of the ankle of the actor [m] above its place in standing from which on the foot is in the air."""
 MOVING = 0.3

@@ -9,7 +9,6 @@ from types import TracebackType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, wrap_angle
 from crowdbot.humans import BodyPose, PoseTrack, RestSkeleton, rest_skeleton
@@ -24,7 +23,6 @@ from .source_skeleton import SourceSkeleton
 
 __all__ = ["MotionBinding", "MotionCapture"]
 
-Floats = NDArray[np.float64]
 AHEAD = 9.0
 """A time stamp that is further ahead [s] is not given: the clocks of sender and simulation are not related yet."""
 EARLY = 1e-6

@@ -6,15 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .pose_stream import MotionSample, PoseStream, StreamStatistics
 
 __all__ = ["MOST_FRAMES", "MotionRecording", "RecordedSubject"]
 
-Floats = NDArray[np.float64]
 MOST_FRAMES = 1_000_000
 
 

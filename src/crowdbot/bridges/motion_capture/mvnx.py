@@ -7,9 +7,9 @@ from typing import Any
 from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .motion_recording import MOST_FRAMES, MotionRecording, RecordedSubject
 from .pose_stream import MotionSample
@@ -18,7 +18,6 @@ from .xsens_segments import SEGMENTS, xsens_skeleton
 
 __all__ = ["read_mvnx"]
 
-Floats = NDArray[np.float64]
 MOST_TEXT = 100_000
 """Longest text of an element that is read [characters]."""
 COUNT = len(SEGMENTS)

@@ -11,9 +11,9 @@ from collections.abc import Iterable
 from types import TracebackType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from . import natnet_packets as packets
 from .csv_take import FROM_Y_UP
@@ -26,7 +26,6 @@ from .source_skeleton import SourceSkeleton
 
 __all__ = ["NatNetStream"]
 
-Floats = NDArray[np.float64]
 PORT, DATA_PORT = 1510, 1511
 """Default ports of the server for commands and for multicast frames."""
 LOCAL_OFFSET = 0.003

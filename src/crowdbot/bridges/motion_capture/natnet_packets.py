@@ -5,14 +5,10 @@ from __future__ import annotations
 import struct
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .pose_receiver import BadDatagram
 
 __all__ = ["Body", "BoneDescription", "Frame", "Packet", "ServerInfo", "read_descriptions", "read_frame", "read_server"]
 
-Floats = NDArray[np.float64]
 CONNECT, SERVER_INFO, REQUEST, RESPONSE, REQUEST_DESCRIPTIONS, DESCRIPTIONS, FRAME, KEEP_ALIVE = 0, 1, 2, 3, 4, 5, 7, 10
 MOST_NAME = 256
 MOST_ITEMS = 4096

@@ -6,14 +6,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from types import TracebackType
 
-import numpy as np
-from numpy.typing import NDArray
+from crowdbot.typing import Floats
 
 from .source_skeleton import SourceSkeleton
 
 __all__ = ["MotionSample", "PoseStream", "StreamStatistics"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

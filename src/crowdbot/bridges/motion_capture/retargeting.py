@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.humans import BodyPose, RestSkeleton
+from crowdbot.typing import Floats
 
 from .rotations import align_vectors, rotate_about, to_quaternions, yaw_of
 from .source_skeleton import SourceSkeleton
 
 __all__ = ["Retargeting"]
 
-Floats = NDArray[np.float64]
 DIGITS = 6
 """Decimals of positions [m] and quaternions: an order with all bones stays below 1.5 kB."""
 

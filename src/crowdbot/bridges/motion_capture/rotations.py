@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 __all__ = ["align_vectors", "normalize", "rotate_about", "to_matrices", "to_quaternions", "yaw_of"]
-
-Floats = NDArray[np.float64]
 
 
 def to_matrices(quaternions: Floats) -> Floats:

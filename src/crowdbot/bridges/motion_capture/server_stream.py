@@ -8,14 +8,15 @@ from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from crowdbot.typing import Floats
 
 from .pose_receiver import BadDatagram, PoseReceiver
 from .rotations import normalize
 
 __all__ = ["AGAIN", "FARTHEST", "ServerStream", "checked_pose"]
 
-Floats = NDArray[np.float64]
 
 AGAIN = 0.5
 """Time [s] between two requests, attempts to connect, or signs of life."""

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["MOST_JOINTS", "SourceSkeleton", "body_axes"]
 
-Floats = NDArray[np.float64]
 MOST_JOINTS = 300
 HAND, FOOT = ("hand", "wrist"), ("foot", "ankle")
 LEGS = (0.25, 1.6)

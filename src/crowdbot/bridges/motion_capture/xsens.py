@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .pose_receiver import BadDatagram, PoseReceiver, bind_socket
 from .pose_stream import MotionSample
@@ -22,7 +22,6 @@ from .xsens_segments import SEGMENTS, xsens_skeleton
 
 __all__ = ["PORT", "XsensStream"]
 
-Floats = NDArray[np.float64]
 PORT = 9763
 """Default port of the network streamer."""
 HEADER = struct.Struct(">6sIBBIBBBBHH")

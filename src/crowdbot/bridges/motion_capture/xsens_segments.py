@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .source_skeleton import SourceSkeleton
 
 __all__ = ["SEGMENTS", "xsens_skeleton"]
 
-Floats = NDArray[np.float64]
 SEGMENTS = (
     "Pelvis", "L5", "L3", "T12", "T8", "Neck", "Head",
     "RightShoulder", "RightUpperArm", "RightForeArm", "RightHand",

@@ -17,10 +17,10 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.metrics import draw_counts, percentile_interval
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 
 __all__ = ["ParameterProfile", "profile_parameters"]
 
-Floats = NDArray[np.float64]
 RESAMPLES = 500
 
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel
+from crowdbot.typing import Words
 
 __all__ = ["HASH_BLOCK", "hash_blocks", "hash_start"]
 
-Words = NDArray[np.uint64]
 
 HASH_BLOCK = 128
 """Length of a block [bytes]."""

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel
+from crowdbot.typing import Floats, Rows
 
 __all__ = ["keep_nearest", "sort_by_distance", "sort_few"]
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.int32]
-
 
 @kernel(inline=True)
-def sort_few(near2: Array, held: int, sorted_: Rows) -> None:
+def sort_few(near2: Floats, held: int, sorted_: Rows) -> None:
     """Write the indices of candidates that are in the order of agents, by distance (stable insertion)."""
     for i in range(held):
         n = i
@@ -27,7 +24,7 @@ def sort_few(near2: Array, held: int, sorted_: Rows) -> None:
 
 
 @kernel
-def keep_nearest(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
+def keep_nearest(near: Rows, near2: Floats, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
     """Keep only the nearest candidates; return their number and the squared distance of the last."""
     sort_by_distance(near, near2, held, sorted_)
     limit2 = near2[sorted_[most - 1]]
@@ -42,7 +39,7 @@ def keep_nearest(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) 
 
 
 @kernel(inline=True)
-def sort_by_distance(near: Rows, near2: Array, held: int, sorted_: Rows) -> None:
+def sort_by_distance(near: Rows, near2: Floats, held: int, sorted_: Rows) -> None:
     """Write the candidate indices in order of distance, then of agent index.
 
     The rank of a candidate is the number of nearer candidates, counted without branches.

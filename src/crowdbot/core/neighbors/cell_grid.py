@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel, prange
+from crowdbot.typing import Floats, Rows
 
 from .candidate_order import keep_nearest, sort_by_distance
 
 __all__ = ["CHUNK", "SMALL", "SPARE", "Seekers", "search_in_grid"]
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.int32]
 
 CHUNK = 64
 """Number of agents in one work item of a thread."""
@@ -44,21 +43,21 @@ class _Grid(NamedTuple):
 
     shape: NDArray[np.int64]
     """``[E, 2]`` columns and rows before the grid wraps around."""
-    size: Array
+    size: Floats
     """``[E]`` width of a cell [m]."""
     first: Rows
     """``[E, C + 1]``."""
     order: Rows
     """``[E * A]`` rows of the agents, sorted."""
-    place: Array
+    place: Floats
     """``[E * A, 2]`` positions of the sorted agents [m], NaN for invisible agents."""
 
 
 class Seekers(NamedTuple):
     """Agents that search for neighbours, by row ``e * A + a``."""
 
-    place: Array
-    reach: Array
+    place: Floats
+    reach: Floats
     max_count: Rows
     asking: NDArray[np.bool_]
 
@@ -93,7 +92,7 @@ def search_in_grid(
 
 @kernel
 def _sort(
-    place: Array, there: NDArray[np.bool_], longest: float, shape: NDArray[np.int64], sizes: Array, first: Rows,
+    place: Floats, there: NDArray[np.bool_], longest: float, shape: NDArray[np.int64], sizes: Floats, first: Rows,
     order: Rows,
 ) -> None:  # fmt: skip
     """Sort the agents of each environment by cell (counting sort); the last cell contains the absent agents."""
@@ -123,7 +122,7 @@ def _sort(
 
 
 @kernel
-def _cells(place: Array, there: NDArray[np.bool_], longest: float, cells: int) -> tuple[float, int, int]:
+def _cells(place: Floats, there: NDArray[np.bool_], longest: float, cells: int) -> tuple[float, int, int]:
     """Return cell width [m], columns and rows of the grid of one environment."""
     low_x, high_x, low_y, high_y = math.inf, -math.inf, math.inf, -math.inf
     n = 0
@@ -203,7 +202,7 @@ def _search_part(
 
 
 @kernel(inline=True)
-def _farthest_of(place: Array, seen: NDArray[np.bool_], before: Rows, row: int, first: int, most: int) -> float:
+def _farthest_of(place: Floats, seen: NDArray[np.bool_], before: Rows, row: int, first: int, most: int) -> float:
     """Return the largest squared distance to the neighbours of an earlier search; inf if one is none any more."""
     farthest2 = 0.0
     for n in range(most):
@@ -216,8 +215,8 @@ def _farthest_of(place: Array, seen: NDArray[np.bool_], before: Rows, row: int, 
 
 @kernel(inline=True)
 def _look_around(
-    first: Rows, e: int, size: float, columns: int, rows: int, order: Rows, points: Array, x: float, y: float,
-    own: int, limit2: float, reach2: float, most: int, near: Rows, near2: Array, sorted_: Rows,
+    first: Rows, e: int, size: float, columns: int, rows: int, order: Rows, points: Floats, x: float, y: float,
+    own: int, limit2: float, reach2: float, most: int, near: Rows, near2: Floats, sorted_: Rows,
 ) -> int:  # fmt: skip
     """Collect candidates by grid row, from the agent's row outwards up to the limit; return their number."""
     held = int(np.int64(0))

@@ -9,18 +9,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel, prange
+from crowdbot.typing import Bools, Floats, Rows
 
 __all__ = ["count_copies", "fill_copies", "find_period"]
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
-
-def find_period(place: Array, seen: Bools) -> int:
+def find_period(place: Floats, seen: Bools) -> int:
     """Return after how many environments the positions and the visible agents repeat; E if they do not.
 
     Args:
@@ -46,7 +42,7 @@ def find_period(place: Array, seen: Bools) -> int:
 
 @kernel(parallel=True)
 def fill_copies(
-    place: Array, reach: Array, capacity: Rows, asking: Bools, seen: Bools, A: int, period: int, agent: Rows,
+    place: Floats, reach: Floats, capacity: Rows, asking: Bools, seen: Bools, A: int, period: int, agent: Rows,
     number: Rows,
 ) -> None:  # fmt: skip
     """Write the neighbours of all agents; the rows of the first ``period`` environments repeat."""
@@ -62,7 +58,7 @@ def fill_copies(
 
 @kernel(parallel=True)
 def count_copies(
-    place: Array, reach: Array, capacity: Rows, asking: Bools, seen: Bools, A: int, period: int, agent: Rows,
+    place: Floats, reach: Floats, capacity: Rows, asking: Bools, seen: Bools, A: int, period: int, agent: Rows,
     number: Rows,
 ) -> None:  # fmt: skip
     """Write the neighbours of the agents of the first ``period`` environments, and the number of all agents.
@@ -87,7 +83,7 @@ def count_copies(
 
 
 @kernel
-def _sort_all(place: Array, seen: Bools, row: int, A: int, near2: Array, order: Rows) -> int:
+def _sort_all(place: Floats, seen: Bools, row: int, A: int, near2: Floats, order: Rows) -> int:
     """Sort the visible agents of the environment by distance to an agent, then by index; return their number."""
     x, y = place[row, 0], place[row, 1]
     first = row // A * A
@@ -108,7 +104,7 @@ def _sort_all(place: Array, seen: Bools, row: int, A: int, near2: Array, order: 
 
 @kernel
 def _fill_row(
-    row: int, near2: Array, order: Rows, held: int, reach: Array, capacity: Rows, asking: Bools, agent: Rows,
+    row: int, near2: Floats, order: Rows, held: int, reach: Floats, capacity: Rows, asking: Bools, agent: Rows,
     number: Rows,
 ) -> None:  # fmt: skip
     """Write the neighbours of one agent within its reach."""

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core.errors import InputError, did_you_mean
 from crowdbot.core.kernels import kernel, prange
 from crowdbot.core.model_parameter import BOOL, FLOAT, dense
+from crowdbot.typing import Floats, Rows
 
 from .candidate_order import keep_nearest, sort_by_distance, sort_few
 from .cell_grid import CHUNK, SMALL, SPARE, Seekers, search_in_grid
@@ -23,8 +24,6 @@ from .verlet_lists import search_again
 
 __all__ = ["CROWD", "FEW", "Neighbors", "nearest", "nearest_of_rows"]
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.int32]
 
 COUNT = np.dtype(np.int32)
 METHODS = ("auto", "brute", "grid")
@@ -51,7 +50,7 @@ class Neighbors(NamedTuple):
 
 
 def nearest(
-    position: Array,
+    position: Floats,
     reach: ArrayLike,
     max_count: ArrayLike,
     seen: ArrayLike = True,
@@ -139,7 +138,7 @@ def nearest_of_rows(
 
 @kernel(parallel=True)
 def _compare(
-    place: Array, reach: Array, capacity: Rows, asking: NDArray[np.bool_], seen: NDArray[np.bool_], A: int,
+    place: Floats, reach: Floats, capacity: Rows, asking: NDArray[np.bool_], seen: NDArray[np.bool_], A: int,
     agent: Rows, number: Rows,
 ) -> None:  # fmt: skip
     for part in prange((len(number) + CHUNK - 1) // CHUNK):
@@ -149,7 +148,7 @@ def _compare(
 
 @kernel
 def _compare_part(
-    begin: int, end: int, place: Array, reach: Array, capacity: Rows, asking: NDArray[np.bool_],
+    begin: int, end: int, place: Floats, reach: Floats, capacity: Rows, asking: NDArray[np.bool_],
     seen: NDArray[np.bool_], A: int, agent: Rows, number: Rows,
 ) -> None:  # fmt: skip
     """Search the neighbours of the rows from ``begin`` to ``end`` among all ``A`` agents of their environment."""

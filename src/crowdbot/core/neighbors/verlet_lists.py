@@ -13,15 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel, prange
+from crowdbot.typing import Bools, Floats, Rows
 
 __all__ = ["search_again"]
 
-Array = NDArray[np.float64]
-Rows = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 Search = Callable[..., Rows]
 """Fills ``agent [rows, K]`` and ``number [rows]`` for given seekers; returns the spatial order of the rows."""
 
@@ -57,15 +54,15 @@ class _Lists:
         found: neighbours of the last search in which the candidates did not suffice, and their number.
     """
 
-    last: Array
+    last: Floats
     found: tuple[Rows, Rows]
-    place: Array | None = None
+    place: Floats | None = None
     seen: Bools | None = None
-    reach: Array | None = None
+    reach: Floats | None = None
     most: Rows | None = None
     agent: Rows | None = None
     number: Rows | None = None
-    limit: Array | None = None
+    limit: Floats | None = None
     order: Rows | None = None
 
 
@@ -147,7 +144,7 @@ def _fill(lists: _Lists, seekers: Any, seen: Bools, E: int, agent: Rows, number:
 
 
 @kernel
-def _farthest_move(place: Array, earlier: Array, seen: Bools, asking: Bools) -> float:
+def _farthest_move(place: Floats, earlier: Floats, seen: Bools, asking: Bools) -> float:
     """Return the largest squared displacement [m^2] of agents that can be a neighbour or ask for some; inf for NaN."""
     farthest = 0.0
     for row in range(len(place)):
@@ -161,8 +158,8 @@ def _farthest_move(place: Array, earlier: Array, seen: Bools, asking: Bools) -> 
 
 @kernel
 def _farthest_since(
-    earlier: Array, earlier_seen: Bools, earlier_reach: Array, earlier_most: Rows, place: Array, seen: Bools,
-    reach: Array, most: Rows, asking: Bools,
+    earlier: Floats, earlier_seen: Bools, earlier_reach: Floats, earlier_most: Rows, place: Floats, seen: Bools,
+    reach: Floats, most: Rows, asking: Bools,
 ) -> float:  # fmt: skip
     """Return the largest squared displacement [m^2] since an earlier search; inf if it was for something else."""
     for row in range(len(place)):
@@ -173,7 +170,7 @@ def _farthest_since(
 
 @kernel
 def _measure_limits(
-    place: Array, reach: Array, capacity: Rows, asked: Bools, agent: Rows, number: Rows, A: int, limit: Array
+    place: Floats, reach: Floats, capacity: Rows, asked: Bools, agent: Rows, number: Rows, A: int, limit: Floats
 ) -> None:  # fmt: skip
     """Write the distance within which every agent is a candidate: the reach, or that of the last of a full list."""
     for row in range(len(number)):
@@ -186,7 +183,7 @@ def _measure_limits(
 
 @kernel(parallel=True)
 def _sort_all(
-    order: Rows, candidate: Rows, count: Rows, limit: Array, farthest: float, place: Array, reach: Array,
+    order: Rows, candidate: Rows, count: Rows, limit: Floats, farthest: float, place: Floats, reach: Floats,
     capacity: Rows, asking: Bools, A: int, agent: Rows, number: Rows, fits: Bools,
 ) -> None:  # fmt: skip
     for part in prange(len(fits)):
@@ -200,7 +197,7 @@ def _sort_all(
 
 @kernel
 def _sort_part(
-    begin: int, end: int, candidate: Rows, count: Rows, limit: Array, farthest: float, place: Array, reach: Array,
+    begin: int, end: int, candidate: Rows, count: Rows, limit: Floats, farthest: float, place: Floats, reach: Floats,
     capacity: Rows, asking: Bools, A: int, agent: Rows, number: Rows, fits: Bools,
 ) -> None:  # fmt: skip
     near2 = np.empty(candidate.shape[1])
@@ -213,8 +210,8 @@ def _sort_part(
 
 @kernel(inline=True)
 def _sort_row(
-    row: int, candidate: Rows, count: Rows, limit: Array, farthest: float, place: Array, reach: Array,
-    capacity: Rows, asking: Bools, A: int, agent: Rows, number: Rows, near2: Array,
+    row: int, candidate: Rows, count: Rows, limit: Floats, farthest: float, place: Floats, reach: Floats,
+    capacity: Rows, asking: Bools, A: int, agent: Rows, number: Rows, near2: Floats,
 ) -> bool:  # fmt: skip
     """Sort the candidates of an agent and write its neighbours; return whether no other agent can be one of them."""
     widest = agent.shape[1]

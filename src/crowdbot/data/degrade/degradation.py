@@ -8,19 +8,16 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import DataError, InputError, check_parameters, kebab_case, parameters, stream
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Bools, Floats, Ints
 
 __all__ = ["GHOST", "Degradation", "DegradedTracks", "EmptyRecordingError"]
 
 GHOST = -1
 """True id of rows of false tracks."""
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class EmptyRecordingError(DataError):
@@ -45,7 +42,7 @@ class DegradedTracks:
     """
 
     tracks: Trajectories
-    truth: Integers
+    truth: Ints
 
     def __post_init__(self) -> None:
         if np.shape(self.truth) != (len(self.tracks),):
@@ -90,7 +87,7 @@ class DegradedTracks:
         """Return the recording with other ids ``[N]``."""
         return self._with(id=np.asarray(id, dtype=np.int64))
 
-    def add_false_rows(self, id: Integers, frame: Integers, position: Floats) -> DegradedTracks:
+    def add_false_rows(self, id: Ints, frame: Ints, position: Floats) -> DegradedTracks:
         """Return the recording with rows of false tracks: ids ``[M]``, frames ``[M]`` and positions ``[M, 2]``."""
         own = self.tracks
         return self._with(
@@ -101,7 +98,7 @@ class DegradedTracks:
             truth=np.concatenate([self.truth, np.full(len(id), GHOST, dtype=np.int64)]),
         )
 
-    def _with(self, truth: Integers | None = None, **columns: Any) -> DegradedTracks:
+    def _with(self, truth: Ints | None = None, **columns: Any) -> DegradedTracks:
         own = self.tracks
         id, frame = columns.get("id", own.id), columns.get("frame", own.frame)
         order = np.lexsort((id, frame))  # the order in which Trajectories will put the rows

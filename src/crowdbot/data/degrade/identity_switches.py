@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import parameter
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Ints
 
 from .degradation import Degradation, DegradedTracks
 
 __all__ = ["Encounter", "IdentitySwitches", "encounters"]
-
-Integers = NDArray[np.int64]
 
 
 class Encounter(NamedTuple):
@@ -54,7 +53,7 @@ def _frames(tracks: Trajectories) -> list[tuple[int, int]]:
 
 def _close(
     tracks: Trajectories, begin: int, end: int, instant: int, distance: float
-) -> tuple[Integers, Integers, Integers, NDArray[np.float64]]:
+) -> tuple[Ints, Ints, Ints, NDArray[np.float64]]:
     """Return instant, both ids and the squared distance of every close pair of the rows ``begin`` to ``end``."""
     id, place = tracks.id[begin:end], tracks.position[begin:end]
     people = ~np.isin(id, np.asarray(sorted(tracks.robots), dtype=np.int64))

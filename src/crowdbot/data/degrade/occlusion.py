@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, Walls, parameter
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Bools, Floats
 
 from .degradation import GHOST, Degradation, DegradedTracks
 
 __all__ = ["Occlusion", "occlusion_mask"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:

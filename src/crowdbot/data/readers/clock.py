@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data.rows import frame_step, where
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["RegularRows", "regular_rows", "row_rate_of_times"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 SLOWEST, FASTEST = 1000.0, 1e-4
 """Range of the time step [s]; other values are not times in seconds."""
@@ -30,8 +28,8 @@ TOLERANCE = 1e-6
 class RegularRows(NamedTuple):
     """Rows at regular times: frames from 0 on, frames per second [1/s], a note, and the time of frame 0 [s]."""
 
-    id: Integers
-    frame: Integers
+    id: Ints
+    frame: Ints
     x: Floats
     y: Floats
     fps: float
@@ -40,7 +38,7 @@ class RegularRows(NamedTuple):
 
 
 def regular_rows(
-    id: Integers, time: Floats, x: Floats, y: Floats, fps: float | None, name: str, line: Integers | None
+    id: Ints, time: Floats, x: Floats, y: Floats, fps: float | None, name: str, line: Ints | None
 ) -> RegularRows:
     """Return the rows at regular times.
 
@@ -83,7 +81,7 @@ def regular_rows(
     return RegularRows(id, frame.astype(np.int64), x, y, _short(1.0 / fitted), note, origin)
 
 
-def row_rate_of_times(id: Integers, frame: Integers, time: Floats) -> float | None:
+def row_rate_of_times(id: Ints, frame: Ints, time: Floats) -> float | None:
     """Return rows per second of a track [1/s], from the first and the last frame and their times."""
     known = np.flatnonzero(np.isfinite(time))
     if len(known) == 0:
@@ -94,7 +92,7 @@ def row_rate_of_times(id: Integers, frame: Integers, time: Floats) -> float | No
     return _short(float((frame[last] - frame[first]) / (time[last] - time[first]) / frame_step(id, frame)))
 
 
-def _step(id: Integers, time: Floats, name: str, line: Integers | None) -> float:
+def _step(id: Ints, time: Floats, name: str, line: Ints | None) -> float:
     """Return the time between rows of a track [s]."""
     order = np.lexsort((time, id))
     same = np.diff(id[order]) == 0
@@ -135,7 +133,7 @@ def _fit(since: Floats, dt: float, free: bool) -> tuple[Floats, float, float]:
         span *= 2.0
 
 
-def _interpolated(id: Integers, since: Floats, x: Floats, y: Floats, dt: float, off: float, name: str) -> RegularRows:
+def _interpolated(id: Ints, since: Floats, x: Floats, y: Floats, dt: float, off: float, name: str) -> RegularRows:
     """Return positions at multiples of the step, inside tracks but not inside gaps."""
     order = np.lexsort((since, id))
     id, since, x, y = id[order], since[order], x[order], y[order]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Floats
 
 from .assemble import assemble
 from .clock import regular_rows
@@ -23,7 +24,6 @@ from .reader import Reader, ReadOptions
 
 __all__ = ["VADERE", "VISWALK"]
 
-Floats = NDArray[np.float64]
 
 STEP = 0.4
 """Time step of tracks from footsteps [s], that of Vadere unless a scenario changes it."""

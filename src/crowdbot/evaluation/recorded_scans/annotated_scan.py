@@ -6,14 +6,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.sensors import Reading, Scan
+from crowdbot.typing import Floats
 
 __all__ = ["AnnotatedScan", "planar_scan"]
 
-Floats = NDArray[np.float64]
 
 NO_BOXES: Floats = np.zeros((0, 4))
 """Default of the boxes that do not count."""

@@ -8,17 +8,16 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.metrics import match_nearest
 from crowdbot.perception import Detector, Tracker
+from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan
 
 __all__ = ["DetectionScores", "score_detections", "score_positions"]
 
-Floats = NDArray[np.float64]
 
 LONGEST_GAP = 1.0
 """After a longer time without a scan [s], trackers begin again."""

@@ -7,16 +7,15 @@ import math
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan, planar_scan
 from .text_lines import read_text_lines
 
 __all__ = ["read_drow"]
 
-Floats = NDArray[np.float64]
 
 FIELD_OF_VIEW = math.radians(225.0)
 """Field of view of the scanner, a SICK S300."""

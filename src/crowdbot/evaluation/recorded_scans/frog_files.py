@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data import read_hdf5_arrays
+from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan, planar_scan
 
 __all__ = ["read_frog"]
 
-Floats = NDArray[np.float64]
 
 FIELD_OF_VIEW = math.radians(180.0)
 """Field of view of the scanner."""

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, SpatialPose
 from crowdbot.sensors import PointCloud
+from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan
 from .pcd_file import read_pcd
@@ -18,7 +18,6 @@ from .text_lines import read_text_lines
 
 __all__ = ["read_lcas"]
 
-Floats = NDArray[np.float64]
 
 HEIGHT = 0.8
 """Height of the scanner above the floor [m]."""

@@ -9,13 +9,12 @@ from pathlib import Path
 
 import numpy as np
 from numpy.lib import format as npy
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.typing import Floats
 
 __all__ = ["read_npy_row"]
 
-Floats = NDArray[np.float64]
 
 LARGEST = 131_072
 """Largest size of a file [bytes]."""

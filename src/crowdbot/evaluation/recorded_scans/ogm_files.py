@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, Pose, Walls
-from crowdbot.evaluation.tracking import LoggedReading, ReadingLog
+from crowdbot.evaluation.tracking.reading_log import LoggedReading, ReadingLog
+from crowdbot.typing import Floats
 
 from .annotated_scan import planar_scan
 from .npy_file import read_npy_row
 
 __all__ = ["OGM_PERIOD", "find_ogm_split", "read_ogm"]
 
-Floats = NDArray[np.float64]
 
 OGM_PERIOD = 0.1
 """Time between two scans [s]."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Walls, stream
 from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
-from crowdbot.evaluation.tracking import LoggedReading, ReadingLog
+from crowdbot.evaluation.tracking.reading_log import LoggedReading, ReadingLog
 from crowdbot.metrics import (
     occupancy_iou,
     range_error,
@@ -21,12 +21,12 @@ from crowdbot.metrics import (
 )
 from crowdbot.perception import ScanForecast, ScanPredictor, TrackedScene, hide_walls, walk_straight
 from crowdbot.sensors import Scan, planar_pose
+from crowdbot.typing import Floats
 
 from .scan_protocol import ScanProtocol
 
 __all__ = ["SCAN_SCORES", "ScanScores", "TruePeople", "score_scans"]
 
-Floats = NDArray[np.float64]
 
 DEFAULT = ScanProtocol()
 SCAN_SCORES = {

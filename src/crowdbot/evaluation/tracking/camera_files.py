@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Pose, SpatialPose, import_optional, parse_yaml
 from crowdbot.data import Recording
 from crowdbot.sensors import Lens
+from crowdbot.typing import Floats
 
 __all__ = [
     "CameraCalibration",
@@ -25,7 +26,6 @@ __all__ = [
     "read_true_paths",
 ]
 
-Floats = NDArray[np.float64]
 
 LARGEST = 1_000_000
 """Largest size of a file of calibration [bytes]."""

@@ -13,12 +13,12 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.perception import predict_uncertain
 from crowdbot.prediction import Predictor
+from crowdbot.typing import Floats
 
 from .tracking_run import TrackingRun
 
 __all__ = ["DOWNSTREAM_INPUTS", "DOWNSTREAM_SCORES", "estimate_downstream"]
 
-Floats = NDArray[np.float64]
 
 STEP, OBSERVE, AHEAD = 0.4, 8, 8
 """Time between rows [s], and numbers of observed and predicted rows."""

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls, did_you_mean
 from crowdbot.perception import Detector
@@ -19,7 +18,6 @@ from crowdbot.trials import Trial, check_trial, parse_trial
 
 __all__ = ["LoggedReading", "ReadingLog", "log_readings", "read_readings"]
 
-Floats = NDArray[np.float64]
 MIN_BEAMS = 3
 """People who return fewer beams are hidden: they need not be found."""
 

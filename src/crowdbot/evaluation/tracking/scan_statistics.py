@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.sensors import PointCloud, Reading, Scan, planar_pose
+from crowdbot.typing import Floats
 
 __all__ = ["BAND_LIMITS", "ReturnsOfPeople", "scan_statistics"]
 
-Floats = NDArray[np.float64]
 
 BAND_LIMITS = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 27.0)
 """Limits of the bands of distance [m]."""

@@ -7,18 +7,16 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.evaluation.intervals import Estimate, bootstrap_estimate
 from crowdbot.metrics import TRACKING_SCORES, TrackComparison, count_occlusions, tracking_scores
+from crowdbot.typing import Bools, Floats
 
 from .tracking_run import TrackingRun
 
 __all__ = ["STRATA", "estimate_strata"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 DISTANCES: tuple[float, ...] = (0.0, 3.0, 6.0, 9.0, math.inf)
 """Limits of the distance from the robot [m]."""

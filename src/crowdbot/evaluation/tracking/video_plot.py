@@ -6,16 +6,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.sensors import Lens
+from crowdbot.typing import Floats
 
 from .camera_files import TruePaths
 from .video_run import VideoForecast, VideoRun
 
 __all__ = ["plot_video_run"]
 
-Floats = NDArray[np.float64]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a")
 LAST = 4.0

@@ -14,12 +14,12 @@ from crowdbot.metrics import TrackComparison, tracking_scores
 from crowdbot.perception import BoxDetector, Detections, Tracker, Tracks
 from crowdbot.prediction import Live, Predictor
 from crowdbot.sensors import RgbImage, cast_plane
+from crowdbot.typing import Floats
 
 from .camera_files import CameraCalibration, RobotOdometry, TruePaths, iterate_frames
 
 __all__ = ["VideoForecast", "VideoRun", "track_video"]
 
-Floats = NDArray[np.float64]
 
 STEP = 0.4
 """Time between the rows of a forecast [s]."""

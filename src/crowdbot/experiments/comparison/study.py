@@ -8,19 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.recording import RecordedEpisode
 from crowdbot.simulation import OrderSource
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["COLORS", "EmulatedPerson", "Measure", "RecordedTrial", "Study", "TrialMeasures"]
 
-Floats = NDArray[np.float64]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Colours of the conditions (Okabe, Ito)."""

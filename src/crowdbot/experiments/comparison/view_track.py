@@ -6,18 +6,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.experiments.emulation import participant_agent
 from crowdbot.experiments.streams import RecordedStream, read_streams, read_trial_clock
 from crowdbot.metrics import GAZE_HALF_ANGLE, HEAD_HALF_ANGLE, gaze_dwell
 from crowdbot.simulation import AvatarOrder
+from crowdbot.typing import Floats
 
 from .study import RecordedTrial
 
 __all__ = ["ViewTrack", "looking_shares", "view_track"]
 
-Floats = NDArray[np.float64]
 GAZE_TYPE = "Gaze"
 GAZE_CHANNELS = ("direction_x", "direction_y", "direction_z")
 """Channels of a stream of the type ``Gaze``: the direction in the frame of the head (x ahead, y left, z up)."""

@@ -8,19 +8,18 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.experiments.comparison import EmulatedPerson, Measure, RecordedTrial, Study, TrialMeasures, draw_paths
 from crowdbot.experiments.emulation import EmulatedPedestrian, participant_agent
 from crowdbot.metrics import swept_clearance
+from crowdbot.typing import Floats
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["CrossingStudy"]
 
-Floats = NDArray[np.float64]
 PARALLEL = math.sin(math.radians(10.0))
 """Sine of the smallest angle between the two ways."""
 

@@ -7,19 +7,18 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import check_number, stream
 from crowdbot.models import ORCA
 from crowdbot.simulation import AvatarOrder, Order, Simulation
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 
 from .emulated_glances import EmulatedGlances
 from .participant_agent import participant_agent
 
 __all__ = ["EmulatedPedestrian", "PedestrianWalk"]
 
-Floats = NDArray[np.float64]
 ACCELERATION = 1.5
 """Largest change of the velocity [m/s2]."""
 STOP = 0.3

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from crowdbot.experiments.comparison import EmulatedPerson, Measure, RecordedTrial, Study, TrialMeasures, draw_paths
 from crowdbot.experiments.emulation import EmulatedPedestrian, participant_agent
 from crowdbot.metrics import swept_clearance
+from crowdbot.typing import Floats
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["EncounterStudy"]
 
-Floats = NDArray[np.float64]
 PERSONAL = 1.2
 """Personal distance of Hall (1966), The Hidden Dimension [m], between the centres."""
 ARRIVAL = 0.3

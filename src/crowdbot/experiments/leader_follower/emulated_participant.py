@@ -7,18 +7,16 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number, stream
 from crowdbot.experiments.emulation import EmulatedGlances, EmulatedWander
 from crowdbot.simulation import AvatarOrder, Order, Simulation
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 
 from .leading import roles_of
 
 __all__ = ["EmulatedParticipant", "EmulatedWalk"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.experiments.comparison import (
     COLORS,
@@ -19,6 +18,7 @@ from crowdbot.experiments.comparison import (
     read_trial_latency,
 )
 from crowdbot.metrics import coordination
+from crowdbot.typing import Floats
 
 from .emulated_participant import EmulatedParticipant
 from .leading import Roles, roles_of
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["LeaderFollowerStudy"]
-
-Floats = NDArray[np.float64]
 
 
 class LeaderFollowerStudy(Study):

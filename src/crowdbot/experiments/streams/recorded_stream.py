@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError
+from crowdbot.typing import Floats
 
 __all__ = ["COLUMNS", "STREAMS", "RecordedStream", "read_streams"]
 
-Floats = NDArray[np.float64]
 STREAMS = "streams"
 """Folder of the streams in the folder of a participant."""
 COLUMNS = ("stream_time", "offset", "clock")

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import EpisodeError
 from crowdbot.simulation import StepRecord
+from crowdbot.typing import Floats
 
 __all__ = ["CLOCK_FILE", "TrialClock", "TrialClockLog", "read_trial_clock"]
 
-Floats = NDArray[np.float64]
 CLOCK_FILE = "clock.csv"
 HEAD = "time,monotonic,utc\n"
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import SpatialPose
+from crowdbot.typing import Floats
 
 __all__ = ["kitti_line", "write_kitti"]
 
 Table = Mapping[str, NDArray[Any]]
-Floats = NDArray[np.float64]
 CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 """Rotation from x forward, y left, z up to the axes of KITTI: x right, y down, z forward."""
 PERSON, STRUCTURE, FLOOR, OTHER = 30, 50, 40, 99

@@ -7,19 +7,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.humans.activities import ACTIVITIES, FIRST_POSE
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.feet import Gaits
 from crowdbot.humans.people import People
 from crowdbot.humans.posture import Posture
+from crowdbot.typing import Floats
 
 from .clip import Clip
 
 __all__ = ["pose_activities"]
 
-Floats = NDArray[np.float64]
 HANDS = {
     "carry": (0.21, 0.085, -0.215), "read": (0.185, 0.045, -0.135), "pram": (0.25, 0.115, -0.235),
     "wheelchair": (0.25, 0.125, -0.245),

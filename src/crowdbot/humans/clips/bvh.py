@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["Bvh", "read_bvh"]
 
-Floats = NDArray[np.float64]
 MOST_JOINTS, MOST_FRAMES, MOST_CHARACTERS = 400, 20_000, 200_000_000
 CHANNELS = {f"{axis}{kind}": (k, kind) for kind in ("position", "rotation") for k, axis in enumerate("XYZ")}
 

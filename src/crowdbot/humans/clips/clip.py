@@ -7,14 +7,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.humans.asset import shapes
+from crowdbot.typing import Floats
 
 __all__ = ["SUFFIX", "Clip", "read_clip", "write_clip"]
 
-Floats = NDArray[np.float64]
 SUFFIX = ".clip"
 FORMAT = "crowdbot-clip-1"
 MOST_FRAMES, MOST_BYTES = 3000, 40_000_000

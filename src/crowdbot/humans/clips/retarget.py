@@ -7,17 +7,16 @@ import math
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.humans.asset import shapes
+from crowdbot.typing import Floats
 
 from .bvh import Bvh
 from .clip import MOST_FRAMES, Clip
 
 __all__ = ["NEEDED", "clip_of", "map_bones"]
 
-Floats = NDArray[np.float64]
 WALKING = 0.3
 """Speed [leg lengths per s] from which on a motion is a gait."""
 RATE = 60.0

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, storable
 from crowdbot.humans.asset import shapes
@@ -20,11 +19,10 @@ from crowdbot.humans.people import People
 from crowdbot.humans.posture import Posture, place_chain
 from crowdbot.humans.quaternions import from_matrix, multiply, to_matrix
 from crowdbot.humans.vectors import Vector, normalize, rotate, write_frame, write_turn
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["LYING", "FallPose", "blend_fall_poses", "fall_postures"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 LYING = 0.5 * math.pi
 """Tilt [rad] of a lying person."""
 PROTECTED = math.radians(50.0)

@@ -12,11 +12,10 @@ from crowdbot.core import stream
 from crowdbot.humans.asset import read_asset, shapes
 from crowdbot.humans.person import Person
 from crowdbot.humans.wardrobe import Outfit, region_colors
+from crowdbot.typing import Bytes, Floats
 
 __all__ = ["CHARTS", "body_uv", "paint_body"]
 
-Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
 SIDE = 512
 """Side [pixels] of the picture of a person."""
 CHARTS = {

@@ -6,17 +6,15 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.humans.asset import Shapes, shapes
 from crowdbot.humans.limbs import LIMBS, fit_capsules, main_bones, rest_capsules
+from crowdbot.typing import Floats, Ints
 
 from .rigged_body import RiggedBody
 
 __all__ = ["BodyRows", "body_rows", "included_rows"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 SOLE = 0.015
 """Height [m] of the points of the foot that belong to the sole."""
 FEWEST = 12

@@ -7,16 +7,14 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import GltfFile, InputError
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.clips.retarget import NEEDED, map_bones
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["Character", "read_character"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 MOST_TRIANGLES, MOST_JOINTS = 400_000, 1000
 
 

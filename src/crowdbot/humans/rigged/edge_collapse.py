@@ -8,12 +8,11 @@ from __future__ import annotations
 import heapq
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["EdgeCollapse"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Point = tuple[float, ...]
 BORDER = 30.0
 """Weight of planes that hold the lines between labels, over those of the faces."""

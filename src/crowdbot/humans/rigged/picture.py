@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import GltfFile, InputError
+from crowdbot.typing import Floats
 
 from .character import Character
 from .rigged_body import PICTURE
 
 __all__ = ["CharacterPicture", "character_picture", "material_picture"]
 
-Floats = NDArray[np.float64]
 MOST_PIXELS = 70_000_000
 MOST_MATERIALS = 64
 FORMATS = ("PNG", "JPEG", "WEBP")

@@ -6,16 +6,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.humans.asset import shapes
+from crowdbot.typing import Floats
 
 from .character import Character
 
 __all__ = ["RestPose", "rest_pose"]
 
-Floats = NDArray[np.float64]
 HEIGHTS = (0.5, 2.5)
 LEANING = math.radians(25.0)
 """Largest angle of the trunk from upright in the file."""

@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.humans.asset import LEVELS, shapes
+from crowdbot.typing import Bytes, Floats, Ints
 
 __all__ = ["BODY_NAME", "RiggedBody", "RiggedLevel", "read_body", "write_body"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bytes = NDArray[np.uint8]
 BODY_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}\.body")
 """Names of body files: files beside a trial."""
 FORMAT = "crowdbot-body-1"

@@ -12,14 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.humans.asset import shapes
+from crowdbot.typing import Floats, Ints
 
 from .edge_collapse import EdgeCollapse
 from .rigged_body import RiggedLevel
 
 __all__ = ["TRIANGLES", "detail_levels"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 TRIANGLES = (30_000, 3000, 900)
 """Largest number of triangles of each level of detail."""
 DENSE = 10_000

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from crowdbot.metrics.contacts import MARGIN, contact_stretches
 from crowdbot.metrics.proximity import ZONES
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["comfort_metrics", "personal_space_cost", "zone_violations"]
 
-Floats = NDArray[np.float64]
 DISCOMFORT = 0.2
 """Clearance [m] below which a step is uncomfortable (CrowdNav)."""
 WEIGHT = 0.5

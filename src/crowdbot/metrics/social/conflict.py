@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["conflict_metrics", "conflict_shares", "fear_and_panic"]
 
-Floats = NDArray[np.float64]
 SMALL = 0.01
 """Times [s] and speeds below this are 0 (SocNavData2026)."""
 MOST_FEAR = 10.0

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 __all__ = ["Coordination", "coordination"]
 
-Floats = NDArray[np.float64]
 
 LARGEST_GAP = 1.0 / 4.0
 """Part of a period between two samples of the leader across which the leader is not interpolated."""

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from crowdbot.metrics.agent_states import AgentLog
 from crowdbot.metrics.motion import jerk, path_length
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["crowd_effect", "empty_scene_ratios"]
 
-Floats = NDArray[np.float64]
 Measure = Callable[[Floats, Floats, Floats], float]
 NEIGHBOR = 5.0
 """People who come closer to the robot than this [m], between centres, are its neighbours."""

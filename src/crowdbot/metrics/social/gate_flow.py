@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.agent_states import AgentLog
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["count_crossings", "find_gate", "gate_metrics"]
 
-Floats = NDArray[np.float64]
 REACH = 5.0
 """Largest distance [m] of an end of the gate from the place on the path."""
 STEP = 0.25

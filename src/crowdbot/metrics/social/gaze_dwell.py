@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, check_number
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["GAZE_HALF_ANGLE", "HEAD_HALF_ANGLE", "GazeDwell", "gaze_dwell"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 HEAD_HALF_ANGLE = math.radians(15.0)
 """Half angle of the cone about the direction of a head [rad]. Most natural saccades are of 15 degrees or less (Bahill,

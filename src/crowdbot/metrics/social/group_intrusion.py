@@ -6,15 +6,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.proximity import ZONES
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["detect_groups", "distance_to_hull", "group_metrics"]
 
-Floats = NDArray[np.float64]
 TOGETHER = 1.5
 """Mean distance of two members of a group [m] at most ..."""
 ALIKE = 0.3

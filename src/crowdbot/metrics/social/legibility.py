@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["legibility", "legibility_metrics"]
 
-Floats = NDArray[np.float64]
 ANGLES = (-90.0, -45.0, 0.0, 45.0, 90.0)
 """Directions [degrees] of possible goals as seen from the start, relative to the true one."""
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.motion import JERK_STEP, jerk, longest_stall
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["accelerations", "motion_metrics", "path_irregularity", "spectral_arc_length"]
 
-Floats = NDArray[np.float64]
 FREEZE = 5.0
 """Time at rest [s] above which the robot is frozen."""
 CUT_OFF = 10.0

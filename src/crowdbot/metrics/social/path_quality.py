@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.motion import heading_change, path_length
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["path_metrics", "sample_path", "time_warping_distance"]
 
-Floats = NDArray[np.float64]
 SPACING = 0.25
 """Distance [m] of the points of both paths that dynamic time warping compares."""
 

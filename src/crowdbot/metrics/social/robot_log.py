@@ -9,20 +9,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.metrics.agent_states import AgentLog
 from crowdbot.metrics.contacts import ContactEvent, contact_events
 from crowdbot.metrics.motion import STALL_SPEED
 from crowdbot.metrics.proximity import clearance, swept_clearance, time_to_collision
+from crowdbot.typing import Bools, Floats
 
 from .body_region import BodyRegion
 
 __all__ = ["RobotLog"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.proximity import ZONES
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 from .voronoi_density import voronoi_metrics
 
 __all__ = ["density_metrics", "person_metrics"]
 
-Floats = NDArray[np.float64]
 RADII = {"2_5m": 2.5, "3m": 3.0, "5m": 5.0, "10m": 10.0}
 """Radii [m] of densities (CrowdBot)."""
 LONG = 0.5

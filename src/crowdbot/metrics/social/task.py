@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.metrics.contacts import contact_stretches
 from crowdbot.metrics.proximity import swept_distance, wall_clearance
 from crowdbot.metrics.step_clearance import step_wall_clearance
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["count_failures_to_progress", "task_metrics"]
 
-Floats = NDArray[np.float64]
 PROGRESS = 0.2
 """Decrease of the distance to the goal [m] that counts as progress ..."""
 PROGRESS_TIME = 5.0

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
 __all__ = ["voronoi_density", "voronoi_metrics"]
 
-Floats = NDArray[np.float64]
 RADIUS = 2.5
 """Radius [m] of the disc around the robot, and of the disc around a person that holds the cell."""
 RAYS = 120

@@ -8,11 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .track_comparison import TrackComparison
 
 __all__ = ["Hota", "hota"]
 
-Floats = NDArray[np.float64]
 THRESHOLDS = np.arange(0.05, 0.99, 0.05)
 """Thresholds of similarity."""
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, check_number
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["OccupancyGrid", "occupancy_iou", "range_error", "structural_similarity", "weighted_squared_error"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .track_comparison import TrackComparison
 
 __all__ = ["gospa", "ospa"]
-
-Floats = NDArray[np.float64]
 
 
 def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Floats:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from crowdbot.typing import Floats
 
 __all__ = ["scan_time_to_collision"]
 
-Floats = NDArray[np.float64]
 
 SLOWEST = 0.05
 """A robot that is slower [m/s] has no time to collision."""

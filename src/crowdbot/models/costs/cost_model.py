@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
 from crowdbot.models.model import (
@@ -17,6 +16,7 @@ from crowdbot.models.model import (
     rows,
     speed_limit,
 )
+from crowdbot.typing import Floats
 
 from .cost_terms import HalfPlanes
 from .neighbor_view import NeighborView
@@ -24,7 +24,6 @@ from .velocity_cost import VelocityCost, length, suitable_optimiser
 
 __all__ = ["CostModel"]
 
-Floats = NDArray[np.float64]
 
 OPTIMISERS = ("natural", "gradient", "sampling", "closed-form")
 SAMPLES = ("polar", "umans", "random")

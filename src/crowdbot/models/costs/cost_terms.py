@@ -12,6 +12,7 @@ from crowdbot.core import PerAgent, parameter
 from crowdbot.models.model import CrowdModel, rows
 from crowdbot.models.velocity_obstacles.linear_program import best_velocity
 from crowdbot.models.velocity_obstacles.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
+from crowdbot.typing import Floats
 
 from .neighbor_view import NeighborView
 from .velocity_cost import Force, VelocityCost, length
@@ -31,7 +32,6 @@ __all__ = [
     "ReciprocalObstacles",
 ]
 
-Floats = NDArray[np.float64]
 
 EDGE = 1e-9
 """Tolerance [m/s] outside of a half plane."""

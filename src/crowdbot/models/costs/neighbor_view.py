@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Neighbors, PerAgent, Scene, per_agent
 from crowdbot.models.model import rows
+from crowdbot.typing import Floats
 
 __all__ = ["NeighborView"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_parameters
+from crowdbot.typing import Floats
 
 from .neighbor_view import NeighborView
 
 __all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
 
-Floats = NDArray[np.float64]
 
 STEP = 1e-4
 """Half step [m/s] of numerical gradients."""

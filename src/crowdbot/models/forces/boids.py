@@ -31,12 +31,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["Boids"]
 
-Floats = NDArray[np.float64]
 
 VARIANTS = ("predictive", "crowdbot")
 WALL_REACH = math.sqrt(2.0)

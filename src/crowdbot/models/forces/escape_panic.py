@@ -32,12 +32,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.typing import Floats
 
 from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["EscapePanic"]
 
-Floats = NDArray[np.float64]
 
 VARIANTS = ("textbook", "crowdbot")
 WALL_REACH = math.sqrt(2.0)

@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene, kernel
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["Groups", "group_acceleration", "groups_of", "pysocialforce_group_acceleration"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Groups(NamedTuple):

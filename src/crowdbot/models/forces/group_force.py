@@ -30,14 +30,13 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.typing import Floats, Ints
 
 from .group_cohesion import Groups, group_acceleration, groups_of, pysocialforce_group_acceleration
 from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["GroupForce"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 VARIANTS = ("moussaid", "pysocialforce")
 ARRIVED = 0.5

@@ -19,12 +19,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["PowerLaw"]
 
-Floats = NDArray[np.float64]
 
 SHRUNK = 0.99
 """Reach of overlapping bodies as a fraction of their distance, which gives them a time to collision."""

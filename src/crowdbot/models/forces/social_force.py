@@ -30,10 +30,10 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.typing import Floats
 
 __all__ = ["SocialForce"]
 
-Floats = NDArray[np.float64]
 
 VARIANTS = ("gradient", "umans2018")
 UMANS_LOOK_AHEAD = 0.5

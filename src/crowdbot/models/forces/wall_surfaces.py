@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Walls, kernel
+from crowdbot.typing import Floats
 
 __all__ = ["WallSurfaces", "is_nearest_corner", "surface_distance", "wall_surfaces"]
-
-Floats = NDArray[np.float64]
 
 
 class WallSurfaces(NamedTuple):

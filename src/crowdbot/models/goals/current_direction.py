@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_parameters, parameter
 from crowdbot.data import Windows, steady_velocity
+from crowdbot.typing import Floats
 
 from .goal import Goal
 from .headings import extrapolate
 
 __all__ = ["CurrentDirection"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Walls, check_parameters, parameter
 from crowdbot.data import PlaceLayout, Trajectories, Windows, fill_gaps, steady_velocity
+from crowdbot.typing import Floats
 
 from .exits import hull, openings, track_ends
 from .goal import Choices, Goal
@@ -19,7 +20,6 @@ from .routes import Routes
 
 __all__ = ["EnvironmentLayout"]
 
-Floats = NDArray[np.float64]
 
 ZIEBART = Paper(
     "Ziebart, Ratliff, Gallagher, Mertz, Peterson, Bagnell, Hebert, Dey, Srinivasa",

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Walls
 from crowdbot.data import Trajectories
+from crowdbot.typing import Floats, Ints
 
 from .headings import length
 
 __all__ = ["clusters", "hull", "openings", "track_ends"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MOST_ENDS = 3000
 """Maximum number of end points to cluster; above it, every k-th point is used."""
@@ -27,7 +26,7 @@ NARROWEST = 0.5
 """Minimum width of an opening [m], wide enough for a person."""
 
 
-def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_]]:
+def track_ends(tracks: Trajectories) -> tuple[Ints, Floats, NDArray[np.bool_]]:
     """Return the ids of people ``[P]``, the ends of their tracks ``[P, 2]`` [m], and whether a track is complete.
 
     Tracks that reach the end of the recording are truncated: their end is not a destination.

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, kebab_case
 from crowdbot.data import PlaceLayout, Trajectories, Windows, steady_velocity
+from crowdbot.typing import Floats
 
 __all__ = ["Choices", "Goal"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Windows, observed_velocity
+from crowdbot.typing import Floats
 
 from .goal import Goal
 
 __all__ = ["GroundTruth"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

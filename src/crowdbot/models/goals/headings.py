@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 __all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate", "unit"]
 
-Floats = NDArray[np.float64]
 
 MOVING = 0.2
 """Minimum speed [m/s] for a valid heading, above the sway of standing people."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, check_parameters, parameter
 from crowdbot.data import Trajectories, Windows
+from crowdbot.typing import Floats
 
 from .exits import clusters, track_ends
 from .goal import Choices, Goal
@@ -19,7 +20,6 @@ from .turn_histogram import BINS, TurnSamples, accumulate, median_turn
 
 __all__ = ["LearnedDestinations"]
 
-Floats = NDArray[np.float64]
 
 BENNEWITZ = Paper(
     "Bennewitz, Burgard, Cielniak, Thrun",

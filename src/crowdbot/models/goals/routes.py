@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Walls, kernel
+from crowdbot.typing import Bools, Floats
 
 from .headings import length, unit
 
 __all__ = ["Routes", "mark_visible"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 CLEARANCE = 0.4
 """Distance at which people pass corners [m]."""

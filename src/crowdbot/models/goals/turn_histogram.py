@@ -6,14 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["BINS", "TurnSamples", "accumulate", "median_turn"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 WIDEST = math.pi / 2
 """Largest turn in the histogram [rad]."""
@@ -38,7 +36,7 @@ class TurnSamples(NamedTuple):
     turn: Floats
     worth: Floats
     straight: Floats
-    exit: Integers
+    exit: Ints
 
 
 @kernel

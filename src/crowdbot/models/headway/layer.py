@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Neighbors, PerAgent, Scene, parameter, per_agent, unread_fields
 from crowdbot.core.neighbors import nearest
@@ -22,13 +21,13 @@ from crowdbot.models.agent_rows import begin_rows
 from crowdbot.models.mixture import Mixture
 from crowdbot.models.model import CrowdModel, begin_step, launch, rows
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.typing import Floats
 
 from .robot_avoidance import AVOIDANCE, avoid_robots, avoid_robots_part, robots_in
 from .space_ahead import HeadwayRows, limit_speeds, limit_speeds_part
 
 __all__ = ["HeadwayLayer", "arguments_of", "copy_field", "find_layered", "make_class", "with_headway"]
 
-Floats = NDArray[np.float64]
 
 MOST = 16
 """Number of nearest agents that are compared: more do not fit around a body within the corridor."""

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, kernel, prange
 from crowdbot.models.agent_rows import RADIUS, VX, VY, WISH_X, WISH_Y, X, Y
 from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["AVOIDANCE", "avoid_robots", "avoid_robots_part", "robots_in"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 AVOIDANCE = ("robot_gap", "robot_horizon", "robot_weight", "robot_slowing", "robot_behind", "robot_caution")
 """Parameters of the layer, in the order of the columns that the kernel gets; the caution is not read in a step."""
@@ -45,7 +44,7 @@ WALL_GAP = 0.1
 WALL_WEIGHT = 4.0
 
 
-def robots_in(robot: NDArray[np.bool_]) -> Integers:
+def robots_in(robot: NDArray[np.bool_]) -> Ints:
     """Return the indices ``[E, R]`` of the True agents of a mask ``[E, A]``, -1 for none.
 
     >>> robots_in(np.array([[False, True], [False, False]])).tolist()
@@ -58,7 +57,7 @@ def robots_in(robot: NDArray[np.bool_]) -> Integers:
 
 @kernel(parallel=True)
 def avoid_robots(
-    agents: Floats, walking: NDArray[np.bool_], robots: Integers, laws: Floats, walls: Floats, out: Floats
+    agents: Floats, walking: NDArray[np.bool_], robots: Ints, laws: Floats, walls: Floats, out: Floats
 ) -> None:
     """Write the desired velocity [m/s] of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
@@ -67,7 +66,7 @@ def avoid_robots(
 
 @kernel
 def avoid_robots_part(
-    begin: int, end: int, agents: Floats, walking: NDArray[np.bool_], robots: Integers, laws: Floats, walls: Floats,
+    begin: int, end: int, agents: Floats, walking: NDArray[np.bool_], robots: Ints, laws: Floats, walls: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """Write the desired velocity [m/s] of the rows ``begin`` to ``end``."""
@@ -92,7 +91,7 @@ def avoid_robots_part(
 
 @kernel
 def _robots_near(
-    agents: Floats, robots: Integers, row: int, first: int, law: Floats, wish: float, walls: Floats, wall: Integers,
+    agents: Floats, robots: Ints, row: int, first: int, law: Floats, wish: float, walls: Floats, wall: Ints,
     near: Floats,
 ) -> int:  # fmt: skip
     """Write the robots that a person sees and may come close to within the horizon; return their number."""
@@ -141,7 +140,7 @@ def _closeness(near: Floats, count: int, vx: float, vy: float) -> float:
 
 
 @kernel
-def _wall_cost(person: Floats, vx: float, vy: float, walls: Floats, wall: Integers, held: int) -> float:
+def _wall_cost(person: Floats, vx: float, vy: float, walls: Floats, wall: Ints, held: int) -> float:
     """Return the cost of walls on the way of a person with a velocity."""
     x, y, radius = person[X], person[Y], person[RADIUS] + WALL_GAP
     total = 0.0
@@ -165,7 +164,7 @@ def _wall_cost(person: Floats, vx: float, vy: float, walls: Floats, wall: Intege
 
 @kernel
 def _best_velocity(
-    person: Floats, law: Floats, near: Floats, count: int, walls: Floats, wall: Integers, held: int, wish: float
+    person: Floats, law: Floats, near: Floats, count: int, walls: Floats, wall: Ints, held: int, wish: float
 ) -> tuple[float, float]:
     """Return the velocity [m/s] of least cost: turn, loss of speed, closeness to robots and walls."""
     most = SPEEDS * FINER
@@ -218,7 +217,7 @@ def _turned(person: Floats, turn: int, speed: int) -> tuple[float, float]:
 @kernel
 def _cost(
     turn: int, speed: int, person: Floats, weight: float, slowing: float, near: Floats, count: int, walls: Floats,
-    wall: Integers, held: int, wish: float,
+    wall: Ints, held: int, wish: float,
 ) -> float:  # fmt: skip
     """Return the cost of a turn and of a share of the desired speed."""
     vx, vy = _turned(person, turn, speed)

@@ -20,12 +20,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, way_to, within
 
 __all__ = ["AnticipationVelocity"]
 
-Floats = NDArray[np.float64]
 
 CREEP = 0.01
 """Below this speed [m/s] agents shuffle: forward, backward or not at all."""

@@ -14,11 +14,10 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.agent_rows import LIMIT, RADIUS, WISH_X, WISH_Y, X, Y, begin_rows
 from crowdbot.models.model import CrowdModel, launch, rows
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["CollisionFreeSpeed", "is_hidden", "nearest_on_segment", "push_by_walls", "way_to", "within"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 STEEPEST = 100.0
 """Upper limit of exponents, against overflow; only the direction of a strong repulsion matters."""

@@ -21,12 +21,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, push_by_walls, way_to, within
 
 __all__ = ["CollisionFreeSpeedV3"]
 
-Floats = NDArray[np.float64]
 
 MEMORY = "steering_angle"
 """Name in the memory of a scene: angle [rad] of each agent from the direction past the walls to its heading."""

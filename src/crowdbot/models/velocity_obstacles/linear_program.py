@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["best_velocity", "clip_speed"]
 
-Array = NDArray[np.float64]
 
 PARALLEL = 1e-5
 """Lines count as parallel if the sine of their angle is at most this."""
@@ -22,7 +19,7 @@ PARALLEL = 1e-5
 
 @kernel
 def best_velocity(
-    lines: Array, fixed: int, count: int, speed: float, wish_x: float, wish_y: float, spare: Array
+    lines: Floats, fixed: int, count: int, speed: float, wish_x: float, wish_y: float, spare: Floats
 ) -> tuple[float, float]:
     """Return the velocity nearest to the desired one, at most ``speed``, on the left of every line.
 
@@ -47,7 +44,7 @@ def clip_speed(x: float, y: float, speed: float) -> tuple[float, float]:
 
 @kernel
 def _solve_on_line(
-    lines: Array, k: int, speed: float, wish_x: float, wish_y: float, along: bool
+    lines: Floats, k: int, speed: float, wish_x: float, wish_y: float, along: bool
 ) -> tuple[bool, float, float]:
     """Return whether line k has a permitted point, and the best: nearest to the desired, or farthest ``along`` it."""
     x, y, ux, uy = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
@@ -77,7 +74,7 @@ def _solve_on_line(
 
 @kernel
 def _solve_plane(
-    lines: Array, count: int, speed: float, wish_x: float, wish_y: float, along: bool, x: float, y: float
+    lines: Floats, count: int, speed: float, wish_x: float, wish_y: float, along: bool, x: float, y: float
 ) -> tuple[int, float, float]:
     """Add the lines one by one, from the best point x, y of the disc; return the first that fails, or ``count``."""
     for k in range(count):
@@ -91,7 +88,7 @@ def _solve_plane(
 
 @kernel
 def _minimize_violation(
-    lines: Array, fixed: int, count: int, failed: int, speed: float, x: float, y: float, spare: Array
+    lines: Floats, fixed: int, count: int, failed: int, speed: float, x: float, y: float, spare: Floats
 ) -> tuple[float, float]:
     """Minimise the violation of each worst line, from the failed one on; earlier lines are not violated more."""
     for k in range(fixed):
@@ -113,7 +110,7 @@ def _minimize_violation(
 
 
 @kernel
-def _write_bisector(lines: Array, i: int, j: int, spare: Array, at: int) -> int:
+def _write_bisector(lines: Floats, i: int, j: int, spare: Floats, at: int) -> int:
     """Write the line on which lines i and j are equally violated to ``spare[at]``; return 1, or 0 if there is none."""
     x, y, ux, uy = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]
     ox, oy, vx, vy = lines[j, 0], lines[j, 1], lines[j, 2], lines[j, 3]

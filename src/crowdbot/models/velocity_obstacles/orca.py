@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.agent_rows import LIMIT, RADIUS, VX, VY, WISH_X, WISH_Y, X, Y, begin_rows
 from crowdbot.models.model import CrowdModel, launch
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.typing import Bools, Floats
 
 from .linear_program import best_velocity, clip_speed
 from .orca_lines import (
@@ -30,8 +30,6 @@ from .orca_lines import (
 
 __all__ = ["ORCA"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 SHORTEST = 1e-3
 """Minimum time horizon [s]; a horizon of 0 has no line."""
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Walls, kernel
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.agent_rows import RADIUS, VX, VY, X, Y
+from crowdbot.typing import Floats
 
 __all__ = [
     "BLOCK",
@@ -28,7 +29,6 @@ __all__ = [
     "edges_of",
 ]
 
-Array = NDArray[np.float64]
 
 COVERED = 1e-5
 """An edge is skipped if earlier lines cover it up to this tolerance [m/s]."""
@@ -44,9 +44,9 @@ the agent, and 4 rows of the line."""
 class Edges(NamedTuple):
     """Walls for kernels: edge k leads from corner k to corner ``next[k]``, with the solid on its left."""
 
-    corner: Array
+    corner: Floats
     """``[M, 2]`` start of the edge [m]."""
-    direction: Array
+    direction: Floats
     """``[M, 2]`` unit direction of the edge."""
     previous: NDArray[np.int64]
     next: NDArray[np.int64]
@@ -73,7 +73,7 @@ def _edges(walls: Walls) -> Edges:
 
 @kernel
 def avoid_agent(
-    lines: Array,
+    lines: Floats,
     at: int,
     x: float,
     y: float,
@@ -122,7 +122,7 @@ def avoid_agent(
 
 @kernel(inline=True)
 def avoid_agents(
-    block: Array, held: int, vx: float, vy: float, horizon: float, dt: float, best_x: float, best_y: float
+    block: Floats, held: int, vx: float, vy: float, horizon: float, dt: float, best_x: float, best_y: float
 ) -> int:
     """Write the lines of neighbours to the last rows of a block: the results of :func:`avoid_agent`.
 
@@ -194,7 +194,13 @@ def _tangent(px: float, py: float, radius: float, turn: float) -> tuple[float, f
 
 @kernel
 def edges_in_reach(
-    corner: Array, following: NDArray[np.int64], x: float, y: float, reach: float, found: NDArray[np.int64], gap2: Array
+    corner: Floats,
+    following: NDArray[np.int64],
+    x: float,
+    y: float,
+    reach: float,
+    found: NDArray[np.int64],
+    gap2: Floats,
 ) -> int:
     """Find the edges within ``reach`` that face x, y with their free side, nearest first; return their number."""
     held = 0
@@ -218,11 +224,11 @@ def edges_in_reach(
 
 @kernel
 def avoid_edge(
-    lines: Array,
+    lines: Floats,
     at: int,
     a: int,
-    corner: Array,
-    direction: Array,
+    corner: Floats,
+    direction: Floats,
     previous: NDArray[np.int64],
     following: NDArray[np.int64],
     convex: NDArray[np.bool_],
@@ -262,7 +268,7 @@ def avoid_edge(
 
 @kernel
 def _is_covered(
-    lines: Array, count: int, ax: float, ay: float, bx: float, by: float, radius: float, inverse: float
+    lines: Floats, count: int, ax: float, ay: float, bx: float, by: float, radius: float, inverse: float
 ) -> bool:
     """Return whether an earlier line already excludes contact with both ends of an edge."""
     for k in range(count):
@@ -275,7 +281,7 @@ def _is_covered(
 
 
 @kernel
-def _write_stop_line(lines: Array, at: int, ux: float, uy: float) -> int:
+def _write_stop_line(lines: Floats, at: int, ux: float, uy: float) -> int:
     """Write a line through zero velocity, for a wall in contact; return 1, or 0 without a direction."""
     length = math.sqrt(ux * ux + uy * uy)
     if length == 0.0:
@@ -294,7 +300,7 @@ def _cone_legs(
     a: int,
     left: int,
     right: int,
-    direction: Array,
+    direction: Floats,
     previous: NDArray[np.int64],
     convex: NDArray[np.bool_],
     radius: float,
@@ -320,13 +326,13 @@ def _cone_legs(
 
 @kernel
 def _write_cone_line(
-    lines: Array,
+    lines: Floats,
     at: int,
     a: int,
     left: int,
     right: int,
-    corner: Array,
-    direction: Array,
+    corner: Floats,
+    direction: Floats,
     previous: NDArray[np.int64],
     convex: NDArray[np.bool_],
     x: float,
@@ -364,7 +370,7 @@ def _write_cone_line(
 
 
 @kernel
-def _write_disc_line(lines: Array, at: int, cx: float, cy: float, vx: float, vy: float, reach: float) -> int:
+def _write_disc_line(lines: Floats, at: int, cx: float, cy: float, vx: float, vy: float, reach: float) -> int:
     """Write the tangent of the disc around c at the point nearest to the velocity."""
     length = math.sqrt((vx - cx) ** 2 + (vy - cy) ** 2)
     nx, ny = (vx - cx) / length, (vy - cy) / length
@@ -374,7 +380,7 @@ def _write_disc_line(lines: Array, at: int, cx: float, cy: float, vx: float, vy:
 
 
 @kernel
-def _write_offset_line(lines: Array, at: int, cx: float, cy: float, ux: float, uy: float, reach: float) -> int:
+def _write_offset_line(lines: Floats, at: int, cx: float, cy: float, ux: float, uy: float, reach: float) -> int:
     """Write the line with direction u at distance ``reach`` to the left of c."""
     lines[at, 0], lines[at, 1] = cx - reach * uy, cy + reach * ux
     lines[at, 2], lines[at, 3] = ux, uy

@@ -20,6 +20,7 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.typing import Floats, Ints
 
 from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
 from .vog_fellows import MOST_FELLOWS, pick_fellows, unit, walking_direction
@@ -27,8 +28,6 @@ from .vog_samples import SAMPLES, SLOW, keep_best, sample_around, sample_first
 
 __all__ = ["VOG"]
 
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 MEMORY = "vog_calm"
 """Name in the memory of a scene: calm of each agent, which grows with the time since its last large velocity change."""
@@ -57,7 +56,7 @@ class _Crowd(NamedTuple):
     wall_horizon: Floats
     preference: Floats
     group_weight: Floats
-    group_neighbors: Rows
+    group_neighbors: Ints
     group_radius: Floats
     group_distance: Floats
     group_horizon: Floats
@@ -68,9 +67,9 @@ class _Crowd(NamedTuple):
 class _Groups(NamedTuple):
     """Group members by row: the group of row k is ``member[first[k]:last[k]]``, including the row itself."""
 
-    member: Rows
-    first: Rows
-    last: Rows
+    member: Ints
+    first: Ints
+    last: Ints
 
 
 @kernel(parallel=True)
@@ -275,7 +274,7 @@ class VOG(CrowdModel):
         return out
 
 
-def _groups(group: Rows, seen: NDArray[np.bool_]) -> _Groups:
+def _groups(group: Ints, seen: NDArray[np.bool_]) -> _Groups:
     """Return the members of each group, by environment; negative numbers are no group."""
     E, A = group.shape
     first, last = np.zeros(E * A, dtype=np.int64), np.zeros(E * A, dtype=np.int64)

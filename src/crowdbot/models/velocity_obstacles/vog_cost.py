@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment, time_to_segment
+from crowdbot.typing import Floats
 
 __all__ = ["CONE", "DIRECTED", "FELLOW", "collision", "companion", "cone", "fellowship", "own_way", "walls_near"]
 
-Floats = NDArray[np.float64]
 
 CONE = 10
 """Columns of a cone: direction to the neighbour (2), cap, radius, near tangent (normal 2, offset), far tangent (3)."""

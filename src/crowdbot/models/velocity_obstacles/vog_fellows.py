@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 from .vog_cost import DIRECTED
 
 __all__ = ["MOST_FELLOWS", "pick_fellows", "unit", "walking_direction"]
 
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 MOST_FELLOWS = 16
 """Maximum number of group members considered."""
@@ -28,8 +24,8 @@ POINTED = 0.1
 
 @kernel
 def pick_fellows(
-    row: int, mates: Rows, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
-    found: Rows, key: Floats,
+    row: int, mates: Ints, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
+    found: Ints, key: Floats,
 ) -> int:  # fmt: skip
     """Find the group members to stay with: near, ahead and in the same direction; return their number."""
     held = 0

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
 __all__ = ["SAMPLES", "SLOW", "keep_best", "sample_around", "sample_first"]
 
-Floats = NDArray[np.float64]
 
 SAMPLES = 48
 """Maximum number of samples per level."""

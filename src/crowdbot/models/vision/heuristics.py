@@ -20,11 +20,10 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["Heuristics"]
 
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 ANGLES = 61
 """Number of candidate directions: the desired one and as many on each side."""
@@ -104,7 +103,7 @@ def _contact_acceleration(dx: float, dy: float, reach: float, stiffness: float, 
 
 @kernel
 def _write_free_paths(
-    row: int, others: Rows, place: Floats, velocity: Floats, radius: Floats, walls: Floats, sight: float, speed: float,
+    row: int, others: Ints, place: Floats, velocity: Floats, radius: Floats, walls: Floats, sight: float, speed: float,
     fan: Floats, free: Floats,
 ) -> None:  # fmt: skip
     """Write the path length at ``speed`` before a contact in each direction to ``free``, at most ``sight``."""
@@ -133,7 +132,7 @@ def _most_direct(sight: float, fan: Floats, free: Floats) -> int:
 
 
 @kernel
-def _free_distance(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
+def _free_distance(row: int, others: Ints, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
     """Return the free distance along u with all other agents at rest."""
     x, y, r = place[row, 0], place[row, 1], radius[row]
     way = math.inf
@@ -147,7 +146,7 @@ def _free_distance(row: int, others: Rows, place: Floats, radius: Floats, walls:
 
 @kernel
 def _sum_contacts(
-    row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, stiffness: float
+    row: int, others: Ints, place: Floats, radius: Floats, walls: Floats, stiffness: float
 ) -> tuple[float, float]:
     """Return the sum of the contact accelerations by bodies and walls."""
     x, y, r = place[row, 0], place[row, 1], radius[row]

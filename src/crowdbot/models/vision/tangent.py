@@ -17,12 +17,12 @@ from crowdbot.models.model import (
     rows,
     speed_limit,
 )
+from crowdbot.typing import Floats
 
 from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, retreat, threat_of_neighbor, threat_of_wall
 
 __all__ = ["Tangent"]
 
-Floats = NDArray[np.float64]
 
 REACTION = 3.5
 """Time to contact [s] at which agents with the default errors react (measured on the original)."""

@@ -30,12 +30,12 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.typing import Floats
 
 from .vbm_slopes import FAN, FIELD, STEEP, STILL, desire_slopes, look_at_walls, mean_slopes, sum_slopes
 
 __all__ = ["VBM"]
 
-Floats = NDArray[np.float64]
 
 VARIANTS = ("agents", "crowdbot")
 MOST_RAYS = 4096

@@ -21,10 +21,10 @@ from crowdbot.models.model import (
 )
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment
+from crowdbot.typing import Floats
 
 __all__ = ["WarpDriver"]
 
-Floats = NDArray[np.float64]
 
 SAMPLES = 20
 """Number of points of the planned path."""

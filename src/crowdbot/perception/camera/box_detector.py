@@ -14,10 +14,10 @@ from crowdbot.core import SpatialPose, Walls, check_number, import_optional
 from crowdbot.perception.detections import Coverage, Detections
 from crowdbot.perception.detector import Detector
 from crowdbot.sensors import Lens, Reading, RgbImage, spatial_pose
+from crowdbot.typing import Floats
 
 __all__ = ["BoxDetector", "Boxes", "opencv", "select_boxes"]
 
-Floats = NDArray[np.float64]
 
 COLUMNS = 181
 """Number of directions of the coverage."""

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, check_number
+from crowdbot.typing import Floats
 
 from .box_detector import BoxDetector, Boxes, opencv, select_boxes
 
 __all__ = ["NetworkPeople"]
 
-Floats = NDArray[np.float64]
 
 LAYOUTS = ("yolov5", "yolov8")
 LARGEST = 1_000_000_000

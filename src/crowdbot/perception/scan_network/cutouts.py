@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["SAMPLES", "collect_votes", "cut_windows"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SAMPLES = 48
 """Number of ranges of a cutout."""

@@ -15,12 +15,12 @@ from crowdbot.perception.detections import Coverage, Detections
 from crowdbot.perception.detector import Detector
 from crowdbot.perception.network_layers import Layers, read_layers, run_layers
 from crowdbot.sensors import Reading, Scan, planar_pose
+from crowdbot.typing import Floats
 
 from .cutouts import SAMPLES, collect_votes, cut_windows
 
 __all__ = ["ScanNetwork"]
 
-Floats = NDArray[np.float64]
 
 FAR = 1e3
 """Range of a beam without a return in cutouts [m]."""

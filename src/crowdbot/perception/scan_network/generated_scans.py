@@ -6,15 +6,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.sensors import cast_plane
+from crowdbot.typing import Floats, Ints
 
 __all__ = ["LabelledScan", "generate_scan"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 RAYS = (360, 450, 541, 720, 811, 1080)
 """Numbers of beams in a full turn."""

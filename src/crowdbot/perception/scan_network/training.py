@@ -9,17 +9,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import check_number, stream
 from crowdbot.prediction import torch_module, torch_threads
+from crowdbot.typing import Floats
 
 from .cutouts import SAMPLES, cut_windows
 from .generated_scans import LabelledScan, generate_scan
 
 __all__ = ["NetworkFit", "train_scan_network"]
 
-Floats = NDArray[np.float64]
 
 HIDDEN = 64
 """Width of the two hidden layers."""

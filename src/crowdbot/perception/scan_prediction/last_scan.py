@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.sensors import Scan, cast_plane
+from crowdbot.typing import Floats
 
 from .scan_forecast import ScanForecast
 from .scan_predictor import ScanPredictor, continue_motion
@@ -16,7 +16,6 @@ from .static_segments import scan_segments
 
 __all__ = ["LastScan", "MovedScan"]
 
-Floats = NDArray[np.float64]
 
 MEMORY = 5
 """Number of scans that give the velocity of the sensor."""

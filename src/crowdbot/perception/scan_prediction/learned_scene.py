@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.perception.network_layers import read_layers, run_layers
 from crowdbot.sensors import Scan
+from crowdbot.typing import Floats
 
 from .track_features import FEATURES, LAGS, EarlierTracks, person_frames, track_features
 from .tracked_scene import SceneState, TrackedScene
 
 __all__ = ["AHEAD", "LearnedScene", "LearnedState"]
 
-Floats = NDArray[np.float64]
 
 AHEAD = (0.5, 1.0, 2.0, 3.0)
 """Times [s] for which the network predicts; between them the correction is interpolated, after them it stays."""

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number
 from crowdbot.prediction import torch_module, torch_threads
 from crowdbot.sensors import Scan
+from crowdbot.typing import Floats
 
 from .learned_scene import AHEAD
 from .track_features import FEATURES, EarlierTracks, person_frames, track_features
@@ -20,7 +20,6 @@ from .tracked_scene import TrackedScene
 
 __all__ = ["MotionFit", "ScannedRun", "train_learned_scene"]
 
-Floats = NDArray[np.float64]
 ScannedRun = Sequence[tuple[Scan, Mapping[int, tuple[float, float]]]]
 """Scans of a run in the order of time, each with the true positions x, y [m] of people by id."""
 

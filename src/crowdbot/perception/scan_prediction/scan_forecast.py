@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose
 from crowdbot.metrics import OccupancyGrid
+from crowdbot.typing import Floats
 
 __all__ = ["ScanForecast"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, Pose
 from crowdbot.sensors import Scan, planar_pose
+from crowdbot.typing import Floats
 
 from .scan_forecast import ScanForecast
 
 __all__ = ["ScanPredictor", "continue_motion"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

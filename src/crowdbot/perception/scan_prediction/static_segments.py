@@ -6,15 +6,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.sensors import Scan, planar_pose
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["scan_segments", "static_segments"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 GAP = 0.15
 """Neighbouring points closer than this [m], plus three beam widths, are on one surface."""

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.perception.tracks import Tracks
 from crowdbot.sensors import Scan, planar_pose
+from crowdbot.typing import Floats
 
 __all__ = ["FEATURES", "EarlierTracks", "person_frames", "track_features"]
 
-Floats = NDArray[np.float64]
 
 LAGS = (0.5, 1.0)
 """Times before now [s] whose velocities are features."""

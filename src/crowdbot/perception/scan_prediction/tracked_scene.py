@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose, check_number, stream
 from crowdbot.perception.detector import Detector
@@ -16,6 +15,7 @@ from crowdbot.perception.scan_network import ScanNetwork
 from crowdbot.perception.tracker import Tracker
 from crowdbot.perception.tracks import Tracks
 from crowdbot.sensors import Scan, cast_plane
+from crowdbot.typing import Floats
 
 from .scan_forecast import ScanForecast
 from .scan_predictor import ScanPredictor, continue_motion
@@ -23,7 +23,6 @@ from .static_segments import static_segments
 
 __all__ = ["SceneState", "TrackedScene", "walk_straight"]
 
-Floats = NDArray[np.float64]
 
 MARGIN = 0.15
 """Points this far [m] outside the body of a person still belong to the person."""

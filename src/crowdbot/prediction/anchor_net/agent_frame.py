@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows, fill_gaps
 from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.typing import Bools, Floats
 
 __all__ = [
     "AGENT_FEATURES",
@@ -35,8 +36,6 @@ __all__ = [
     "speed_class",
 ]  # fmt: skip
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 ROWS = 8
 """Number of observed rows."""

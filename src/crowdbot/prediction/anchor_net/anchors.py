@@ -23,12 +23,12 @@ from crowdbot.prediction.pretrained_weights import (
     incompatibility,
     load_pretrained,
 )
+from crowdbot.typing import Floats
 
 from .agent_frame import HISTORY, PREDICTED_ROWS, agent_histories, heading_vectors, rotate
 
 __all__ = ["Anchors", "cluster_centers", "resample_paths", "residuals", "scatter_to_slots"]
 
-Floats = NDArray[np.float64]
 
 CHAI = Paper(
     "MultiPath", 2019, "MultiPath: multiple probabilistic anchor trajectory hypotheses for behavior prediction",

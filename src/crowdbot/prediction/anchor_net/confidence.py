@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, SPEED_CLASSES, speed_class
 from .forward_pass import feature_limit, network_output
@@ -15,7 +16,6 @@ from .training_data import NO_AUGMENTATION, TrainingSet, make_batch
 
 __all__ = ["calibrate_confidence"]
 
-Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
 TEMPERATURES = np.exp(np.linspace(-3.0, 1.5, 91))

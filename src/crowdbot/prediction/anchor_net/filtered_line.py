@@ -11,18 +11,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.prediction.kalman import Kalman
 from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.typing import Bools, Floats
 
 from .agent_frame import PREDICTED_ROWS, rotate
 
 __all__ = ["LINE_SHARE", "FilteredTracks", "filter_tracks", "filtered_lines"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 LINE_SHARE = 0.8
 """Share of the filtered line in the single trajectory of people who surely walk straight with a noisy track, in weights

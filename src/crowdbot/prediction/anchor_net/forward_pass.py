@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.prediction.pretrained_weights import Numbers
+from crowdbot.typing import Floats
 
 from .layers import attend, dense
 
 __all__ = ["feature_limit", "network_output", "reach_of"]
-
-Floats = NDArray[np.float64]
 
 
 def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:

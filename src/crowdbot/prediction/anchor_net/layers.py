@@ -9,14 +9,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["attend", "dense"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 BLOCK = 8
 """Number of people that share one pass over the weights of a layer."""

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows
 from crowdbot.prediction.kalman import Kalman
+from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, rotate
 from .anchors import resample_paths
 
 __all__ = ["future_covariances", "total_covariances"]
 
-Floats = NDArray[np.float64]
 
 HORIZON = 4.8
 """Horizon of the training [s]; beyond it standard deviations grow in proportion to time."""

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .agent_frame import ROWS, AgentHistories
 
 __all__ = ["out_of_distribution"]
 
-Floats = NDArray[np.float64]
 
 EVEN = (0.005, 0.015)
 """Deviation of a track from a straight line at constant speed [m]: even below the first, not even above the second."""

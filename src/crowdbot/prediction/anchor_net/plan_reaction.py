@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows
 from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, planned_positions, rotate
 
 __all__ = ["SHAPES", "ClosestApproach", "PlanReaction", "Walks", "encounters", "reaction_displacements", "time_shapes"]
 
-Floats = NDArray[np.float64]
 
 RADIUS = 0.25
 """Radius of people and robots without one [m]."""

@@ -26,6 +26,7 @@ from crowdbot.prediction.pretrained_weights import (
     incompatibility,
     load_pretrained,
 )
+from crowdbot.typing import Floats, Ints
 
 from .agent_frame import (
     HISTORY,
@@ -46,8 +47,6 @@ from .plan_reaction import PlanReaction, Walks, reaction_displacements
 
 __all__ = ["AnchorNet", "Modes"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 SAMPLES = ("set", "draws")
 MOST_AT_ONCE = 2048
@@ -69,8 +68,8 @@ class Modes(NamedTuple):
     """``[N, K]`` calibrated probabilities that a future is the nearest to the truth, in decreasing order."""
     single: Floats
     """``[N, T, 2]`` [m] single trajectory."""
-    window: Integers
-    slot: Integers
+    window: Ints
+    slot: Ints
 
 
 class _Bends(NamedTuple):
@@ -85,11 +84,11 @@ class _Bends(NamedTuple):
     """``[N, K, 6]`` standard deviation around each future."""
     heading: Floats
     step: Floats
-    window: Integers
-    slot: Integers
+    window: Ints
+    slot: Ints
     foreign: Floats
     """``[N]`` out-of-distribution score."""
-    anchor: Integers
+    anchor: Ints
     """``[N, K]`` anchor of each future."""
     slow: NDArray[np.bool_]
     """``[N]``, whether a person walked less than :data:`SLOW`."""
@@ -313,7 +312,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     )
 
 
-def _pairing(bends: _Bends, samples: int) -> Integers:
+def _pairing(bends: _Bends, samples: int) -> Ints:
     """Return the order ``[N, K]`` in which the futures of people are combined into joint futures.
 
     People in a window often deviate in the same way: they walk in groups, or the recording has a wrong time base. If

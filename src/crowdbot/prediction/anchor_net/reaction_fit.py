@@ -6,19 +6,18 @@ from collections.abc import Sequence
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Windows
 from crowdbot.prediction.predictor import Predictor
 from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, agent_histories, heading_vectors, rotate
 from .plan_reaction import SHAPES, PlanReaction, Walks, encounters, time_shapes
 
 __all__ = ["ReactionSamples", "fit_reaction"]
 
-Floats = NDArray[np.float64]
 
 ROUNDS = 20
 """Rounds of iteratively reweighted least squares."""

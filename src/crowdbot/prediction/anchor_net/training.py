@@ -36,7 +36,6 @@ from .training_data import (
 
 __all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
 
-Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000

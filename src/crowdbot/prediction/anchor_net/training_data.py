@@ -15,6 +15,7 @@ from crowdbot.core import InputError
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.prediction.training.samples import Samples
+from crowdbot.typing import Floats
 
 from .agent_frame import (
     PREDICTED_ROWS,
@@ -39,7 +40,6 @@ __all__ = [
     "training_set_of",
 ]
 
-Floats = NDArray[np.float64]
 
 DRIFT = 0.8
 """Correlation of drifting noise from row to row."""

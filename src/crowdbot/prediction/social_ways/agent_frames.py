@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["AgentFrames", "agent_frames", "headings"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 MOVED = 0.1
 """Minimum displacement for a heading [m]; below it, more rows are used."""

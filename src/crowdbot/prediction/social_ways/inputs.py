@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from crowdbot.prediction.training.samples import Samples
+from crowdbot.typing import Floats
 
 from .agent_frames import AgentFrames, agent_frames
 from .config import SocialWaysConfig
@@ -19,7 +20,6 @@ from .network import SceneInput
 
 __all__ = ["Normalization", "scene_input", "states_of"]
 
-Floats = NDArray[np.float64]
 
 MOST = 2000
 """Maximum number of scenes for the normalization."""

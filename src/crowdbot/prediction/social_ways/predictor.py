@@ -19,6 +19,7 @@ from crowdbot.prediction.learned_predictor import LearnedPredictor, complete_tra
 from crowdbot.prediction.predictor import Predictor, window_streams
 from crowdbot.prediction.training.checkpoint import load_checkpoint
 from crowdbot.prediction.training.torch_backend import to_tensors, torch_device, torch_module, torch_threads
+from crowdbot.typing import Floats
 
 from .config import config_of
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SocialWays", "SocialWaysNetwork"]
 
-Floats = NDArray[np.float64]
 
 KIND = "social-ways"
 TRIES = 3

@@ -5,18 +5,17 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.calibration import Rollout, resolve_model
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, slice_rows
 from crowdbot.models import CurrentDirection
+from crowdbot.typing import Floats
 
 from .simulated_crowds import CROWD_MODELS, STEP
 
 __all__ = ["ENCOUNTERS", "REACTING_MODELS", "people_encounters", "robot_encounters"]
 
-Floats = NDArray[np.float64]
 
 ENCOUNTERS = {"head-on": np.pi, "crossing": 0.5 * np.pi, "overtaking": 0.0, "oblique": 0.75 * np.pi}
 """Kind of encounter -> angle between the directions of the people and of the robot [rad]."""

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data import NoWindowError, Recording, Windows
+from crowdbot.typing import Bools, Floats, Ints
 
 __all__ = [
     "FOLDS",
@@ -40,10 +40,6 @@ ENOUGH = 180.0
 """Minimum duration of a training recording in the report [s]."""
 BUCKET = 16
 """Number of batches whose scenes are sorted by size together, to reduce padding."""
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class Scenes(NamedTuple):
@@ -81,8 +77,8 @@ class Samples:
     position: Floats
     there: Bools
     scored: Bools
-    first: Integers
-    source: Integers
+    first: Ints
+    source: Ints
     names: tuple[str, ...]
     observe: int
     dt: float
@@ -175,7 +171,7 @@ class Samples:
             found.update(np.ascontiguousarray(array).tobytes())
         return found.hexdigest()
 
-    def select(self, scenes: Integers | Bools) -> Samples:
+    def select(self, scenes: Ints | Bools) -> Samples:
         """Return some of the scenes."""
         number = np.arange(len(self))[scenes]
         count = np.diff(self.first)[number]
@@ -197,7 +193,7 @@ class Samples:
             return self
         return self.subsample(max(1, round(len(self) * people / self.people)))
 
-    def batch(self, scenes: Integers) -> Scenes:
+    def batch(self, scenes: Ints) -> Scenes:
         """Return some scenes as padded arrays."""
         start, count = self.first[scenes], np.diff(self.first)[scenes]
         slot = np.arange(max(1, int(count.max(initial=1))))
@@ -207,7 +203,7 @@ class Samples:
         place = np.where(there[..., None], self.position[person], 0.0)
         return Scenes(place.swapaxes(1, 2), there.swapaxes(1, 2), self.scored[person] & here, here)
 
-    def batches(self, rng: np.random.Generator, people: int) -> list[Integers]:
+    def batches(self, rng: np.random.Generator, people: int) -> list[Ints]:
         """Return random batches of approximately the given number of scored people; each scene is used once.
 
         Scenes without scored people are skipped. Batches contain scenes of similar size, which reduces padding.
@@ -215,7 +211,7 @@ class Samples:
         counted = np.add.reduceat(np.append(self.scored, False).astype(np.int64), self.first[:-1])
         counted[np.diff(self.first) == 0] = 0
         order = rng.permutation(np.flatnonzero(counted > 0))
-        found: list[Integers] = []
+        found: list[Ints] = []
         bucket = np.cumsum(counted[order]) // max(1, BUCKET * people)
         for part in np.split(order, np.flatnonzero(np.diff(bucket)) + 1):
             ranked = part[np.argsort(np.diff(self.first)[part], kind="stable")]

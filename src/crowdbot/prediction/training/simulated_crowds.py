@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.simulated import Simulated
+from crowdbot.typing import Floats
 
 __all__ = ["CROWD_LAYOUTS", "CROWD_MODELS", "simulated_crowds"]
 
-Floats = NDArray[np.float64]
 
 CROWD_MODELS = ("orca", "social-force", "power-law", "collision-free-speed", "anticipation-velocity")
 """Crowd models of the training data."""

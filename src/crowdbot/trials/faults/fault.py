@@ -8,18 +8,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import InputError
 from crowdbot.trials.fields import attribute, check, mounted_field
 from crowdbot.trials.notation import NAME
 from crowdbot.trials.partial_element import readable
+from crowdbot.typing import Bools, Floats
 
 __all__ = ["Fault", "FaultSpec", "SensorFault", "fault_problems", "have_same_kinds"]
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 LONG = 86_400.0
 """End of a fault that lasts until the trial ends [s]."""
 

@@ -7,15 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Path2D
+from crowdbot.typing import Floats
 
 from .elements import Stairs
 
 __all__ = ["floor_plan"]
 
-Floats = NDArray[np.float64]
 GROUND_COLOR, DOOR_COLOR = "#b08d57", "#2a7f9e"
 HEAD = 0.25
 """Length of the strokes of an arrowhead, as a share of the width of a slope."""

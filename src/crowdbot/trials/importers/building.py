@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA
@@ -15,13 +14,13 @@ from crowdbot.trials.ground.door import Door
 from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
+from crowdbot.typing import Floats
 from crowdbot.world import Building, read_building
 
 from .original import ImportedTrial
 
 __all__ = ["import_building", "is_building"]
 
-Floats = NDArray[np.float64]
 HEIGHTS = (0.25, 0.9, 1.6)
 """Heights above the floor [m] at which a building is cut."""
 STRAIGHT = 0.02

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError
 from crowdbot.models import CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.typing import Floats
 from crowdbot.world import frame, roll_pitch_yaw
 
 from .original import ImportedTrial
@@ -24,7 +24,6 @@ from .scene_parts import ImportedScene, as_number, circle
 
 __all__ = ["import_gazebo"]
 
-Floats = NDArray[np.float64]
 LOW, HIGH = 0.1, 1.8
 """Heights [m] between which a solid is in the way of people."""
 MOST_FILES, MOST_DEPTH = 200, 5

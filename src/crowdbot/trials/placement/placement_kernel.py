@@ -7,18 +7,14 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, next_uniform
+from crowdbot.typing import Bools, Floats, Ints, Words
 
 from .spawn_placement import GAP
 
 __all__ = ["Polygons", "place_people"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Words = NDArray[np.uint64]
 
 DOUBT = 1e-9
 """Distance [m] to a limit, relative to coordinates above 1 m, below which the kernel does not decide."""

@@ -16,6 +16,7 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.stage import Stage, area
+from crowdbot.typing import Floats, Ints
 
 from .placement_kernel import PlacementGeometry, Polygons, place_people
 from .population import place, place_fixed, recorded_people
@@ -24,8 +25,6 @@ from .spawn_placement import GAP, TRIES, InitialPeople, OccupiedDiscs, draw_head
 
 __all__ = ["PeopleBatch", "PlacementPlan"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MOST_PEOPLE = 1000
 """Number of people above which they are placed one environment after the other, with a grid of occupied discs."""

@@ -13,18 +13,15 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, next_uniform, stream_states
 from crowdbot.trials.partial_element import readable
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import RobotSpec
+from crowdbot.typing import Floats, Ints, Words
 
 __all__ = ["draw_layout", "goal_discs"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Words = NDArray[np.uint64]
 
 CLEARANCE = 0.2
 """Clearance between people, and to robots, at the beginning and at their goals [m]."""

@@ -16,12 +16,12 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.stage import Stage, area
+from crowdbot.typing import Floats
 
 from .spawn_layouts import draw_layout
 
 __all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "draw_heading", "points_in"]
 
-Floats = NDArray[np.float64]
 
 GAP = 0.01
 """Smallest gap [m] between two people at the beginning."""

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, stream, unread_fields
 from crowdbot.trials.agent import Agent, AgentParameter
@@ -21,13 +20,13 @@ from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
+from crowdbot.typing import Floats
 from crowdbot.world import Router
 
 from .context import DeclaredNames, Problems, ValidationContext
 
 __all__ = ["arrival_count", "duplicate_names", "flows", "inaccessible_stops", "names"]
 
-Floats = NDArray[np.float64]
 
 BATCHES = 30
 """Number of batches of points in which a place with room for a body is searched."""

@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.trials.ground.elements import UNEVEN, ground_of
 from crowdbot.trials.partial_element import readable
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.trial import Trial
+from crowdbot.typing import Floats
 from crowdbot.world import Ground
 
 from .context import Problems, ValidationContext
 from .flow_checks import duplicate_names
 
 __all__ = ["ground_problems", "ground_remarks"]
-
-Floats = NDArray[np.float64]
 
 
 def ground_problems(checked: ValidationContext) -> Iterator[Problems]:

@@ -6,11 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.bridges import FootLock, MotionSample, PoseStream, Retargeting, SourceSkeleton
 from crowdbot.core import wrap_angle
 from crowdbot.humans import BodyPose, People, eye_offsets, rest_skeleton
+from crowdbot.typing import Floats
 from crowdbot.vr.rigid_transform import RigidTransform
 from crowdbot.vr.rotation_matrices import matrices
 
@@ -18,7 +18,6 @@ from .stream_tap import sample_record
 
 __all__ = ["Suit"]
 
-Floats = NDArray[np.float64]
 TURN, PLACE = 10.0, 2.0
 """Time constants [s] with which heading and place of the suit follow those of the headset: suits drift slowly."""
 JUMP = 0.5

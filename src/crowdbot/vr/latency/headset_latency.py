@@ -7,15 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.experiments import TrialLatency
+from crowdbot.typing import Floats
 from crowdbot.vr.headset_recording import read_headset_clock, read_headset_recording
 
 __all__ = ["HeadsetLatency", "read_headset_latency"]
-
-Floats = NDArray[np.float64]
 
 
 class HeadsetLatency(NamedTuple):

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.sensors import DepthCamera, DepthImage, Reading, RGBCamera, RgbImage
 from crowdbot.simulation import RobotControl, Simulation
+from crowdbot.typing import Bytes, Floats
 from crowdbot.web.state_frame import StateFrame
 
 __all__ = ["SensorImage", "encode_image", "image_descriptions", "sensor_images"]
 
-Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
 LARGEST = 1280
 """Largest side of an image that is sent [pixels]; of larger ones, every second pixel is sent, or every third, ..."""
 QUALITY = 82

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.humans import LEVELS, shapes
+from crowdbot.typing import Floats
 from crowdbot.web.desk import Resource
 from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import Robot, link_surface
 
 __all__ = ["body_mesh", "robot_mesh", "scene_resource", "shown_links"]
 
-Floats = NDArray[np.float64]
 UNIT = 1e-4
 """Length of one unit of the vertices of bodies [m]."""
 MOST_IMAGES = 64

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 __all__ = ["quaternions"]
-
-Floats = NDArray[np.float64]
 
 
 def quaternions(rotation: Floats) -> Floats:

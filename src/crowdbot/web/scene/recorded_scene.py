@@ -8,13 +8,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.humans import FallPose, blend_fall_poses
 from crowdbot.recording import RecordedEpisode
 from crowdbot.sensors import Reading
 from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
+from crowdbot.typing import Floats, Ints
 from crowdbot.world import PeopleMotion, worlds_of
 
 from .robot_links import link_frames, standing_links
@@ -23,8 +23,6 @@ from .walking_bodies import WalkingBodies
 
 __all__ = ["RecordedScene", "simulation_reason"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 STRIDE, BEFORE = 0.1, 1.0
 """Time step [s] of gaits, and time [s] that people have walked before an instant that was jumped to."""
 FAR = 1.0

@@ -8,18 +8,16 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import SpatialPose
 from crowdbot.simulation import RobotControl, Simulation
+from crowdbot.typing import Floats
 from crowdbot.world import Robot, frame, free_joints, simulated_body
 
 from .meshes import shown_links
 from .quaternions import quaternions
 
 __all__ = ["link_frames", "link_poses", "standing_links"]
-
-Floats = NDArray[np.float64]
 
 
 def link_poses(simulation: Simulation, scene: Any, control: RobotControl) -> Floats:

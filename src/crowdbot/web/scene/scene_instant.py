@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene
 from crowdbot.sensors import Reading
 from crowdbot.simulation import RobotControl, Simulation
+from crowdbot.typing import Floats
 from crowdbot.world import PeopleMotion, worlds_of
 
 from .robot_links import link_poses
 
 __all__ = ["SceneInstant"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,15 +6,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 from crowdbot.world import CubeBody, TableBody, TreeBody
 
 __all__ = ["scene_bounds", "scene_focus", "stage_description", "zone_descriptions"]
 
-Floats = NDArray[np.float64]
 MARGIN = 1.0
 """Free space [m] around what is shown."""
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from crowdbot.humans import shapes
 from crowdbot.simulation import Simulation, SimulationRun
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats
 from crowdbot.web.desk import Resource
 from crowdbot.web.scene import WalkingBodies, scene_description, scene_frame, scene_resource, scene_revision
 from crowdbot.web.state_frame import StateFrame
@@ -24,7 +25,6 @@ from crowdbot.web.state_frame import StateFrame
 __all__ = ["RecordedBeginning", "shipped_beginning"]
 
 Arrays = dict[str, NDArray[Any]]
-Floats = NDArray[np.float64]
 FILE = "first-trial.xz"
 MILLIMETRE = 1e-3
 BONE = 1023

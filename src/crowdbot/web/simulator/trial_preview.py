@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import (
     PERSON_COLOR,
@@ -21,10 +20,10 @@ from crowdbot.core import (
     without_running_code,
 )
 from crowdbot.trials import Trial, load_builtin_trial, load_trial, trial_titles
+from crowdbot.typing import Floats
 
 __all__ = ["thumbnail", "trial_preview"]
 
-Floats = NDArray[np.float64]
 MOST = 150
 PACE = 1.3
 """Speed [m/s] of people and robots in a preview."""

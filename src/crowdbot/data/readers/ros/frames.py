@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 __all__ = ["SECOND", "WORLD_FRAMES", "Frames", "frame_name", "stamp_of"]
 
-Floats = NDArray[np.float64]
 
 SECOND = 1_000_000_000
 WORLD_FRAMES = frozenset(("map", "odom", "odom_combined", "world", "earth"))

@@ -26,10 +26,10 @@ from crowdbot.data.readers.reader import Reader, ReadOptions
 from crowdbot.data.rows import integers
 from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Floats
 
 __all__ = ["KITTI", "MOT", "SDD"]
 
-Floats = NDArray[np.float64]
 
 SDD_FPS, KITTI_FPS = 30.0, 10.0
 LABEL = re.compile(r'"([^"\n]*)"')
