@@ -9,8 +9,6 @@ from typing import Any
 
 from crowdbot.core import InputError, Paper, UnknownName, builtin_classes
 
-__all__ = ["builtin_names", "cite", "papers"]
-
 KINDS = {
     "models": ("models", "CrowdModel"),
     "goals": ("models.goals", "Goal"),

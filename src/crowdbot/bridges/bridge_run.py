@@ -29,8 +29,6 @@ from .run_control import PAUSED, PLAYING, RunControl
 from .transport import RemarkSource, Transport
 from .verbs.results import FAILED, result
 
-__all__ = ["BridgeRun", "run_bridge"]
-
 IDLE = 0.02
 """Longest real time [s] between two looks at the transports."""
 

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 
 from crowdbot.core import InputError
 
-__all__ = ["MODES", "BridgeClock", "Pace"]
-
 MODES = {
     "paced": "real time, or a multiple of it",
     "free": "as fast as possible",

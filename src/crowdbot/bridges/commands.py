@@ -10,8 +10,6 @@ from crowdbot.core import InputError
 from crowdbot.messages import MAP
 from crowdbot.simulation import GoalOrder, JointOrder, Order, VelocityOrder, read_order
 
-__all__ = ["READERS", "read_heading", "read_number", "read_point"]
-
 Fields = Mapping[str, Any]
 MOST_JOINTS = 200
 

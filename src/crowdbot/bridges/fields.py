@@ -15,8 +15,6 @@ from crowdbot.core import InputError
 
 from .verbs.definitions import interface_store
 
-__all__ = ["fields_of", "message_of", "plain_fields"]
-
 DEEPEST, LONGEST = 32, 1 << 22
 """Largest depth of a message, and number of elements of an array."""
 RANGES = {f"{sign}int{size}": size for sign in ("", "u") for size in (8, 16, 32, 64)}

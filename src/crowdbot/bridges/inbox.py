@@ -15,8 +15,6 @@ from .interface import InputTopic, RobotInterface
 from .latency import CommandLatency
 from .pace_request import PaceRequest
 
-__all__ = ["Inbox", "ServiceCall"]
-
 MOST_ORDERS, MOST_CALLS = 2000, 200
 """Largest number of orders and of calls that wait for the next step."""
 

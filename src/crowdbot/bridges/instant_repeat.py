@@ -6,8 +6,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-__all__ = ["InstantRepeat"]
-
 REPEAT, LONGEST, SETTLED = 1.0, 5.0, 0.3
 """Shortest real time [s] until an instant is sent again, the longest unless the latest answer took longer, and the time
 without commands after which a repeated instant is over."""

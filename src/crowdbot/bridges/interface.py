@@ -16,8 +16,6 @@ from .commands import READERS
 from .quality import CLOCK, COMMAND, LATCHED, SENSOR, STATE, TF, QualityOfService
 from .verbs.definitions import SERVICES
 
-__all__ = ["InputTopic", "OutputTopic", "RobotInterface", "Service"]
-
 OPTICAL = ("/image", "/labels", "/camera_info")
 """Topics of a camera that are in its optical frame."""
 

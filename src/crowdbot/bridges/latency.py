@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["CommandLatency", "LatencySummary"]
-
 MOST = 100_000
 """Largest number of latencies that are kept; the oldest are dropped."""
 

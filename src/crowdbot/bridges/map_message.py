@@ -12,8 +12,6 @@ from crowdbot.core import Scene
 from crowdbot.messages import Messages
 from crowdbot.trials import Stage
 
-__all__ = ["RESOLUTION", "map_message"]
-
 RESOLUTION, MOST_CELLS = 0.05, 1_000_000
 """Size of a cell [m], and the largest number of cells; a larger stage gets larger cells."""
 MARGIN = 1.0

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from crowdbot.core import InputError
 
-__all__ = ["PaceRequest"]
-
 SLOWEST, FASTEST = 0.001, 100.0
 """Speeds that may be asked for, in simulated seconds per real second."""
 NO_PACE = "the time of this run is that of another clock, of motion capture or of a real robot"

@@ -10,8 +10,6 @@ from .inbox import Inbox
 from .run_control import PAUSED, PLAYING
 from .verbs.results import OK
 
-__all__ = ["PLAIN_SERVICES", "PlainService"]
-
 SAME_STATE = 101
 """Result of ``set_simulation_state`` for the state in which the simulation is."""
 

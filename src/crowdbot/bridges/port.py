@@ -18,8 +18,6 @@ from .run_control import RunControl
 from .transport import Transport
 from .verbs.verbs import answer_call
 
-__all__ = ["BridgePort", "steered_trial"]
-
 
 def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     """Return the trial with robots that other programs drive.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["CLOCK", "COMMAND", "LATCHED", "QUALITIES", "SENSOR", "STATE", "TF", "QualityOfService"]
-
 
 @dataclass(frozen=True)
 class QualityOfService:

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 from crowdbot.trials import Trial
 
-__all__ = ["PAUSED", "PLAYING", "QUITTING", "STOPPED", "RunControl"]
-
 STOPPED, PLAYING, PAUSED, QUITTING = 0, 1, 2, 3
 """States of ``simulation_interfaces/SimulationState``."""
 

@@ -10,8 +10,6 @@ from crowdbot.recording import StepMessage
 from .inbox import Inbox
 from .interface import RobotInterface
 
-__all__ = ["RemarkSource", "Transport"]
-
 
 class Transport(Protocol):
     """Carries the topics and services of a port over one kind of connection.

@@ -11,8 +11,6 @@ from crowdbot.core import InputError, did_you_mean
 
 from .transport import Transport
 
-__all__ = ["TRANSPORTS", "open_transport"]
-
 TRANSPORTS: dict[str, tuple[str, str]] = {
     "rosbridge": ("rosbridge.server:RosbridgeServer.of", "rosbridge[:PORT], a server for roslibpy and roslib.js"),
     "rosbridge-client": ("rosbridge.client:RosbridgeClient.of", "rosbridge-client:ws://HOST:PORT, joins a server"),

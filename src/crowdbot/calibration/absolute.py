@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from .cost import Cost, mean_over_rows
 from .resimulation import ResimulatedTracks
 
-__all__ = ["Absolute"]
-
 
 @dataclass(frozen=True)
 class Absolute(Cost):

@@ -15,8 +15,6 @@ from .cooling import Cooling, Geometric
 from .search import Search
 from .search_state import SearchState, own_best
 
-__all__ = ["Annealing"]
-
 COOLING = Geometric(0.1, 1e-4)
 REACH = Geometric(0.5, 0.003)
 ANYWHERE = 0.2

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["breed", "keep_fittest"]
-
 
 @kernel
 def keep_fittest(

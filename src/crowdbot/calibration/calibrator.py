@@ -25,8 +25,6 @@ from .rollout import Rollout
 from .scheme_parts import resolve_cost, resolve_goal, resolve_model, resolve_search
 from .search import Search, SearchResult
 
-__all__ = ["Calibrator"]
-
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
 """Callback with the number of completed evaluations (candidates times windows)."""

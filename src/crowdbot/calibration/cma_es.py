@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 from .search import Search
 from .search_state import SearchState, own_best
 
-__all__ = ["CMAES"]
-
 
 @dataclass(frozen=True)
 class CMAES(Search):

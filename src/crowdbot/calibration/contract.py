@@ -11,8 +11,6 @@ from crowdbot.data import Windows, example_windows
 from .cost import Cost
 from .resimulation import ResimulatedTracks
 
-__all__ = ["check_cost"]
-
 ERROR = (0.0, 0.1, 0.5)
 """Maximum deviation [m] of the candidates from the recording."""
 

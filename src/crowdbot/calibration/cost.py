@@ -14,9 +14,6 @@ from crowdbot.typing import Floats
 
 from .resimulation import ResimulatedTracks
 
-__all__ = ["METRICS", "Cost", "mean_over_rows"]
-
-
 METRICS = Paper(
     "Wolinski, Guy, Olivier, Lin, Manocha, Pettré",
     2014,

@@ -17,8 +17,6 @@ from .fit_prediction import futures
 from .parameter_space import PREFERRED_SPEED, ParameterSpace
 from .rollout import Rollout
 
-__all__ = ["Fit"]
-
 
 @dataclass(frozen=True)
 class Fit:

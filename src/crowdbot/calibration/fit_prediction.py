@@ -14,8 +14,6 @@ from crowdbot.typing import Floats
 
 from .rollout import Rollout
 
-__all__ = ["futures"]
-
 
 def futures(
     rollout: Rollout, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator]

@@ -14,8 +14,6 @@ from .breeding import breed, keep_fittest
 from .search import Search
 from .search_state import SearchState
 
-__all__ = ["Genetic"]
-
 PRESSURE = 3.0
 """Selection pressure: parents have rank ``M u^PRESSURE`` in a sorted pool of M, with u uniform in 0 to 1."""
 OVERSHOOT = 0.5

@@ -13,8 +13,6 @@ from crowdbot.typing import Floats, Ints
 from .search import Search
 from .search_state import SearchState
 
-__all__ = ["Greedy"]
-
 NARROWEST = 1e-3
 """Minimum standard deviation of new values, relative to the parameter range; the maximum is 1."""
 

@@ -12,8 +12,6 @@ from crowdbot.typing import Bools, Floats
 from .cost import Cost
 from .resimulation import ResimulatedTracks
 
-__all__ = ["InterPedestrian"]
-
 
 @kernel(parallel=True)
 def _differ(simulated: Floats, recorded: Floats, counted: Bools, total: Floats) -> None:

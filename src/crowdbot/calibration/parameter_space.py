@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 
 from .rollout import Rollout, set_preferred_speed
 
-__all__ = ["PREFERRED_SPEED", "RADIUS", "ParameterSpace"]
-
-
 RADIUS = Parameter("radius", "m", 0.25, 0.1, 0.4, "half the width of shoulders", 0.01)
 """Radius of people. It belongs to the scene, and is calibrated together with the model parameters."""
 PREFERRED_SPEED = Parameter("preferred_speed", "m/s", 1.34, 0.0, 2.5, "Weidmann 1993")

@@ -18,8 +18,6 @@ from .parameter_space import PREFERRED_SPEED, ParameterSpace
 if TYPE_CHECKING:
     from .fit import Fit
 
-__all__ = ["PopulationPrior"]
-
 
 EDGE = 0.01
 """Minimum distance of a value from its bounds, relative to the range, before the transformation."""

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 from .search import Search
 from .search_state import SearchState, own_best
 
-__all__ = ["RandomSearch"]
-
 
 @dataclass(frozen=True)
 class RandomSearch(Search):

@@ -20,8 +20,6 @@ from .calibrator import Calibrator
 from .fit import Fit
 from .scheme_parts import goal_for
 
-__all__ = ["CalibrationChunk", "RecordingCalibration"]
-
 PIECES = 8
 """Minimum number of chunks of a recording."""
 AGENTS = 2_000

@@ -15,8 +15,6 @@ from crowdbot.typing import Floats, Ints
 
 from .rollout import Rollout
 
-__all__ = ["ResimulatedTracks", "Resimulation"]
-
 Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
 """Assigns the parameters of candidates to copies of a scene, in which each window is repeated ``copies`` times."""
 

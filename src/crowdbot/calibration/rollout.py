@@ -12,9 +12,6 @@ from crowdbot.data import Windows, fill_gaps, slice_rows
 from crowdbot.models import CrowdModel, Goal
 from crowdbot.typing import Floats
 
-__all__ = ["Rollout"]
-
-
 HASTE = 1.3
 """Maximum speed relative to the walking speed (Helbing & Molnár 1995)."""
 STANDING_HASTE = 2.0

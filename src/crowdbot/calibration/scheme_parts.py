@@ -14,8 +14,6 @@ from crowdbot.models import CrowdModel, Goal, GroundTruth, goals
 from .cost import Cost
 from .search import Search
 
-__all__ = ["goal_class", "goal_for", "resolve_cost", "resolve_goal", "resolve_model", "resolve_search"]
-
 
 def resolve_model(value: CrowdModel | str) -> CrowdModel:
     """Return a crowd model from an instance, a name or an address, with default parameters."""

@@ -18,8 +18,6 @@ from crowdbot.typing import Floats, Ints
 
 from .search_state import SearchState
 
-__all__ = ["Function", "Search", "SearchResult", "check_box"]
-
 Function = Callable[[Floats, Ints], Floats]
 """From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to the cost of each person,
 ``[P, L, N]``, as one batch; NaN if a person does not count."""

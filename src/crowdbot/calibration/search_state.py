@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["SearchState", "own_best"]
-
 
 class SearchState:
     """State of one run of a search: evaluates whole-crowd candidates of W problems and keeps the best of each.

@@ -14,8 +14,6 @@ from crowdbot.core import InputError
 from .cost import Cost
 from .resimulation import ResimulatedTracks
 
-__all__ = ["WeightedSum"]
-
 
 @dataclass(frozen=True)
 class WeightedSum(Cost):

@@ -12,8 +12,6 @@ from crowdbot.core import InputError, explain_write_errors
 from .challenge import Challenge
 from .entry import ChallengeEntry
 
-__all__ = ["sort_entries", "write_board"]
-
 
 def sort_entries(challenge: Challenge, entries: Sequence[ChallengeEntry]) -> list[ChallengeEntry]:
     """Return the entries in the order of the board, the best first."""

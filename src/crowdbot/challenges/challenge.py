@@ -15,8 +15,6 @@ from crowdbot.core import InputError, UnknownName, did_you_mean
 from crowdbot.evaluation import parse_seeds, parse_statistic
 from crowdbot.trials import Trial, expand_sweeps, load_trial, trial_xml
 
-__all__ = ["Challenge", "builtin_challenges", "load_challenge"]
-
 MOST_BYTES = 1_000_000
 KEYS = ("title", "about", "source", "trials", "public-seeds", "held-back", "statistics", "rank", "limits")
 NEEDED = ("title", "trials", "public-seeds", "statistics", "rank")

@@ -15,8 +15,6 @@ from crowdbot.evaluation import DECISION_METRICS, Estimate, RunRow, parse_statis
 
 from .challenge import Challenge
 
-__all__ = ["ChallengeEntry", "entry_differences", "load_entry"]
-
 SCHEMA = "crowdbot-challenge-entry/1"
 MOST_BYTES = 500_000_000
 

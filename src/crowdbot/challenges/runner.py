@@ -11,8 +11,6 @@ from .challenge import Challenge
 from .entry import ChallengeEntry
 from .submission import Submission
 
-__all__ = ["enter"]
-
 
 def enter(
     challenge: Challenge,

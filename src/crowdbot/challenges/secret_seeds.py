@@ -11,8 +11,6 @@ from pathlib import Path
 from crowdbot.core import InputError, explain_write_errors
 from crowdbot.evaluation import parse_seeds
 
-__all__ = ["SecretSeeds", "commit_seeds", "load_seeds"]
-
 
 @dataclass(frozen=True)
 class SecretSeeds:

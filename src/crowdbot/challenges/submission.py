@@ -14,8 +14,6 @@ from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, explain_write_errors
 
-__all__ = ["Submission", "load_submission", "pack_submission", "unpack_submission"]
-
 DESCRIPTION = "submission.toml"
 KEYS = ("name", "authors", "about", "navigator", "command", "parameters")
 MOST_FILES = 1000

@@ -16,19 +16,6 @@ from typing import TYPE_CHECKING, Any, TextIO
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = [
-    "Progress",
-    "add_json",
-    "json_text",
-    "note",
-    "number",
-    "print_json",
-    "print_metrics",
-    "print_robots",
-    "print_table",
-    "print_warnings",
-    "progress",
-]
 
 Progress = Callable[[str, float], None]
 """Progress callback: called with the name of the current task and the completed fraction, 0 to 1."""

@@ -8,8 +8,6 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-__all__ = ["SETTING", "CommandParser"]
-
 SETTING = "NAME=VALUE"
 """Metavar of options that take one or several settings, such as ``--set``."""
 

@@ -14,18 +14,6 @@ if TYPE_CHECKING:
 
     from .parser import CommandParser
 
-__all__ = [
-    "add_file_options",
-    "add_recordings",
-    "check_no_file_options",
-    "check_parts",
-    "horizon",
-    "print_notes",
-    "recording",
-    "recordings",
-    "transform",
-    "value_for",
-]
 
 WINDOW_OPTIONS = ("step", "observe", "predict", "protocol", "near", "late", "learn", "every")
 """Options that are fields of :class:`crowdbot.data.Recording` of the same name."""

@@ -17,15 +17,6 @@ if TYPE_CHECKING:
 
     from .parser import CommandParser
 
-__all__ = [
-    "add_scheme",
-    "build_predictor",
-    "crowd_model",
-    "frame_line",
-    "named_search",
-    "predictor_specs",
-    "prior",
-]
 
 SCHEME = ("model", "cost", "search", "goal", "free", "prior", "shared")
 """Options that apply to simulated predictors only."""

@@ -13,16 +13,6 @@ from .parser import SETTING
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = [
-    "add_robots",
-    "add_seeds",
-    "add_settings",
-    "add_world",
-    "load_settings_trial",
-    "load_variant",
-    "parse_settings",
-    "settings",
-]
 
 WORLDS = ("planar", "physics")
 TRIAL_VALUES = "parameters of a built-in trial (density=0.5) or values by path (spawner[1]/count=20)"

@@ -14,9 +14,6 @@ from crowdbot.typing import Floats, Ints
 from .errors import InputError
 from .tree import storable, take
 
-__all__ = ["STAGE", "Bodies", "Skins"]
-
-
 STAGE = -1
 """Owner of shapes that belong to the stage instead of an agent."""
 

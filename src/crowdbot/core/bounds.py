@@ -10,8 +10,6 @@ import numpy as np
 
 from .errors import InputError
 
-__all__ = ["Bounds", "check_number"]
-
 
 @dataclass(frozen=True)
 class Bounds:

@@ -14,8 +14,6 @@ from typing import Any
 from .errors import InputError
 from .tick_schedule import SECOND, TickSchedule
 
-__all__ = ["MAX_LAG", "Clock", "ExternalClock", "FreeClock", "PacedClock"]
-
 MAX_LAG = 0.25
 """Longest delay [s] that a paced clock catches up."""
 

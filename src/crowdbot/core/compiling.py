@@ -8,8 +8,6 @@ from typing import Any
 
 from numba.core import event
 
-__all__ = ["notify_compiling"]
-
 
 class _FirstCompilation(event.Listener):
     def __init__(self, callback: Callable[[], None]) -> None:

@@ -18,19 +18,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = [
-    "CrowdbotError",
-    "DataError",
-    "EpisodeError",
-    "InputError",
-    "MissingExtra",
-    "RobotError",
-    "TrialError",
-    "UnknownName",
-    "did_you_mean",
-    "nearest_name",
-]
-
 
 class CrowdbotError(Exception):
     """Base class of the exceptions of crowdbot.

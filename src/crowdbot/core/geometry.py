@@ -6,14 +6,6 @@ import math
 
 from .kernels import kernel
 
-__all__ = [
-    "nearest_on_segment",
-    "ray_to_disc",
-    "ray_to_segment",
-    "time_to_contact",
-    "time_to_segment",
-]
-
 
 @kernel
 def nearest_on_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> tuple[float, float]:

@@ -26,8 +26,6 @@ import numpy as np
 
 from .systems.user_folders import user_cache_folder
 
-__all__ = ["cache_folder", "cache_root", "is_cold", "kernel", "prange"]
-
 PACKAGE = Path(__file__).parents[1]
 STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])

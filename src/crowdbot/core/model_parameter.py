@@ -17,18 +17,6 @@ from numpy.typing import NDArray
 from .bounds import Bounds
 from .errors import InputError
 
-__all__ = [
-    "BOOL",
-    "FLOAT",
-    "Parameter",
-    "PerAgent",
-    "check_parameters",
-    "dense",
-    "parameter",
-    "parameters",
-    "per_agent",
-]
-
 FLOAT, BOOL = np.dtype(np.float64), np.dtype(np.bool_)
 
 PerAgent = float | NDArray[np.float64]

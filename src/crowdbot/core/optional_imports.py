@@ -7,8 +7,6 @@ from typing import Any
 
 from .errors import MissingExtra
 
-__all__ = ["import_optional"]
-
 
 def import_optional(module: str, what: str, extra: str) -> Any:
     """Import an optional dependency.

@@ -12,8 +12,6 @@ from pathlib import Path
 
 from .errors import InputError
 
-__all__ = ["lock_output", "release_stale_lock"]
-
 ATTEMPTS = 20
 """Maximum number of attempts to take over a stale lock."""
 WRITING = 5.0

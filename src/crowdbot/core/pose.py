@@ -13,9 +13,6 @@ from crowdbot.typing import Floats
 
 from .tree import storable
 
-__all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap_angle"]
-
-
 MOUNT_HEIGHT = 0.4
 """Default height [m] of a sensor with a planar pose, typical for laser scanners of indoor robots."""
 

@@ -6,8 +6,6 @@ import os
 
 from .errors import InputError
 
-__all__ = ["PROGRAMS", "check_programs"]
-
 PROGRAMS = "CROWDBOT_PROGRAMS"
 """Variable of the environment; ``refuse`` for processes that start no programs named by trials. Children inherit it."""
 

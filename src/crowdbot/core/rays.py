@@ -12,24 +12,6 @@ from crowdbot.typing import Floats
 
 from .kernels import kernel
 
-__all__ = [
-    "BOX",
-    "CAPSULE",
-    "CYLINDER",
-    "TRIANGLE",
-    "WALL",
-    "WIDTH",
-    "meet",
-    "normal_at",
-    "ray_to_box",
-    "ray_to_capsule",
-    "ray_to_cylinder",
-    "ray_to_triangle",
-    "ray_to_wall",
-    "within",
-]
-
-
 CAPSULE, CYLINDER, WALL, BOX, TRIANGLE = 0, 1, 2, 3, 4
 """Kinds of shapes, and the columns of their rows:
 

@@ -21,9 +21,6 @@ from .model_parameter import BOOL, FLOAT, dense
 from .tree import Storage, storable, take
 from .walls import Walls
 
-__all__ = ["Scene"]
-
-
 PERSON_HEIGHT = 1.7
 """Default height [m] of an agent."""
 WALL_HEIGHT = 3.0

@@ -8,8 +8,6 @@ from pathlib import Path
 
 from .errors import CrowdbotError, InputError
 
-__all__ = ["explain_write_errors"]
-
 
 @contextlib.contextmanager
 def explain_write_errors(path: Path) -> Iterator[None]:

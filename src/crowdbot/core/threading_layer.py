@@ -20,8 +20,6 @@ from typing import Any
 from numba.core import compiler_lock, config
 from numba.np.ufunc import parallel
 
-__all__ = ["guard", "prefer_safe_layers"]
-
 LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, "libtbb.so.12")
 PATIENCE = 10.0
 """Maximum time [s] that a fork waits for kernels in other threads."""

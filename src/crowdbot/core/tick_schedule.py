@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 
-__all__ = ["SECOND", "TickSchedule", "whole_ticks"]
-
 SECOND = 1_000_000_000
 """Nanoseconds in a second."""
 SLACK = 1000

@@ -6,8 +6,6 @@ import functools
 import hashlib
 from pathlib import Path
 
-__all__ = ["source_digest"]
-
 
 @functools.cache
 def source_digest() -> str:

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 
-__all__ = ["Walls"]
-
 CACHE = "_derived"
 """Name of the cache in the dictionary of walls."""
 Value = TypeVar("Value")

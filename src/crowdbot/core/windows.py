@@ -11,17 +11,6 @@ from crowdbot.typing import Floats
 
 from .kernels import kernel
 
-__all__ = [
-    "ball_in_view",
-    "hull_gap",
-    "hull_in_view",
-    "hull_levels",
-    "hull_width",
-    "rod_gap",
-    "rod_levels",
-    "rod_width",
-]
-
 TURN = 2.0 * math.pi
 
 

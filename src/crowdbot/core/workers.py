@@ -17,8 +17,6 @@ from .errors import CrowdbotError, InputError
 from .optional_imports import import_optional
 from .system_errors import explain_write_errors
 
-__all__ = ["Job", "Result", "each", "run_saved_jobs"]
-
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 

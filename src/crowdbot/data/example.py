@@ -8,8 +8,6 @@ from crowdbot.core import stream
 
 from .windows import Windows
 
-__all__ = ["example_windows"]
-
 STEP = 0.4
 
 

@@ -37,8 +37,6 @@ from .readers.video import boxes, pixel_tracks
 from .source import Source
 from .trajectories import Trajectories
 
-__all__ = ["FORMATS", "TIME_BASES", "detect_format", "load"]
-
 _READERS: tuple[Reader, ...] = (
     episode.READER,
     tables.PARQUET,

@@ -6,8 +6,6 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-__all__ = ["FILE_OPTIONS", "FileOption", "parse_columns", "split_columns"]
-
 NEXT_COLUMN = re.compile(r"\s+(?=[a-z_]+=)")
 
 

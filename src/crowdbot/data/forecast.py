@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Disc, InputError, Path2D, draw_svg
 
-__all__ = ["Forecast"]
-
 ARRAYS = ("position", "weight", "valid", "covariance", "existence", "out_of_distribution", "person_weight")
 """Fields with one entry per window."""
 

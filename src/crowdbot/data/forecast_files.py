@@ -20,9 +20,6 @@ from .rows import LARGEST
 from .source import MAX_ROWS, Source
 from .windows import Windows
 
-__all__ = ["ForecastRows", "check_forecast_suffix", "read_forecasts", "write_forecasts"]
-
-
 COLUMNS = ("frame", "id", "sample", "step", "x", "y")
 """Columns of npz and Parquet; ``weight`` is optional."""
 WHOLE = COLUMNS[:4]

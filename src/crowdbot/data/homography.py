@@ -12,8 +12,6 @@ from crowdbot.core import DataError
 
 from .source import Source
 
-__all__ = ["read_homography"]
-
 LARGEST = 64 * 1024
 """Largest homography file [bytes]."""
 

@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 from .trajectories import Trajectories
 from .walkable import walkable_rings
 
-__all__ = ["write_jupedsim", "write_petrack"]
-
-
 VERSION = 2
 """Version of the database layout of JuPedSim 1."""
 TABLES = """

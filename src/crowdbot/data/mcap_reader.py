@@ -12,17 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import BinaryIO, NamedTuple
 
-__all__ = [
-    "MCAP_MAGIC",
-    "McapChannel",
-    "McapError",
-    "McapMessage",
-    "McapOpcode",
-    "McapReader",
-    "has_summary",
-    "read_attachment",
-]
-
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 LARGEST = 1 << 30
 """Largest decompressed chunk [bytes]; a damaged header can claim any size."""

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from .windows import Windows
 
-__all__ = ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"]
-
 COMPANY = 8.0
 """Weight of the errors of the whole window, in rows: few rows of one track say little about its noise."""
 TRUST = 20.0

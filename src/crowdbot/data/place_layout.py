@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 from crowdbot.typing import Floats
 
-__all__ = ["PlaceLayout"]
-
 Ring = tuple[tuple[float, float], ...]
 
 MOST = 20_000

@@ -19,8 +19,6 @@ from .rows import Runs, runs
 from .track_table import TrackTable
 from .windows import Windows
 
-__all__ = ["LATE", "PROTOCOLS", "NoWindowError", "cut_past", "cut_windows"]
-
 PROTOCOLS = {
     "all": "all windows with a person who is present at all rows; frames without people are skipped",
     "sgan": "as all, but only windows with at least two such persons, as in SGAN (Gupta et al. 2018)",

@@ -15,8 +15,6 @@ from .place_layout import PlaceLayout
 from .trajectories import Trajectories
 from .windows import Windows
 
-__all__ = ["Recording"]
-
 AGENTS = ("pedestrians", "all")
 EPISODE_STEP = 0.4
 """Time step [s] of recorded trials, which have no annotation rate."""

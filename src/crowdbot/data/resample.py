@@ -14,8 +14,6 @@ from crowdbot.core import DataError, InputError
 from .source import MAX_ROWS
 from .track_table import TrackTable
 
-__all__ = ["resample"]
-
 Tracks = TypeVar("Tracks", bound=TrackTable)
 
 WHOLE = 1e-6

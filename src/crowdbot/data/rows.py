@@ -13,9 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import DataError
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["Runs", "check_rows", "floats", "frame_step", "integers", "runs", "where"]
-
-
 LARGEST = 2.0**53
 """Largest range of integers that float64 represents exactly."""
 

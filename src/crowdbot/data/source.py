@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
 
-__all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "folder_files", "parse_errors"]
-
 MAX_BYTES = 2 * 1024**3
 """Largest file [bytes]."""
 MAX_UNPACKED = 512 * 1024**2

@@ -14,8 +14,6 @@ from crowdbot.typing import Floats, Ints
 
 from .rows import check_rows, floats, frame_step, integers
 
-__all__ = ["PrimaryScene", "TrackTable"]
-
 
 class PrimaryScene(NamedTuple):
     """A scene of a TrajNet++ file: the person it is about, its frames, and its categories."""

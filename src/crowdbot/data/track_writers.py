@@ -19,8 +19,6 @@ from .rows import runs
 from .track_table import PrimaryScene
 from .trajectories import Trajectories
 
-__all__ = ["SUFFIXES", "save"]
-
 SCENE_ROWS = 21
 """Rows of a TrajNet++ scene: 9 observed and 12 predicted."""
 

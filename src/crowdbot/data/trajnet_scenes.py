@@ -13,8 +13,6 @@ from crowdbot.core import DataError
 from .trajectories import PrimaryScene, Trajectories
 from .windows import Windows
 
-__all__ = ["TRAJNET_CATEGORIES", "primary_windows", "scenes_of_category"]
-
 OBSERVED, PREDICTED = 9, 12
 """Rows of a scene of TrajNet++."""
 

@@ -8,9 +8,6 @@ from crowdbot.typing import Floats
 
 from .track_table import TrackTable
 
-__all__ = ["walkable_rings"]
-
-
 HALF = 0.01
 """Half width of a thin wall [m]."""
 

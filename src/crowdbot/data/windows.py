@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["Windows"]
-
 
 @dataclass(frozen=True)
 class Windows:

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 
 from .intervals import Estimate, bootstrap_estimate
 
-__all__ = ["PairedComparison", "paired_comparison"]
-
 PERMUTATIONS = 10_000
 EXACT = 12
 """Largest number of pairs of which all sign flips are tried."""

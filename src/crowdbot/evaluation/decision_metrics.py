@@ -8,8 +8,6 @@ import numpy as np
 
 from crowdbot.simulation import Episode
 
-__all__ = ["DECISION_METRICS", "decision_metrics"]
-
 DECISION_METRICS = ("decision_time", "decision_time_p99", "missed_deadlines")
 """Metrics of real time, which differ between equal runs."""
 

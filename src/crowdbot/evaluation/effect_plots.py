@@ -8,8 +8,6 @@ from collections.abc import Sequence
 
 from .sweep_effects import FactorEffect
 
-__all__ = ["effects_svg"]
-
 WIDTH, HEIGHT, MARGIN, STEP = 320, 220, 66, 64
 COLORS = ("#1b6ca8", "#c8553d", "#3a7d44", "#8e5ea2", "#b8860b", "#59636f")
 

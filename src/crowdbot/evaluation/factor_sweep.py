@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from crowdbot.core import InputError
 from crowdbot.trials import Sweep, Trial
 
-__all__ = ["FactorSweep", "parse_factors", "sweep_trials"]
-
 MOST_CELLS = 10_000
 
 

@@ -12,8 +12,6 @@ from crowdbot.core import InputError, stream
 from crowdbot.metrics import corrected_interval
 from crowdbot.typing import Floats
 
-__all__ = ["Estimate", "bootstrap_estimate", "proportion_interval"]
-
 RESAMPLES = 2000
 
 

@@ -17,8 +17,6 @@ from crowdbot.trials import Trial, parse_trial
 from .decision_metrics import decision_metrics
 from .run_metrics import episode_metrics, paired_variants
 
-__all__ = ["RunJob", "RunRow", "append_rows", "read_rows", "run_job"]
-
 
 @dataclass(frozen=True)
 class RunJob:

@@ -10,8 +10,6 @@ from .requirement import Requirement
 from .result import EvaluationResult
 from .verdict import judge_cell
 
-__all__ = ["junit_xml"]
-
 
 def junit_xml(result: EvaluationResult, requirements: Sequence[Requirement]) -> str:
     """Return a report with one test case for each requirement and cell.

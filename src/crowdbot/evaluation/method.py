@@ -12,8 +12,6 @@ from pathlib import Path
 from crowdbot.core import Element, InputError, TrialError, format_xml
 from crowdbot.trials import Trial, element_from, parse_trial, remarks_at_end, replace_robot
 
-__all__ = ["Method", "own_method", "parse_methods", "with_safety"]
-
 OWN = "own"
 """Name of the method that leaves the navigator of a trial as it is."""
 SAFETY = "+safety"

@@ -9,8 +9,6 @@ import crowdbot.metrics
 from crowdbot.core import InputError, find_class, kebab_case
 from crowdbot.metrics import LogMetric, metric_table
 
-__all__ = ["is_own_metric", "load_metric", "metric_name", "metric_source"]
-
 ADDRESS = re.compile(r"[^:]*(?:\.py|/):[A-Za-z_]\w*")
 
 

@@ -9,8 +9,6 @@ from collections.abc import Callable, Sequence
 from .intervals import Estimate
 from .result import CellResult
 
-__all__ = ["pareto_front", "pareto_svg"]
-
 WIDTH, HEIGHT, MARGIN = 720, 380, 56
 LETTER, LINE, DOT = 6.3, 14.0, 8.0
 """Width of a letter of a label, height of a line, and half of the width of a point."""

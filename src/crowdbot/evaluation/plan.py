@@ -19,8 +19,6 @@ from crowdbot.trials import Trial, expand_sweeps, passage_remarks, remarks_at_en
 from .method import Method, own_method
 from .run_metrics import check_families
 
-__all__ = ["EvaluationCell", "EvaluationPlan", "parse_robots", "parse_seeds"]
-
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
 RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")

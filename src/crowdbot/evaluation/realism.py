@@ -21,16 +21,6 @@ from crowdbot.core import builtin_name, explain_write_errors
 from crowdbot.models import CrowdModel
 from crowdbot.trials import Agent, Crowds, RandomizedModel, RecordedPeople, SourceSpec, Spawner, Trial
 
-__all__ = [
-    "ClearanceRow",
-    "ClearanceTable",
-    "CrowdRealism",
-    "load_clearances",
-    "model_digest",
-    "realism_notice",
-    "trial_realism",
-]
-
 Group = Agent | Spawner | SourceSpec | RecordedPeople
 FILE = "around-robots.json"
 NOTICES = {

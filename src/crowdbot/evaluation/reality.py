@@ -14,8 +14,6 @@ from crowdbot.metrics import metric_table
 from .intervals import proportion_interval
 from .job import RunRow
 
-__all__ = ["FEWEST_RUNS", "RealPlacement", "place_reality", "reality_svg"]
-
 INSIDE = (0.025, 0.975)
 """Quantiles of the simulations between which reality is inside."""
 OWN_MOTION = (

@@ -24,8 +24,6 @@ from .sweep_effects import FactorEffect, factor_effects
 from .verdict import judge_cell
 from .worst_run import WorstRun, person_contacts
 
-__all__ = ["write_report"]
-
 MOST_CONTACTS = 10
 """Largest number of contacts of a row in the report."""
 NO_SUCCESS = "<p>No robot arrived in any run, so there is nothing to compare.</p>"

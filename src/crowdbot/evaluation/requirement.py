@@ -15,8 +15,6 @@ from crowdbot.core import InputError
 from .intervals import Estimate
 from .statistic import Statistic, parse_statistic
 
-__all__ = ["Requirement", "RequirementVerdict", "parse_requirement"]
-
 TEXT = re.compile(r"\s*([^<>=@\s]+)\s*(<=|>=|<|>)\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(?:@\s*([0-9.]+)\s*%)?\s*")
 
 

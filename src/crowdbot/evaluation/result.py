@@ -26,8 +26,6 @@ from .plan import EvaluationCell
 from .realism import CrowdRealism
 from .statistic import Statistic, parse_statistic
 
-__all__ = ["SCHEMA", "CellResult", "EvaluationResult", "load_evaluation", "remark_lines", "result_schema"]
-
 SCHEMA = "crowdbot-evaluation/1"
 COMPARED = ("success", "person_collision", "wall_collision", "time_to_goal")
 """Metrics of which navigators are compared."""

@@ -17,8 +17,6 @@ from crowdbot.typing import Floats
 
 from .run_metrics import REGIONS
 
-__all__ = ["RobotRecording", "load_robot_recording"]
-
 LONGEST_GAP = 2.0
 """Longest gap in a track [s] that is interpolated."""
 PERSON_RADIUS = 0.25

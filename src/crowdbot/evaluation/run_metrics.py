@@ -32,16 +32,6 @@ from crowdbot.world import BODY_REGION_LIMITS
 
 from .own_metric import is_own_metric, load_metric, metric_name
 
-__all__ = [
-    "PAIRED_FAMILIES",
-    "check_families",
-    "episode_log",
-    "episode_metrics",
-    "families_of",
-    "paired_variants",
-    "shortest_path",
-]
-
 PAIRED_FAMILIES = ("empty-scene", "crowd-disturbance")
 """Families of metrics that need further runs with the same seed."""
 SHIFT = 0.001

@@ -16,8 +16,6 @@ from .plan import EvaluationCell, EvaluationPlan
 from .realism import trial_realism
 from .result import CellResult, EvaluationResult, provenance
 
-__all__ = ["evaluate"]
-
 BATCH, PARALLEL_BATCH = 32, 4
 """Largest number of seeds that run together, in one process and in each of several; a killed evaluation loses these."""
 PART_SECONDS = 4.0

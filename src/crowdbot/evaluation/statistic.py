@@ -17,8 +17,6 @@ from crowdbot.typing import Floats
 from .intervals import Estimate, bootstrap_estimate, proportion_interval
 from .own_metric import metric_name
 
-__all__ = ["RATES", "Statistic", "check_metrics", "metric_unit", "parse_statistic"]
-
 RATES = {
     "success-rate": "success",
     "collision-rate": "collision",

@@ -17,8 +17,6 @@ from crowdbot.typing import Floats
 from .intervals import Estimate
 from .result import CellResult, EvaluationResult
 
-__all__ = ["FactorEffect", "factor_effects"]
-
 RESAMPLES = 1000
 
 

@@ -28,8 +28,6 @@ from crowdbot.world import DifferentialDrive
 
 from .robot_recording import PERSON_RADIUS, RobotRecording
 
-__all__ = ["recorded_trial"]
-
 JITTER = 0.2
 """Starts and goals are drawn from a square of twice this size [m] around the recorded ones."""
 SPEED_SPREAD = 0.1

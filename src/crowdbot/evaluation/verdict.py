@@ -15,8 +15,6 @@ from .intervals import Estimate, proportion_interval
 from .requirement import Requirement
 from .result import CellResult
 
-__all__ = ["SafetyVerdict", "judge_cell", "row_name", "runs_without_event"]
-
 CONFIDENCE = 0.95
 SMALL_RATE = 0.01
 """Rate of contacts for which the number of runs is named without a requirement."""

@@ -16,8 +16,6 @@ from .job import RunRow
 from .plan import EvaluationPlan
 from .result import CellResult, EvaluationResult
 
-__all__ = ["PersonContact", "WorstRun", "person_contacts", "worst_rows", "worst_runs"]
-
 RATE = 10.0
 """Largest number of pictures a second in the report."""
 ORDER = ("collision", "fall", "error", "timeout", "finished", "success")

@@ -11,8 +11,6 @@ from crowdbot.recording import open_run
 from crowdbot.simulation import Episode, EpisodeLog, OrderSource, Simulation, SimulationRun, Sink
 from crowdbot.trials import Trial
 
-__all__ = ["Aborted", "BackgroundRun"]
-
 
 class Aborted(Exception):
     """The trial was aborted on request."""

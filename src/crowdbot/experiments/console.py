@@ -20,8 +20,6 @@ from .question import Choice, Question
 from .respondent import Respondent
 from .session_runner import SessionRunner
 
-__all__ = ["Console", "ConsoleClosed"]
-
 WIDTH = 78
 MENU = {
     "resume": "continue",

@@ -10,11 +10,6 @@ from typing import Any
 
 from crowdbot.core import InputError, kebab_case
 
-__all__ = [
-    "EVENTS", "Abort", "Answered", "Begin", "Event", "Fail", "Finish", "Next", "Pause", "Repeat", "Resume", "Start",
-    "event_of", "record_of",
-]  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Start:

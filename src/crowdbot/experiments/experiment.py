@@ -11,8 +11,6 @@ from crowdbot.trials import attribute, check, children
 from .question import QUESTIONS, SHORT, Question
 from .questionnaires import QUESTIONNAIRES, questionnaire_questions
 
-__all__ = ["ORDERS", "SEEDS", "Block", "Experiment", "Screen", "TrialEntry"]
-
 ORDERS = ("fixed", "random", "latin-square")
 SEEDS = ("same", "by-repetition", "by-participant")
 ANALYSES = ("", "leader-follower", "crossing", "encounters")

@@ -13,8 +13,6 @@ from crowdbot.trials import read_trial_bytes
 from .experiment import Experiment
 from .parser import parse_experiment
 
-__all__ = ["FILE", "builtin_experiments", "is_experiment", "load_experiment"]
-
 FILE = "experiment.xml"
 
 

@@ -9,8 +9,6 @@ from typing import Any, BinaryIO, Literal
 
 from crowdbot.core import EpisodeError, lock_file
 
-__all__ = ["SessionLog", "read_log"]
-
 FORMAT = 1
 
 

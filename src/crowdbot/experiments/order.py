@@ -8,8 +8,6 @@ from crowdbot.core import InputError, stream
 
 from .experiment import Block, Experiment
 
-__all__ = ["orders", "rows_of", "seed_of", "williams"]
-
 
 def williams(count: int) -> list[list[int]]:
     """Return the rows of a Williams square: ``count`` rows, or twice as many for an odd count.

@@ -13,8 +13,6 @@ from crowdbot.trials import Plan, Trial, plan_of, trials_of
 from .experiment import Block, Experiment, TrialEntry
 from .order import orders
 
-__all__ = ["ImportedExperiment", "import_experiment"]
-
 
 @dataclass(frozen=True)
 class ImportedExperiment:

@@ -13,8 +13,6 @@ from crowdbot.core import InputError
 
 from .experiment import Screen
 
-__all__ = ["Page", "page_of", "sanitise_html"]
-
 MOST_BYTES = 200_000
 MOST_DEPTH = 100
 KINDS = (".txt", ".html", ".htm")

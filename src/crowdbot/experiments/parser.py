@@ -24,8 +24,6 @@ from .page import page_of
 from .question import Question
 from .trial_source import trial_of
 
-__all__ = ["check_experiment", "experiment_xml", "parse_experiment"]
-
 ROOT = "experiment"
 MOST_TRIALS = 10_000
 """Maximum number of trials in a session."""

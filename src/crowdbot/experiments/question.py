@@ -10,8 +10,6 @@ from typing import Any
 from crowdbot.core import InputError, did_you_mean, parse_number
 from crowdbot.trials import UNWRITABLE, attribute, check, children, plain, quote_value
 
-__all__ = ["QUESTIONS", "SHORT", "Answer", "Choice", "ChoiceOption", "FreeText", "Number", "Question", "Scale"]
-
 SHORT = "[A-Za-z][A-Za-z0-9_]{0,39}"
 """Pattern of names of screens, questions, blocks and trials, which become columns and folders."""
 

@@ -12,8 +12,6 @@ from typing import Any, NamedTuple
 from .question import Question, Scale
 from .sickness import SYMPTOMS, sickness_scores
 
-__all__ = ["QUESTIONNAIRES", "Item", "questionnaire_questions", "questionnaire_scores"]
-
 NONE, FULL = "not at all", "fully"
 HIGHEST = 7
 

@@ -15,8 +15,6 @@ from .experiment import Experiment
 from .question import Choice, Number, Question, Scale
 from .session_plan import plan
 
-__all__ = ["ConsoleRespondent", "EmulatedRespondent", "Respondent", "ScriptedRespondent"]
-
 
 class Respondent(ABC):
     """Contract of respondents."""

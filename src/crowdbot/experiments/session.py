@@ -28,8 +28,6 @@ from .experiment import Experiment
 from .question import Answer, Choice, Question
 from .session_plan import SessionStep, plan
 
-__all__ = ["Result", "Session"]
-
 
 @dataclass(frozen=True)
 class Result:

@@ -8,8 +8,6 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 
-__all__ = ["ANSWERS", "COPY", "LOG", "WITHDRAWN", "folder_of", "withdrawn"]
-
 LOG, COPY, ANSWERS = "session.jsonl", "experiment.xml", "answers.jsonl"
 WITHDRAWN = "withdrawn.json"
 """File beside the folders of the participants."""

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .order import check_participant, orders
 
-__all__ = ["SessionStep", "plan"]
-
 
 @dataclass(frozen=True)
 class SessionStep:

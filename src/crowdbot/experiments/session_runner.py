@@ -27,8 +27,6 @@ from .session_folder import ANSWERS, COPY, LOG, folder_of, withdrawn
 from .streams import StreamOutlets, TrialClockLog
 from .trial_source import trial_of
 
-__all__ = ["SessionRunner"]
-
 Clock = Callable[[], float]
 
 

@@ -17,8 +17,6 @@ from .questionnaires import questionnaire_scores
 from .session import Session
 from .session_folder import COPY, LOG
 
-__all__ = ["save_summary", "session_of", "summary"]
-
 Row = dict[str, Any]
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-__all__ = ["SYMPTOMS", "Symptom", "sickness_scores"]
-
 
 class Symptom(NamedTuple):
     """A question: the letters of the scales that it belongs to, and its text in our own words."""

@@ -13,8 +13,6 @@ from .encounters import EncounterStudy
 from .experiment import Experiment
 from .leader_follower import LeaderFollowerStudy
 
-__all__ = ["STUDIES", "analyse_sessions", "emulated_participant", "study_of"]
-
 STUDIES: Mapping[str, Study] = {
     study.name: study for study in (LeaderFollowerStudy(), CrossingStudy(), EncounterStudy())
 }

@@ -7,8 +7,6 @@ from pathlib import Path
 from crowdbot.core import InputError, TrialError, did_you_mean
 from crowdbot.trials import Trial, builtin_trials, load_trial, parse_trial, read_trial_bytes
 
-__all__ = ["trial_of"]
-
 
 def trial_of(source: str, folder: Path | None, trust: bool = False) -> Trial:
     """Return the trial named by ``source``: a file in the folder of the experiment, or a built-in trial.

@@ -11,8 +11,6 @@ from crowdbot.core import EpisodeError, InputError
 from .log import SessionLog
 from .session_folder import LOG, WITHDRAWN, folder_of, withdrawn
 
-__all__ = ["withdraw"]
-
 
 def withdraw(out: Path, participant: int) -> Path:
     """Delete the session of a participant with all its files, and return the deleted folder.

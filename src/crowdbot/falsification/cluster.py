@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 
 from .sample import Sample
 
-__all__ = ["FailureCluster", "find_clusters"]
-
 MOST = 2000
 """Failures of one event that are compared with each other; others join the nearest cluster."""
 CUT = 1.1

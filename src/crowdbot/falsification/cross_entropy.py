@@ -16,8 +16,6 @@ from .proposal import Proposal, fit_proposal, mixture_weights
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
-__all__ = ["CrossEntropy"]
-
 WIDE, NARROW = 1.5, 1.2
 """Factor of the standard deviations of a proposal that still moves, and of one that is fitted to failures."""
 CLIP = 10.0

@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
-__all__ = ["AIMS", "DirectedSearch"]
-
 AIMS = ("worst", "likely")
 EDGE = 1e-6
 """Distance of the box from 0 and 1, in shares of the distributions."""

@@ -13,8 +13,6 @@ from crowdbot.evaluation import Estimate
 from crowdbot.metrics import corrected_interval
 from crowdbot.typing import Floats
 
-__all__ = ["mixture_estimate", "replicate_estimate"]
-
 FEW = 5
 """Least number of failures for a bootstrap."""
 REPLICATES = 4000

@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core import wrap_angle
 from crowdbot.simulation import WALL, Episode
 
-__all__ = ["describe_event"]
-
 SIDES = ("ahead", "left", "behind", "right")
 
 

@@ -12,8 +12,6 @@ from scipy import special
 from crowdbot.core import InputError, did_you_mean, parse_number
 from crowdbot.trials import Distribution
 
-__all__ = ["Factor", "parse_factor"]
-
 CALL = re.compile(r"\s*([A-Za-z][A-Za-z-]*)\s*\((.*)\)\s*", re.DOTALL)
 KINDS = ("uniform", "normal", "log-uniform", "integer", "choice")
 EDGE = 1e-15

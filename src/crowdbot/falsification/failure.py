@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.evaluation import Requirement, parse_requirement
 
-__all__ = ["FAILURES", "FailureCriterion", "parse_failure"]
-
 FAILURES = ("collision", "timeout", "severity", "any")
 """Kinds of failures with a name."""
 SAFE = 1e-6

@@ -25,8 +25,6 @@ from .sampling import Sampling
 from .search_space import SearchSpace
 from .splitting import Splitting
 
-__all__ = ["falsify", "parse_sampling"]
-
 SAMPLINGS = (CrossEntropy, Splitting, PlainSampling)
 
 

@@ -17,8 +17,6 @@ from .cluster import FailureCluster
 from .sample import Sample
 from .search_space import SearchSpace
 
-__all__ = ["FoundTrial", "select_failures", "write_failures"]
-
 
 class FoundTrial(NamedTuple):
     """A failure in a file.

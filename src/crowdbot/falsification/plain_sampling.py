@@ -12,8 +12,6 @@ from crowdbot.evaluation import proportion_interval
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
-__all__ = ["PlainSampling"]
-
 
 @dataclass(frozen=True)
 class PlainSampling(Sampling):

@@ -9,8 +9,6 @@ import numpy as np
 
 from .result import FalsificationResult
 
-__all__ = ["COLORS", "factors_svg", "runs_svg"]
-
 WIDTH, HEIGHT, MARGIN, LABELS = 760, 300, 56, 250
 MOST = 3000
 """Largest number of runs without a failure that are drawn."""

@@ -11,8 +11,6 @@ from scipy import special
 
 from crowdbot.typing import Floats
 
-__all__ = ["Proposal", "fit_proposal", "mixture_weights"]
-
 STEPS = 40
 """Steps of the expectation-maximisation."""
 FLOOR = 0.3

@@ -17,8 +17,6 @@ from .plots import COLORS, factors_svg, runs_svg
 from .result import FalsificationResult
 from .search_space import SearchSpace
 
-__all__ = ["describe_rarity", "factor_ranges", "write_report"]
-
 
 def write_report(result: FalsificationResult, space: SearchSpace, path: Path) -> None:
     """Write one HTML page that needs no other file and asks nothing from the network.

@@ -20,8 +20,6 @@ from .cluster import FailureCluster
 from .factor import Factor
 from .sample import Sample
 
-__all__ = ["SCHEMA", "FalsificationResult", "FoundFailure"]
-
 SCHEMA = "crowdbot-falsification/1"
 
 

@@ -16,8 +16,6 @@ from .failure import FailureCriterion
 from .sample import Sample, SampleJob, read_samples, run_samples, write_samples
 from .search_space import SearchSpace
 
-__all__ = ["MOST_SEEDS", "SampleRunner"]
-
 CHUNK = 64
 """Points that run together; a killed search loses at most these for each process."""
 MOST_SEEDS = 2**31

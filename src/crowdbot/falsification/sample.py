@@ -21,8 +21,6 @@ from .failure import parse_failure
 from .search_space import SearchSpace
 from .urgency import collision_urgency
 
-__all__ = ["Sample", "SampleJob", "read_samples", "run_samples", "write_samples"]
-
 
 @dataclass(frozen=True)
 class SampleJob:

@@ -13,8 +13,6 @@ from crowdbot.evaluation import Estimate
 
 from .runner import SampleRunner
 
-__all__ = ["Sampling", "SamplingResult"]
-
 
 class SamplingResult(NamedTuple):
     """What a search says about the failure probability.

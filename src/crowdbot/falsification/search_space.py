@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 
 from .factor import Factor
 
-__all__ = ["SearchSpace"]
-
 Chain = tuple[str | int, ...]
 PROBES = (-0.5, 0.5, 1.25)
 """Points at which the place of a factor in the trial is found and checked."""

@@ -17,8 +17,6 @@ from .estimate import replicate_estimate
 from .runner import MOST_SEEDS, SampleRunner
 from .sampling import Sampling, SamplingResult
 
-__all__ = ["Splitting"]
-
 
 @dataclass
 class _Chain:

@@ -6,8 +6,6 @@ import numpy as np
 
 from crowdbot.simulation import Episode
 
-__all__ = ["collision_urgency"]
-
 FADE = 1.0
 """Time to collision [s] at which the urgency is 1/e."""
 

@@ -17,8 +17,6 @@ from crowdbot.trials import Trial
 from .plan import GenerationPlan, reading_rate
 from .shard import Shard
 
-__all__ = ["DataCard", "card_of", "card_text"]
-
 SCHEMA = "crowdbot-data-card-1"
 LIMITS = (
     "The data is simulated. People follow the crowd model of each trial; how well it agrees with experiments is in the"

@@ -19,8 +19,6 @@ from .formats.kitti import write_kitti
 from .plan import with_masks
 from .sample_log import SampleLog, Table
 
-__all__ = ["LABEL_FORMATS", "LabelFiles", "export_labels"]
-
 LABEL_FORMATS = ("coco", "kitti")
 
 

@@ -14,8 +14,6 @@ from .formats.coco import join_annotations
 from .plan import GenerationPlan, ShardJob
 from .shard import Shard, make_shard, read_shard, write_shard
 
-__all__ = ["generate"]
-
 PARTS = "parts"
 """Folder of the descriptions of finished shards."""
 

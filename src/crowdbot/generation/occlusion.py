@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["occluded_shares"]
-
 SIGHT_LINES = 16
 """Number of sight lines over the width of a person."""
 

@@ -12,8 +12,6 @@ from crowdbot.core import CrowdbotError, InputError, did_you_mean
 from crowdbot.sensors import PRESETS, DepthCamera, Lidar2D, Lidar3D, RGBCamera, Sensor, preset
 from crowdbot.trials import Mount, Trial, check_trial, expand_sweeps, trial_xml
 
-__all__ = ["FORMATS", "GenerationPlan", "ShardJob"]
-
 FORMATS = ("npz", "parquet", "webdataset", "mcap")
 """Formats of shards."""
 MOST_SEEDS = 64

@@ -8,8 +8,6 @@ from types import MappingProxyType
 
 from crowdbot.core import UnknownName
 
-__all__ = ["RECIPES", "Recipe", "find_recipe"]
-
 
 @dataclass(frozen=True)
 class Recipe:

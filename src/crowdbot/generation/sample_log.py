@@ -16,8 +16,6 @@ from crowdbot.typing import Floats, Ints
 
 from .occlusion import occluded_shares
 
-__all__ = ["SampleLog", "Table"]
-
 Table = dict[str, NDArray[Any]]
 """Arrays by name with the same first axis, the samples; names that begin with ``shared.`` have no such axis."""
 

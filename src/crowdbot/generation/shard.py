@@ -22,8 +22,6 @@ from .formats.webdataset import write_webdataset
 from .plan import ShardJob
 from .sample_log import SampleLog, Table
 
-__all__ = ["Shard", "make_shard", "read_shard", "write_shard"]
-
 WRITERS = {"npz": write_npz, "parquet": write_parquet, "webdataset": write_webdataset}
 
 

@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 from crowdbot.navigation import DriveLimits
 from crowdbot.typing import Floats
 
-__all__ = ["ActionForm"]
-
 FORMS = ("velocity", "acceleration", "holonomic")
 
 

@@ -21,8 +21,6 @@ from .observation_form import ObservationForm
 from .reward import Reward
 from .robot_port import RobotPort, free_robots
 
-__all__ = ["CrowdTask", "TaskStep"]
-
 Arrays = dict[str, NDArray[np.float32]]
 
 

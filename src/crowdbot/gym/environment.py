@@ -19,8 +19,6 @@ from .observation_form import ObservationForm
 from .reward import Reward
 from .robot_port import RobotPort
 
-__all__ = ["CrowdEnv", "first_environment", "make_task", "port_space"]
-
 Observation = dict[str, NDArray[np.float32]]
 MOST_SEEDS = 2**31
 

@@ -14,8 +14,6 @@ from crowdbot.typing import Floats
 
 from .occupancy_grid import occupancy_grids
 
-__all__ = ["FORMS", "PERSON_VALUES", "ROBOT_VALUES", "ObservationForm"]
-
 Arrays = dict[str, NDArray[np.float32]]
 
 FORMS = ("people", "scan", "both", "occupancy")

@@ -11,8 +11,6 @@ from crowdbot.core import kernel
 from crowdbot.navigation import ObservationBatch
 from crowdbot.typing import Floats
 
-__all__ = ["occupancy_grids"]
-
 
 def occupancy_grids(batch: ObservationBatch, cells: int, cell: float) -> Floats:
     """Return ``[N, cells, cells]`` grids: 1 where the centre of a cell is within half a cell of a person or a wall.

@@ -21,7 +21,6 @@ from .robot_port import RobotPort, free_robots
 
 ParallelEnv: Any = import_optional("pettingzoo", "crowdbot.gym.parallel_env", "gym").ParallelEnv
 
-__all__ = ["ParallelCrowdEnv", "parallel_env"]
 
 Observation = dict[str, NDArray[np.float32]]
 Action = NDArray[np.float32]

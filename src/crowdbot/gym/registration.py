@@ -12,8 +12,6 @@ import gymnasium
 
 from crowdbot.trials import builtin_trials
 
-__all__ = ["TASKS", "register_environments"]
-
 TASKS: dict[str, dict[str, Any]] = {
     "CircleCrossing-v0": {"trial": "circle-crossing"},
     "SquareCrossing-v0": {"trial": "square-crossing"},

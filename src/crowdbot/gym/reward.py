@@ -8,8 +8,6 @@ import numpy as np
 
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["Reward"]
-
 
 @dataclass(frozen=True)
 class Reward:

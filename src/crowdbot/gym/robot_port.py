@@ -18,8 +18,6 @@ from crowdbot.typing import Floats, Ints
 from .action_form import ActionForm
 from .observation_form import ObservationForm
 
-__all__ = ["RobotPort", "free_robots"]
-
 Arrays = dict[str, NDArray[np.float32]]
 
 

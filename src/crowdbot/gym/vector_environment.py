@@ -18,8 +18,6 @@ from .environment import MOST_SEEDS, make_task, port_space
 from .observation_form import ObservationForm
 from .reward import Reward
 
-__all__ = ["CrowdVectorEnv"]
-
 Observations = dict[str, NDArray[np.float32]]
 
 

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, UnknownName
 
-__all__ = ["ACTIVITIES", "FIRST_POSE", "activity_index"]
-
 ACTIVITIES = (
     "walk", "talk", "phone", "bottle", "text", "sit", "wave", "carry", "read", "stick", "pram", "wheelchair", "run",
     "look",

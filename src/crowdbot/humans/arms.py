@@ -11,8 +11,6 @@ from .activities import FIRST_POSE
 from .feet import Gaits
 from .vectors import Vector, cross_product, normalize, rotate, write_frame
 
-__all__ = ["pose_arm"]
-
 Angles = tuple[float, float, float, float, float]
 SWING = math.radians(17.0)
 """Amplitude of the upper arm swing at a vigour of 1 [rad]."""

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["LEVELS", "Level", "Shapes", "read_asset", "shapes"]
-
 LEVELS = 3
 """Levels of detail: 0 is the finest."""
 UNIT = 1e-4

@@ -13,9 +13,6 @@ from crowdbot.typing import Floats
 
 from .quaternions import slerp
 
-__all__ = ["PARTS", "ROW", "BodyPose", "blend_rows", "shift_row"]
-
-
 SKELETON = 3 + 28 * 4
 PARTS = {"head": (3, 10), "left_hand": (10, 17), "right_hand": (17, 24), "skeleton": (24, 24 + SKELETON)}
 """Columns of each part in a row."""

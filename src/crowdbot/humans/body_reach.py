@@ -22,9 +22,6 @@ from .posture import Posture, place_chain
 from .quaternions import limit_rotation, multiply, to_matrix, transpose_times, twist_angle
 from .turns import about, align_frame, cross, unit
 
-__all__ = ["eye_offsets", "reach_poses"]
-
-
 ROUNDS = 25
 """Number of corrections of the trunk; 10 reach 1 mm in most postures."""
 LEAN = 1.3

@@ -8,8 +8,6 @@ from crowdbot.typing import Floats
 
 from .limbs import LIMBS
 
-__all__ = ["limb_chain", "striking_mass"]
-
 CHAINS = (("pelvis", "thigh", "shank", "foot"), ("chest", "upperarm", "forearm", "hand"))
 NAMES = tuple(limb.name for limb in LIMBS)
 

@@ -22,9 +22,6 @@ from .stride import (
 )
 from .vectors import Vector
 
-__all__ = ["Gaits", "advance", "foot_now"]
-
-
 CREEP = 0.12
 """Speed [m/s] below which people stand; they step only to correct a misplaced foot."""
 FILTER = 0.10

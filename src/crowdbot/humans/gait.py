@@ -19,8 +19,6 @@ from .people import Capsules, People
 from .posture import Posture, posture
 from .seat import CHAIR, Seat, seat_rows
 
-__all__ = ["Gait", "posing_and_skinning"]
-
 FASTEST = 12.0
 """Maximum speed [m/s]."""
 

@@ -13,8 +13,6 @@ from crowdbot.typing import Floats, Ints
 from .asset import Shapes, shapes
 from .person import persons
 
-__all__ = ["LIMBS", "REGIONS", "Limb", "fit_capsules", "main_bones", "mass_shares", "rest_capsules"]
-
 ROUNDS = 12
 """Number of fit iterations; about 10 converge to 0.1 mm."""
 HOLD = 0.02

@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .asset import shapes
 
-__all__ = ["CHAINS", "Measures", "measures"]
-
 CHAINS = ("thigh_l", "thigh_r", "calf_l", "calf_r", "upperarm_l", "upperarm_r", "lowerarm_l", "lowerarm_r")
 """Bones whose rotation is computed from the directions of axis and hinge, in the order of ``frame``."""
 ENDS = ("calf_l", "calf_r", "foot_l", "foot_r", "lowerarm_l", "lowerarm_r", "hand_l", "hand_r")

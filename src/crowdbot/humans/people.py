@@ -25,8 +25,6 @@ from .rigged.rigged_body import RiggedBody
 from .skin import SkinnedMesh, skin_vertices
 from .wardrobe import Outfit, outfit, region_colors, worn_parts
 
-__all__ = ["Capsules", "People"]
-
 SMALLEST, TALLEST = 0.5, 2.5
 """Allowed statures [m]."""
 

@@ -12,8 +12,6 @@ from crowdbot.core import UnknownName
 
 from .asset import shapes
 
-__all__ = ["Person", "names", "person", "persons"]
-
 WORD = {("m", True): "man", ("f", True): "woman", ("m", False): "boy", ("f", False): "girl"}
 
 

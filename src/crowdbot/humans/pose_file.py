@@ -16,8 +16,6 @@ from crowdbot.core import InputError
 from .body_pose import ROW, BodyPose
 from .pose_source import MAX_SPEED, PoseTrack
 
-__all__ = ["COLUMNS", "read_pose_file"]
-
 SEVEN = ("x", "y", "z", "qw", "qx", "qy", "qz")
 HANDS = ("head", "left_hand", "right_hand")
 COLUMNS = ("time", "x", "y", "heading", *(f"{part}_{name}" for part in HANDS for name in SEVEN))

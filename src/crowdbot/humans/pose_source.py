@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 
 from .body_pose import PARTS, ROW, BodyPose, blend_rows, shift_row
 
-__all__ = ["PoseMotion", "PoseSource", "PoseTrack"]
-
 MAX_SPEED = 8.0
 """Default speed [m/s] above which a change of position is a teleport."""
 EARLY = 1e-6

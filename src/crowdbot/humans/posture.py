@@ -17,9 +17,6 @@ from .measures import Measures
 from .stride import STRIKE, Foot, ankle_over, cycle, smooth
 from .vectors import Vector, cross_product, normalize, rotate, write_frame, write_turn
 
-__all__ = ["Posture", "bend_leg", "place_chain", "posture"]
-
-
 PELVIS_TURN, PELVIS_ROLL, CHEST_TURN = math.radians(5.0), math.radians(3.0), math.radians(4.0)
 SWAY = 0.022
 """Lateral motion of the pelvis over the stance leg [leg lengths]."""

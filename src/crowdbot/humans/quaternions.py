@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["from_matrix", "limit_rotation", "multiply", "slerp", "to_matrix", "transpose_times", "twist_angle"]
-
 
 @kernel
 def to_matrix(q: Floats, out: Floats) -> None:

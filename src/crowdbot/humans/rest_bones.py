@@ -9,8 +9,6 @@ from crowdbot.typing import Floats
 from .asset import shapes
 from .people import People
 
-__all__ = ["RestSkeleton", "rest_skeleton"]
-
 
 class RestSkeleton(NamedTuple):
     """The 28 bones of a person in the rest shape: x forward, y left, z up, feet on the floor.

@@ -10,8 +10,6 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["CHAIR", "WHEELCHAIR", "Seat", "seat_rows"]
-
 Point = tuple[float, float, float]
 
 

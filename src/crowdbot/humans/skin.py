@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["SkinnedMesh", "skin_vertices"]
-
 
 class SkinnedMesh(NamedTuple):
     """Rest shapes ``rest [P, V, 3]`` [m] of one topology, with ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1)."""

@@ -13,19 +13,6 @@ from crowdbot.typing import Floats
 
 from .vectors import Vector
 
-__all__ = [
-    "LANDED",
-    "STRIKE",
-    "Foot",
-    "ankle_over",
-    "cycle",
-    "lowest",
-    "planted_foot",
-    "smooth",
-    "swinging_foot",
-    "wrap_angle",
-]
-
 Foot = tuple[float, float, float, float, float, float]
 """Ankle x, y, z [m], yaw, pitch and toe pitch [rad]."""
 RESTING_CYCLE = 1.15

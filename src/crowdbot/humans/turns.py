@@ -7,8 +7,6 @@ import math
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["about", "align_frame", "cross", "unit"]
-
 
 @kernel
 def cross(a: Floats, b: Floats, out: Floats) -> None:

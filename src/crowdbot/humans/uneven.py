@@ -13,8 +13,6 @@ from .asset import shapes
 from .people import People
 from .posture import SOFT, STRAIGHT, Posture, bend_leg, place_chain
 
-__all__ = ["ankle_positions", "stand_on_ground"]
-
 LEGS = (20, 24)
 """First bones of the left and right leg: thigh, shank, foot, toes."""
 

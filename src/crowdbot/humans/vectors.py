@@ -7,8 +7,6 @@ import math
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["Vector", "cross_product", "normalize", "rotate", "write_frame", "write_turn"]
-
 Vector = tuple[float, float, float]
 
 

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 from .asset import shapes
 from .person import Person
 
-__all__ = ["Outfit", "outfit", "region_colors", "worn_parts"]
-
 Color = tuple[float, float, float]
 
 SKIN: dict[str, tuple[str, ...]] = {

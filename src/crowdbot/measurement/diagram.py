@@ -18,8 +18,6 @@ from .rows import table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["StartsMean", "compute_fundamental_diagram", "mean_over_starts"]
-
 
 @dataclass(frozen=True)
 class StartsMean:

@@ -21,8 +21,6 @@ from .rows import check_metres, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compute_headways", "compute_pair_distribution_function"]
-
 
 def compute_headways(tracks: Trajectories, axis: str = "x", length: float | None = None) -> pd.DataFrame:
     """Return the gaps of a single file along an axis: columns id, frame, ahead, behind [m], density [1/m].

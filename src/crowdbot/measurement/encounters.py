@@ -20,13 +20,6 @@ from .rows import check_metres, rows_at, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "compute_encounters",
-    "compute_time_to_collision_distribution",
-    "distribution",
-    "expected_times",
-    "time_edges",
-]
 
 REACH = 1e3
 """Distance [m] beyond which pairs are not counted in distributions of times."""

@@ -23,14 +23,6 @@ from .rows import check_metres, every_frame, rows_at, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "compute_crossing_frames",
-    "compute_flow",
-    "compute_line_flow",
-    "compute_n_t",
-    "crossing_times",
-    "mean_flow",
-]
 
 ON_LINE = 1e-5
 """People nearer to a line than this [m] at the end of a step have not crossed it yet."""

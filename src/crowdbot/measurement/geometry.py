@@ -14,8 +14,6 @@ from crowdbot.core import InputError
 from crowdbot.data import Trajectories, walkable_rings
 from crowdbot.typing import Floats
 
-__all__ = ["MeasurementArea", "MeasurementLine", "WalkableArea"]
-
 
 @dataclass(frozen=True, eq=False)
 class MeasurementArea:

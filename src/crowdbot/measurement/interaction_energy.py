@@ -25,13 +25,6 @@ from .rows import table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "FIT_RANGE",
-    "InteractionEnergy",
-    "compute_interaction_energy",
-    "fit_interaction_energy",
-    "pool_interaction_energy",
-]
 
 FIT_RANGE = (0.2, 3.0)
 """Times to collision [s] of the fit; the paper finds the power law below its cut-off of about 3 s."""

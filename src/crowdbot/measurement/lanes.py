@@ -18,7 +18,6 @@ from .rows import check_metres, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["LANE_BAND", "compute_lane_order", "lane_order", "walking_direction"]
 
 LANE_BAND = 0.3
 """Width of the band of a person: lateral distance [m]."""

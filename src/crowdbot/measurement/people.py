@@ -22,14 +22,6 @@ from .rows import check_metres, check_step, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "BORDERS",
-    "ContinuousTracks",
-    "compute_individual_acceleration",
-    "compute_individual_speed",
-    "compute_individual_voronoi_polygons",
-    "pedpy_tracks",
-]
 
 BORDERS = {
     "exclude": "rows whose window is not complete are left out",

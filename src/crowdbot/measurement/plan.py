@@ -9,8 +9,6 @@ from crowdbot.core import InputError, did_you_mean
 
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
 
-__all__ = ["FIGURES", "METHODS", "MeasurementPlan"]
-
 METHODS = {
     "individual": "Voronoi density and speed of each person and frame; distribution of accelerations",
     "area": "classic and Voronoi density, mean and Voronoi speed and flow in the area over time",

@@ -12,8 +12,6 @@ import numpy as np
 from .interaction_energy import pool_interaction_energy
 from .survey import Measurements
 
-__all__ = ["plot_measurements"]
-
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
 """Colours that are distinguishable with colour blindness (Okabe & Ito), then brown and grey."""
 

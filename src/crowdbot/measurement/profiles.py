@@ -17,7 +17,6 @@ from .rows import table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Grid", "compute_profiles"]
 
 MOST_CELLS = 250_000
 

@@ -15,8 +15,6 @@ from crowdbot.typing import Ints
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["check_metres", "check_step", "every_frame", "rows_at", "select_rows", "table"]
-
 
 def table(**columns: Any) -> pd.DataFrame:
     """Return a pandas table of columns of equal length."""

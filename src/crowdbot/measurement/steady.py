@@ -18,8 +18,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["SteadyState", "combine_steady_states", "detect_steady_state", "steady_threshold"]
-
 LIMIT = 6.0
 """Range of the normal distribution that is discretised [standard deviations]."""
 NODES = 20

@@ -36,8 +36,6 @@ from .waves import compute_stop_and_go, compute_stops
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Measurements", "measure", "pool_diagrams"]
-
 
 @dataclass(frozen=True, eq=False)
 class Measurements:

@@ -21,7 +21,6 @@ from .rows import check_metres, rows_at, table
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["StopAndGo", "compute_stop_and_go", "compute_stops", "wave_speed"]
 
 SLOW = 0.1
 """People slower than this [m/s] stand."""

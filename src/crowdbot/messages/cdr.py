@@ -15,9 +15,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats
 
-__all__ = ["MAP", "Shape", "marker_bytes", "people_bytes"]
-
-
 START = b"\x00\x01\x00\x00"
 """Little-endian CDR header; alignment is counted after it."""
 TAGNAMES = struct.pack("<II7sxI8sI", 2, 7, b"radius", 8, b"heading", 2)

@@ -15,7 +15,6 @@ from crowdbot.core import Pose, SpatialPose
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["Codec", "MeasuredReading", "mount_pose", "pack_arrays", "unpack_arrays"]
 
 MOST = 1 << 27
 """Maximum number of elements of an array, a protection against damaged files."""

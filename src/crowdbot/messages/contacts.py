@@ -8,18 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = [
-    "COLLISIONS",
-    "FALLS",
-    "FORCES",
-    "ContactEventRecord",
-    "ContactForceRecord",
-    "FallRecord",
-    "contact_messages",
-    "read_contact_events",
-    "read_falls",
-    "read_forces",
-]
 
 FORCES = "/crowdbot/forces"
 """Topic of the contact forces of each step."""

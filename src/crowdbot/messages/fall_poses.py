@@ -11,7 +11,6 @@ from crowdbot.humans import LYING, FallPose
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["FALL_POSES", "fall_pose_message", "read_fall_poses"]
 
 FALL_POSES = "/crowdbot/fall_poses"
 """Topic of the poses of people who lean, fall, lie or get up, in recorded scenes."""

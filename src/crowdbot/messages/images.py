@@ -22,7 +22,6 @@ from .codec import Codec, MeasuredReading
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["depth_codec", "image_in", "lens_in", "picture_codec"]
 
 OPTICAL = "_optical"
 KINDS = {"32FC1": ("<f4", 1), "32SC1": ("<i4", 1), "rgb8": ("|u1", 3)}

@@ -11,8 +11,6 @@ from crowdbot.core import Scene
 
 from .cdr import Shape, marker_bytes
 
-__all__ = ["KIND", "markers"]
-
 KIND = "visualization_msgs/msg/MarkerArray"
 BODY_HEIGHT, ROBOT_HEIGHT, GOAL_HEIGHT = 1.7, 0.8, 0.02
 ORANGE, BLUE, GREEN = (0.9, 0.6, 0.0), (0.0, 0.45, 0.7), (0.0, 0.62, 0.45)

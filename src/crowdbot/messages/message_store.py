@@ -19,8 +19,6 @@ from crowdbot.core import Scene, SpatialPose
 
 from .cdr import MAP, people_bytes
 
-__all__ = ["Messages"]
-
 PERSON = """string name
 geometry_msgs/Point position
 geometry_msgs/Point velocity

@@ -14,7 +14,6 @@ from .codec import Codec, MeasuredReading
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["cloud_codec", "points_in", "touch_codec"]
 
 NUMBERS = {"<i1": 1, "|i1": 1, "|u1": 2, "<i2": 3, "<u2": 4, "<i4": 5, "<u4": 6, "<f4": 7, "<f8": 8}
 """Types of ``sensor_msgs/PointField``."""

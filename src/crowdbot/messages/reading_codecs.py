@@ -50,7 +50,6 @@ from .point_clouds import cloud_codec, touch_codec
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["CODECS", "KIND", "REST", "codec_of", "decode_reading", "encode_reading"]
 
 KIND = "crowdbot_msgs/msg/Reading"
 REST = "/reading"

@@ -21,8 +21,6 @@ from crowdbot.sensors import (
 
 from .reading_codecs import CODECS, KIND, REST
 
-__all__ = ["reading_topics"]
-
 IMAGES = {
     "/image": "sensor_msgs/msg/Image",
     "/labels": "sensor_msgs/msg/Image",

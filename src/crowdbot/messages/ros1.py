@@ -10,8 +10,6 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from .message_store import OWN, Messages
 
-__all__ = ["Ros1Messages"]
-
 TF = "geometry_msgs/TransformStamped[] transforms\n"
 
 

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats
 
-__all__ = ["AgentLog", "AgentStates"]
-
 
 @dataclass(frozen=True)
 class AgentStates:

@@ -11,9 +11,6 @@ from crowdbot.typing import Bools, Floats
 from .displacement import check
 from .proximity import swept_distance
 
-__all__ = ["CONTACT", "collision_mask", "collision_share", "neighbor_mask", "swept_collision_shares"]
-
-
 CONTACT = 0.2
 """Two people closer than this [m] collide (TrajNet++)."""
 NEIGHBORS = ("predicted", "true")

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from .agent_states import AgentStates
 from .contacts import ContactEvent, contact_events
 
-__all__ = ["ContactTracker"]
-
 APART = 1.0
 """A person is tracked until this time [s] after being near the robot; contacts end earlier."""
 

@@ -11,9 +11,6 @@ from crowdbot.typing import Bools, Floats
 
 from .proximity import JUMP, clearance, swept_clearance
 
-__all__ = ["ContactEvent", "cause_of", "contact_events", "contact_stretches"]
-
-
 RELEASE = 0.05
 """A contact ends if the clearance stays above this [m] ..."""
 HOLD = 0.5

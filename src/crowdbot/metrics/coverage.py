@@ -12,8 +12,6 @@ from crowdbot.data import Forecast, Windows
 
 from .displacement import check
 
-__all__ = ["ellipse_coverage"]
-
 
 def ellipse_coverage(forecast: Forecast, future: Windows, share: float = 0.95) -> NDArray[np.float64]:
     """Return ``[T]``: share of true positions inside the ellipse of a probability, at each step; NaN without people.

@@ -13,20 +13,6 @@ from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
 from crowdbot.typing import Bools, Floats
 
-__all__ = [
-    "MISS",
-    "RULES",
-    "ade",
-    "best_of",
-    "check",
-    "chosen_sample",
-    "distances",
-    "fde",
-    "mean_and_final",
-    "miss_rate",
-]
-
-
 RULES = ("person", "scene", "same")
 MISS = 2.0
 """A person is missed if no sample ends within this distance [m] of the true position."""

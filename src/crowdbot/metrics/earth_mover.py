@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .nearest_neighbor import _check, path_distances
 
-__all__ = ["earth_mover_distance"]
-
 
 def earth_mover_distance(real: ArrayLike, drawn: ArrayLike) -> NDArray[np.float64]:
     """Return the earth mover's distance ``[...]`` [m] of equally many real and drawn paths, lower is better.

@@ -12,9 +12,6 @@ from crowdbot.typing import Bools, Floats, Ints
 
 from .displacement import ade, check
 
-__all__ = ["energy_score"]
-
-
 OVER = ("steps", "path")
 
 

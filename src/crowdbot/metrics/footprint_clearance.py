@@ -11,9 +11,6 @@ from crowdbot.typing import Floats
 
 from .agent_states import AgentStates
 
-__all__ = ["FOOTPRINT_METRICS", "footprint_clearance"]
-
-
 FOOTPRINT_METRICS: dict[str, tuple[str, str]] = {
     "min_footprint_clearance": (
         "m",

@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Protocol
 
-__all__ = ["IMPACT_METRICS", "Impact", "impact_metrics"]
-
 IMPACT_METRICS: dict[str, tuple[str, str]] = {
     "impacts": ("1", "number of contacts of bodies with people in the physics world"),
     "robot_caused_impacts": ("1", "impacts in which the robot closed the distance"),

@@ -35,9 +35,6 @@ from .motion import heading_change, jerk, longest_stall, path_efficiency, path_l
 from .proximity import personal_space_compliance, proxemic_shares
 from .record_clearance import log_clearance, record_clearance
 
-__all__ = ["CONTACT_METRICS", "NavigationMetrics", "NavigationOutcome"]
-
-
 NEAR = 1.0
 """People closer than this [m] are tracked for contacts."""
 TOUCH = 1e-6

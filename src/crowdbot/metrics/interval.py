@@ -21,16 +21,6 @@ import numpy as np
 from crowdbot.core import InputError, stream
 from crowdbot.typing import Floats, Ints
 
-__all__ = [
-    "Interval",
-    "Intervals",
-    "PersonValues",
-    "bootstrap_interval",
-    "corrected_interval",
-    "draw_counts",
-    "percentile_interval",
-]
-
 Interval = tuple[float, float]
 
 RESAMPLES = 1000

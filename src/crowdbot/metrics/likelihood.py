@@ -11,9 +11,6 @@ from crowdbot.typing import Floats
 
 from .displacement import check
 
-__all__ = ["FLOOR", "kde_nll"]
-
-
 FLOOR = -20.0
 """Lower bound of the log density [nat], as in the Trajectron and in TrajNet++."""
 FLAT = 1e-12

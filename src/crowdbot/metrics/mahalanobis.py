@@ -9,9 +9,6 @@ from crowdbot.typing import Floats
 
 from .displacement import check
 
-__all__ = ["mahalanobis"]
-
-
 FLAT = 1e-12
 """Minimum ratio of the eigenvalues of the covariance; samples on a line have no spread across it."""
 

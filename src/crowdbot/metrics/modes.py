@@ -10,9 +10,6 @@ from crowdbot.typing import Floats
 
 from .nearest_neighbor import path_distances
 
-__all__ = ["mode_count", "mode_coverage", "mode_shares"]
-
-
 FOUND = 0.25
 """A mode is found if it has at least this fraction of an equal share."""
 

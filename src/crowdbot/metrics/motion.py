@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats
 
-__all__ = ["heading_change", "jerk", "longest_stall", "path_efficiency", "path_length", "stalled_time"]
-
-
 JERK_STEP = 0.1
 """Step [s] at which velocities are differentiated: jerk grows with one over its square."""
 STALL_SPEED = 0.05

@@ -13,9 +13,6 @@ from .agent_states import AgentStates
 from .incremental import NavigationMetrics, NavigationOutcome
 from .social.metric import metric_families
 
-__all__ = ["NAVIGATION_METRICS", "navigation_metrics", "outcome"]
-
-
 NAVIGATION_METRICS: dict[str, tuple[str, str]] = {
     row.name: (row.unit, row.formula) for row in metric_families()["navigation"]
 }

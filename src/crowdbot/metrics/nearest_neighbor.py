@@ -8,9 +8,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["nearest_neighbor_accuracy", "path_distances"]
-
-
 TIE = 1e-12
 """Relative tolerance of equal distances."""
 

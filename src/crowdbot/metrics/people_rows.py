@@ -16,9 +16,6 @@ from .contacts import contact_events
 from .motion import jerk
 from .proximity import ZONES, clearance, swept_clearance
 
-__all__ = ["PEOPLE_COLUMNS", "PersonImpact", "TableRobot", "people_table"]
-
-
 PEOPLE_COLUMNS: dict[str, tuple[str, str]] = {
     "id": ("1", "id of the person"),
     "begin": ("s", "time of the first record of the person"),

@@ -15,9 +15,6 @@ from .displacement import best_of, chosen_sample, distances, mean_and_final
 from .energy import energy_score
 from .likelihood import kde_nll
 
-__all__ = ["MOST_FOR_ENERGY", "PersonErrors", "error_over_horizon", "person_errors"]
-
-
 MOST_FOR_ENERGY = 100
 """Maximum number of samples for the energy score, whose computing time grows with their square."""
 

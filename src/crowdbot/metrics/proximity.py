@@ -13,19 +13,6 @@ import numpy as np
 
 from crowdbot.typing import Bools, Floats
 
-__all__ = [
-    "ZONES",
-    "clearance",
-    "local_density",
-    "personal_space_compliance",
-    "proxemic_shares",
-    "swept_clearance",
-    "swept_distance",
-    "time_to_collision",
-    "wall_clearance",
-]
-
-
 JUMP = 15.0
 """A larger speed [m/s] between two samples means that the person left and entered again; nothing is swept."""
 ZONES = {"intimate": 0.45, "personal": 1.2, "social": 3.6}

@@ -15,8 +15,6 @@ from .agent_states import AgentLog, AgentStates
 from .proximity import JUMP
 from .step_clearance import step_wall_clearance, swept_length
 
-__all__ = ["LogClearance", "RecordClearance", "log_clearance", "record_clearance"]
-
 REACH = 2.5
 """Radius [m] of the circle of the local density."""
 

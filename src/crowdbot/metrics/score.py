@@ -18,8 +18,6 @@ from .displacement import MISS, miss_rate
 from .interval import Interval, Intervals, PersonValues
 from .persons import PersonErrors, person_errors
 
-__all__ = ["Score", "score"]
-
 SAMPLED = ("NLL", "energy")
 """Columns that a table of deterministic forecasts does without: they have no density, and their energy is the ADE."""
 

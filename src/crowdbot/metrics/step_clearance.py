@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["step_clearance", "step_wall_clearance", "swept_length"]
-
 
 @kernel
 def swept_length(sx: float, sy: float, ex: float, ey: float) -> float:

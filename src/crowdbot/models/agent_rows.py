@@ -16,25 +16,6 @@ from crowdbot.core.model_parameter import BOOL
 from crowdbot.core.neighbors import Seekers, nearest_of_rows
 from crowdbot.typing import Bools, Floats
 
-__all__ = [
-    "COLUMNS",
-    "LARGEST",
-    "LIMIT",
-    "RADIUS",
-    "VX",
-    "VY",
-    "WISH_X",
-    "WISH_Y",
-    "AgentRows",
-    "StepStart",
-    "X",
-    "Y",
-    "begin_rows",
-    "begin_step",
-    "speed_limit",
-]
-
-
 X, Y, VX, VY, RADIUS, WISH_X, WISH_Y, LIMIT = range(8)
 """Columns of :attr:`AgentRows.agents`: position, velocity, radius, desired velocity, maximum speed."""
 COLUMNS = 8

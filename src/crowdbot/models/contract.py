@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 from .goals import Goal
 from .model import CrowdModel
 
-__all__ = ["check_goal", "check_model"]
-
 DT = 0.1
 
 

@@ -14,9 +14,6 @@ from crowdbot.typing import Floats, Ints
 
 from .model import CrowdModel
 
-__all__ = ["MODEL", "Mixture"]
-
-
 MODEL = "model"
 """Name in the memory of a scene: the model index of each agent ``[E, A]``, which overrides ``which``."""
 

@@ -11,8 +11,6 @@ import numpy as np
 from crowdbot.core import kernel, per_agent
 from crowdbot.typing import Floats
 
-__all__ = ["limit_length", "parameter_columns", "parameter_rows"]
-
 
 def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:
     """Return the parameters ``names`` of a model as ``[E * A, N]``, or ``[1, N]`` if they are equal for all agents.

@@ -17,8 +17,6 @@ from .headway.layer import HeadwayLayer, arguments_of, copy_field, make_class
 from .model import CrowdModel
 from .speed_models.collision_free_speed import CollisionFreeSpeed
 
-__all__ = ["CrowdPreset", "People", "crowd_presets"]
-
 BASES: dict[str, type[CrowdModel]] = {"collision-free-speed": CollisionFreeSpeed}
 """Models that a preset file may name."""
 

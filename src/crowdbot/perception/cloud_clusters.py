@@ -16,9 +16,6 @@ from .cluster_kernels import hide_walls
 from .detections import Coverage, Detections
 from .detector import Detector
 
-__all__ = ["CloudClusters"]
-
-
 LARGEST_GRID = 4_000_000
 """Largest number of cells of the grid on the ground."""
 

@@ -8,9 +8,6 @@ from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = ["cut_clusters", "hide_walls", "place_clusters"]
-
-
 FLAT = 0.15
 """A cluster is flat if it bulges towards the scanner by less than this share of its width."""
 WIDE = 0.35

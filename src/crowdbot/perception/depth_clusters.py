@@ -16,8 +16,6 @@ from .cloud_clusters import CloudClusters
 from .cluster_kernels import hide_walls
 from .detections import Coverage, Detections
 
-__all__ = ["DepthClusters"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class DepthClusters(CloudClusters):

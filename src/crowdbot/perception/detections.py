@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, kernel
 from crowdbot.typing import Floats
 
-__all__ = ["Coverage", "Detections"]
-
-
 BODY = 0.25
 """Radius of a person [m] in the test whether a place is visible."""
 BEHIND = 0.6

@@ -11,8 +11,6 @@ from crowdbot.sensors import Reading
 
 from .detections import Detections
 
-__all__ = ["Detector"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Detector(ABC):

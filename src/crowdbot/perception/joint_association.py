@@ -12,9 +12,6 @@ from crowdbot.typing import Floats
 from .motion_filter import FilterState, Innovation
 from .nearest_neighbor_tracker import Association, GlobalNearestNeighbor
 
-__all__ = ["JointProbabilisticDataAssociation", "association_probabilities"]
-
-
 ROUNDS = 100
 """Largest number of rounds of belief propagation."""
 PRECISION = 1e-6

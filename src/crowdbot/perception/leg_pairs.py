@@ -7,9 +7,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = ["join_legs"]
-
-
 LONE_LEG = 0.08
 """Additional standard deviation [m] of a person of whom one leg is seen."""
 HIDDEN = 0.12

@@ -18,9 +18,6 @@ from .detections import Coverage, Detections
 from .detector import Detector
 from .leg_pairs import join_legs
 
-__all__ = ["LidarClusters"]
-
-
 FEWEST = 2.0
 """A person farther away than the distance at which this many beams meet it is not expected to be found."""
 NO_WALLS = np.zeros((0, 4))

@@ -9,8 +9,6 @@ import numpy as np
 
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["FilterState", "Innovation", "correct", "innovation", "mix", "predict", "start"]
-
 
 class FilterState(NamedTuple):
     """Filters of N people with M motion models; the state is x, y [m], vx, vy [m/s]."""

@@ -18,9 +18,6 @@ from .tracker import Tracker
 from .tracker_state import TrackerState
 from .tracks import Tracks
 
-__all__ = ["Association", "GlobalNearestNeighbor", "InteractingMultipleModel"]
-
-
 FORBIDDEN = 1e6
 """Cost of a pair outside the gate."""
 

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 from crowdbot.typing import Floats
 
-__all__ = ["Layers", "read_layers", "run_layers"]
-
 Layers = tuple[NDArray[np.float32], ...]
 """Weights ``[I, O]`` and biases ``[O]`` of the layers, in turn."""
 

@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 from .motion_filter import FilterState
 from .tracker_state import TrackerState
 
-__all__ = ["PredictorMotion"]
-
-
 ROWS = 8
 """Number of rows of predictors without a history in seconds."""
 STRONGEST = 3.0

@@ -12,8 +12,6 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 from crowdbot.typing import Floats
 
-__all__ = ["predict_uncertain"]
-
 
 def predict_uncertain(
     predictor: Predictor, past: Windows, covariance: Floats, steps: int, samples: int = 20,

@@ -12,8 +12,6 @@ from crowdbot.core import InputError
 from .detections import Detections
 from .tracks import Tracks
 
-__all__ = ["Tracker"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Tracker(ABC):

@@ -10,8 +10,6 @@ from crowdbot.typing import Bools, Floats, Ints
 from .motion_filter import FilterState
 from .tracks import Tracks
 
-__all__ = ["TrackerState"]
-
 
 @storable
 @dataclass(frozen=True)

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from crowdbot.core import storable
 from crowdbot.typing import Floats
 
-__all__ = ["Tracks"]
-
 
 @storable
 @dataclass(frozen=True)

@@ -14,8 +14,6 @@ from crowdbot.data import Forecast, Windows, observed_velocity
 
 from .predictor import Predictor, window_streams
 
-__all__ = ["ConstantAcceleration", "ConstantVelocity", "LeastSquares", "SampledConstantVelocity"]
-
 SCHOLLER = Paper(
     "Schöller, Aravantinos, Lay, Knoll",
     2020,

@@ -11,8 +11,6 @@ from crowdbot.data import Forecast, Windows, example_windows
 
 from .predictor import Predictor
 
-__all__ = ["check_predictor"]
-
 STEPS = 12
 
 

@@ -13,8 +13,6 @@ from crowdbot.data import Windows
 from crowdbot.data.degrade import GHOST, DegradedTracks
 from crowdbot.typing import Bools, Ints
 
-__all__ = ["DegradedWindows", "degraded_windows"]
-
 
 @dataclass(frozen=True)
 class DegradedWindows:

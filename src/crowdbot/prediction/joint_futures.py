@@ -10,9 +10,6 @@ from crowdbot.typing import Floats
 
 from .joint_kernels import assign_futures, first_crossing, separate_paths
 
-__all__ = ["coordinate_draws", "coordinate_modes", "separate_people", "stop_at_walls"]
-
-
 SWEEPS = 8
 """Maximum number of passes over all people when futures are exchanged."""
 ORDER = 0.3

@@ -12,9 +12,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = ["assign_futures", "first_crossing", "separate_paths"]
-
-
 FLAT = 1e-9
 
 

@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 
 from .predictor import Predictor
 
-__all__ = ["Kalman", "KalmanAcceleration"]
-
-
 KALMAN = Paper(
     "Kalman", 1960, "A new approach to linear filtering and prediction problems", "J. Basic Engineering",
     "10.1115/1.3662552",

@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 from .predictor import Predictor
 from .pretrained_weights import AUTO, FOLDS, OPEN, STEP, fold_of, incompatibility, pretrained_file
 
-__all__ = ["LearnedPredictor", "complete_tracks"]
-
-
 ELSEWHERE = "eth"
 """Fold of the shipped weights for other places: trained on all places except this one, the smallest."""
 TOLERANCE = 0.02

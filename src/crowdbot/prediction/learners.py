@@ -10,7 +10,6 @@ from crowdbot.core import UnknownName
 if TYPE_CHECKING:
     from .training import Samples, Trainable
 
-__all__ = ["WEIGHTS_FIELDS", "make_learner"]
 
 WEIGHTS_FIELDS = {"anchor-net": "file", "social-ways": "checkpoint"}
 """Learned predictor -> the parameter that takes the file of its weights."""

@@ -22,8 +22,6 @@ from .tracker_frame import TrackerFrame
 from .tracker_history import TrackedRows, TrackerHistory
 from .tracker_plausibility import TrackerPlausibility, TrackerWarning
 
-__all__ = ["Live"]
-
 ROWS = 8
 """Default number of rows of predictors without a history in seconds."""
 FIRST_BUDGET = 20

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, kebab_case, stream
 from crowdbot.data import Forecast, Windows
 
-__all__ = ["Predictor", "window_streams"]
-
 
 @dataclass(frozen=True)
 class Predictor(ABC):

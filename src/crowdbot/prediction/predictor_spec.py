@@ -17,8 +17,6 @@ from crowdbot.models import Goal
 from .predictor import Predictor
 from .simulated import Simulated
 
-__all__ = ["PredictorSpec"]
-
 LEARNING_WINDOWS = 60
 """Number of windows, evenly spaced over the known part of a recording, for priors and shared parameters."""
 

@@ -16,23 +16,6 @@ from crowdbot.data import Windows
 
 from .weight_files import find_weights
 
-__all__ = [
-    "ALL",
-    "AUTO",
-    "FOLDS",
-    "LONGEST_STEP",
-    "OPEN",
-    "STEP",
-    "Numbers",
-    "check_fold",
-    "fold_of",
-    "incompatibility",
-    "is_held_out",
-    "load_pretrained",
-    "pretrained_file",
-    "read_weights",
-]
-
 Numbers = dict[str, NDArray[np.float64]]
 
 STEP = 0.4

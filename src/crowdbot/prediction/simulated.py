@@ -27,8 +27,6 @@ from crowdbot.models import ORCA, CrowdModel, CurrentDirection, Goal
 
 from .predictor import Predictor, window_streams
 
-__all__ = ["Simulated"]
-
 
 @dataclass(frozen=True)
 class Simulated(Predictor):

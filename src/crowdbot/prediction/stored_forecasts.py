@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 
 from .predictor import Predictor
 
-__all__ = ["StoredForecasts", "forecasts_of"]
-
 
 @dataclass(frozen=True)
 class StoredForecasts(Predictor):

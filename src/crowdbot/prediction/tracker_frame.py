@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["TrackerFrame"]
-
 
 @dataclass(frozen=True)
 class TrackerFrame:

@@ -14,9 +14,6 @@ from crowdbot.typing import Bools, Floats, Ints
 from .tracker_frame import TrackerFrame
 from .tracker_plausibility import TrackerPlausibility
 
-__all__ = ["TrackedRows", "TrackerHistory"]
-
-
 FIRST_NUMBER = 1 << 40
 """Numbers of identities that are not integers start here."""
 BRIDGE = 1.0

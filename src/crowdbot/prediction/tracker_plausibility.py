@@ -10,9 +10,6 @@ import numpy as np
 
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["TrackerPlausibility", "TrackerWarning"]
-
-
 SPEED_TIME = 0.4
 """Shortest time over which the speed of people is measured [s]; over less, noise of positions looks like speed."""
 MOVING = 0.2

@@ -15,8 +15,6 @@ from pathlib import Path
 
 from crowdbot.core import DataError, user_data_folder
 
-__all__ = ["VARIABLE", "find_weights", "weight_hashes", "weights_folder"]
-
 VARIABLE = "CROWDBOT_WEIGHTS"
 """Environment variable with the folder of the leave-one-out weights."""
 

@@ -35,16 +35,6 @@ from crowdbot.trials import (
     trial_clips,
 )
 
-__all__ = [
-    "AttachedFile",
-    "SkippedAttachmentWarning",
-    "UnpackedFiles",
-    "collect_attachments",
-    "named_files",
-    "skip_message",
-    "unpack_attachments",
-]
-
 MOST = 64 << 20
 """Maximum total size of the files in an episode [bytes]."""
 DATA, CODE = "data", "code"

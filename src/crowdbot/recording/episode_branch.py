@@ -31,8 +31,6 @@ from .provenance import DigestComparison, OrderReplay, Provenance, ProvenanceSeg
 from .recorded_run import episode_path
 from .recorded_simulation import continue_from, simulate_to
 
-__all__ = ["branch"]
-
 Progress = Callable[[float], None]
 
 TOLERANCE = 1000

@@ -19,8 +19,6 @@ from .metadata import TWIST
 from .reading_tables import READING_TABLES
 from .step_records import RecordedStep
 
-__all__ = ["TABLES", "export"]
-
 Columns = dict[str, Any]
 PERSONS = "persons"
 """Name of the table with one row for each person."""

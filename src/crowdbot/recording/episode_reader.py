@@ -29,8 +29,6 @@ from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, FORMAT, KEYS, METADATA, from_json
 from .step_records import RecordedContact, RecordedStep, read_steps
 
-__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
-
 T = TypeVar("T")
 ODOM = "/odom"
 """Ending of the frame in which the root link of a robot moves."""

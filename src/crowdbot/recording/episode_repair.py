@@ -18,8 +18,6 @@ from .mcap_writer import finish
 from .metadata import END_KEYS, ENDING, METADATA, as_json
 from .step_records import RecordedStep, read_steps
 
-__all__ = ["EpisodeEnd", "repair"]
-
 
 class EpisodeEnd:
     """Computes the end metadata of a run as if it was interrupted at its last recorded step.

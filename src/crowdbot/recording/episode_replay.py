@@ -19,8 +19,6 @@ from .metadata import END_KEYS, versions
 from .provenance import DigestComparison, OrderReplay, Provenance, digests
 from .recorded_simulation import LATE, continue_from
 
-__all__ = ["Replay", "replay"]
-
 
 @dataclass(frozen=True)
 class Replay:

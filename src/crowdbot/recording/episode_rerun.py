@@ -15,8 +15,6 @@ from .attachments import unpack_attachments
 from .episode_reader import read_metadata
 from .provenance import OrderReplay, Provenance, replay_decisions
 
-__all__ = ["EpisodeRerun", "open_rerun"]
-
 
 class EpisodeRerun(NamedTuple):
     """The trial of an episode with its seed and its orders.

@@ -32,8 +32,6 @@ from .metadata import (
 )
 from .step_messages import StepMessages
 
-__all__ = ["Recorder"]
-
 FOREVER = "{sec: 2147483647, nsec: 4294967295}"
 LATCHED = (
     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"

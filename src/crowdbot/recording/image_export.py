@@ -16,8 +16,6 @@ from crowdbot.sensors import RgbImage
 from .reading_tables import READING_TABLES
 from .step_records import RecordedStep
 
-__all__ = ["ImageExport", "folder_of"]
-
 
 def folder_of(table: Path) -> Path:
     """Return the folder of the images of a table.

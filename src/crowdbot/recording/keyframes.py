@@ -28,8 +28,6 @@ from crowdbot.simulation import (
 
 from .metadata import versions
 
-__all__ = ["MEDIA", "Keyframe", "KeyframeTrack", "KeyframeWarning", "keyframe_ticks", "latest_keyframe"]
-
 MEDIA = "application/x-crowdbot-keyframe"
 """Media type of the attachments."""
 LARGEST = 1 << 27

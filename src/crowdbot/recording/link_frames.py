@@ -14,8 +14,6 @@ from crowdbot.trials import RobotSpec
 from crowdbot.typing import Floats
 from crowdbot.world import quaternion
 
-__all__ = ["LinkFrames", "spatial_row"]
-
 Row = tuple[str, str, SpatialPose]
 """Parent frame, child frame, and pose of the child."""
 BASE, ODOM = "base_link", "odom"

@@ -35,8 +35,6 @@ from mcap.records import (
 
 from crowdbot.data import MCAP_MAGIC, McapOpcode, McapReader, read_attachment
 
-__all__ = ["McapWriter", "finish"]
-
 LARGE = 4 << 20
 """Maximum size of a chunk [bytes]."""
 

@@ -11,25 +11,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "ADDED_ROBOTS",
-    "CONTACTS",
-    "DIGEST",
-    "ENDING",
-    "END_KEYS",
-    "FORMAT",
-    "GROUND_TRUTH",
-    "KEYS",
-    "METADATA",
-    "ORDERS",
-    "REACTION_TOPIC",
-    "TWIST",
-    "as_json",
-    "from_json",
-    "heading_of",
-    "versions",
-]
-
 METADATA = "crowdbot"
 """Name of the metadata record at the start."""
 ADDED_ROBOTS = "crowdbot.robots"

@@ -30,16 +30,6 @@ from crowdbot.trials import Trial, parse_trial, trial_xml
 from .episode_reader import read_metadata
 from .metadata import DIGEST, ORDERS
 
-__all__ = [
-    "DigestComparison",
-    "OrderReplay",
-    "Provenance",
-    "ProvenanceSegment",
-    "digests",
-    "recorded_orders",
-    "replay_decisions",
-]
-
 
 @dataclass(frozen=True)
 class ProvenanceSegment:

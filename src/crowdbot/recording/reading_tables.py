@@ -23,8 +23,6 @@ from crowdbot.sensors import (
 from .metadata import TWIST
 from .step_records import RecordedStep
 
-__all__ = ["READING_TABLES"]
-
 Columns = dict[str, Any]
 PLACE = ("x", "y", "z", "heading")
 

@@ -28,8 +28,6 @@ from crowdbot.trials import Trial, check_trial
 
 from .episode_writer import Recorder
 
-__all__ = ["episode_path", "open_run", "record", "run"]
-
 Progress = Callable[[float], None]
 T = TypeVar("T", bound=EpisodeStatistics)
 

@@ -16,8 +16,6 @@ from .episode_reader import read_metadata
 from .keyframes import Keyframe, KeyframeWarning, keyframe_ticks, latest_keyframe
 from .provenance import DigestComparison, OrderReplay, Provenance, digests
 
-__all__ = ["LATE", "RecordedSimulation", "continue_from", "simulate_to"]
-
 LATE = "the episode is simulated from its beginning"
 
 

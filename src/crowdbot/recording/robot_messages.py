@@ -18,8 +18,6 @@ from crowdbot.world import RobotBody, free_joints, joint_states, quaternion, rob
 from .link_frames import LinkFrames, Row
 from .metadata import GROUND_TRUTH
 
-__all__ = ["RobotMessages"]
-
 STATIC = "/tf_static"
 
 

@@ -26,8 +26,6 @@ from crowdbot.world import people_by_reaction
 from .metadata import CONTACTS, ORDERS, REACTION_TOPIC, as_json
 from .robot_messages import RobotMessages
 
-__all__ = ["StepMessage", "StepMessages"]
-
 
 def _everything(topic: str) -> bool:
     return True

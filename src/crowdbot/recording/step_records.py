@@ -37,8 +37,6 @@ from crowdbot.simulation import ScanRow, scan_row
 
 from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
 
-__all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
-
 
 class RecordedContact(NamedTuple):
     """A recorded contact: time [s], robot, other body (an id, a robot or ``wall``) and smallest clearance [m]."""

@@ -10,8 +10,6 @@ from crowdbot.trials import Trial, trial_xml
 
 from .attachments import named_files
 
-__all__ = ["write_trial_files"]
-
 
 def write_trial_files(trial: Trial, path: Path) -> None:
     """Write a trial with copies of its files beside it; the copies of files outside its folder have names inside.

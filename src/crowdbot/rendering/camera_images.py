@@ -15,8 +15,6 @@ from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spa
 from crowdbot.simulation import OrderSource, RobotControl, Simulation, SimulationRun
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
-__all__ = ["RenderRequest", "RenderedImage", "SimulationCamera", "camera_names", "render_images"]
-
 SMOOTH = 0.04
 """Default time between two images of a video [s], rounded to time steps."""
 STRIP, WIDEST = 5.0, 0.3

@@ -14,8 +14,6 @@ from crowdbot.core import InputError, lock_output
 from .camera_images import RenderedImage
 from .video_writer import av_module, reel
 
-__all__ = ["FILMS", "IMAGES", "ImageWriter", "color_segmentation", "painted_depth"]
-
 IMAGES = (".png", ".jpg", ".webp")
 FILMS = (".mp4", ".gif", ".webp")
 FARTHEST = 20.0

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, explain_write_errors
 from crowdbot.world import REACTIONS
 
-__all__ = ["plot_reactions"]
-
 COLORS = {
     "ignore": "#525252", "impassive": "#8c510a", "curious": "#0072b2", "scared": "#d55e00", "block": "#cc79a7",
     "follow": "#009e73", "give-way": "#e69f00", "look": "#56b4e9",

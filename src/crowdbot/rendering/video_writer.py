@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import import_optional
 
-__all__ = ["VideoWriter", "av_module", "reel"]
-
 Image = NDArray[np.uint8]
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of an image [pixels]."""

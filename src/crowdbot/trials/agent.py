@@ -21,7 +21,6 @@ from .robots.reaction import ReactionSpec, check_shares, share_problems
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource, PoseTrack
 
-__all__ = ["Agent", "AgentParameter", "Avatar", "find_pose_source", "load_poses"]
 
 MOST_BYTES = 64 << 20
 """Largest size of a file of poses [bytes]."""

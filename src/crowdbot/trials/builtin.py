@@ -19,8 +19,6 @@ from .trial import Trial
 from .variants import apply_values
 from .xml.trial_text import read_trial_bytes
 
-__all__ = ["load_builtin_trial", "load_trial"]
-
 MODEL = "crowd/type"
 """Path of the crowd model in trial files: ``model`` is a parameter of every built-in trial with one crowd."""
 

@@ -7,8 +7,6 @@ from importlib.resources.abc import Traversable
 
 from crowdbot.core import parse_xml
 
-__all__ = ["FLOWS", "SIZES", "TITLES", "builtin_trials", "trial_titles"]
-
 SIZES = (50, 100, 200, 350)
 FLOWS = {
     "with": ("1D+", "with the robot", ("east",)),

@@ -16,8 +16,6 @@ from crowdbot.models import CrowdModel, Mixture
 from .fields import attribute, check, mounted_field
 from .notation import NAME
 
-__all__ = ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Crowd:

@@ -15,8 +15,6 @@ from crowdbot.core import InputError, did_you_mean, parse_number
 
 from .notation import plain
 
-__all__ = ["Distribution"]
-
 FORMS = "a number, uniform(low, high), normal(mean, sd) or normal(mean, sd, low, high)"
 
 

@@ -10,8 +10,6 @@ from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, d
 
 from .ground.plan import floor_plan
 
-__all__ = ["trial_svg"]
-
 
 def trial_svg(trial: Any) -> str:
     """Return an SVG drawing: walls grey, ground brown, doors, zones of people blue, robots and their goals red."""

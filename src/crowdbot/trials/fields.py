@@ -21,22 +21,6 @@ from crowdbot.core import Bounds, InputError, did_you_mean
 
 from .partial_element import PartialElement
 
-__all__ = [
-    "Constraint",
-    "FieldProblem",
-    "FieldSpec",
-    "PluginSpec",
-    "attribute",
-    "check",
-    "child",
-    "children",
-    "element_word",
-    "mounted_field",
-    "outline",
-    "plugin_field",
-    "quote_value",
-]
-
 FieldProblem = tuple[Collection[str], str]
 """A problem from ``mistakes(values)`` of an element: the names of the unusable fields, and a sentence."""
 LARGEST = 1e6

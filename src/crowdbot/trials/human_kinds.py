@@ -10,18 +10,6 @@ from crowdbot.core import InputError, did_you_mean
 
 from .fields import quote_value
 
-__all__ = [
-    "ABOUT_ACTIVITY",
-    "ABOUT_BODY",
-    "ABOUT_RIDER",
-    "KINDS",
-    "check_words",
-    "clip_names",
-    "own_body_names",
-    "rider_problems",
-    "word_problems",
-]
-
 KINDS = {
     "man": ("man",),
     "woman": ("woman",),

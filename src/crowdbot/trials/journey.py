@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 from .fields import attribute, check, children
 from .notation import NAME, Points
 
-__all__ = ["Direction", "Exit", "Journey", "Point", "Portal", "Zone"]
-
 TOLERANCE = 0.3
 
 

@@ -8,8 +8,6 @@ from typing import Any
 
 from crowdbot.core import InputError, parse_number
 
-__all__ = ["NAME", "Points", "plain"]
-
 NAME = "[A-Za-z][A-Za-z0-9_]*"
 """Names that other elements refer to; names of robots and sensors are part of ROS topics and frames."""
 

@@ -21,8 +21,6 @@ from .xml.reader_result import ReaderResult
 from .xml.trial_text import parse_trial_xml
 from .xml.writer import element_of
 
-__all__ = ["check_trial", "parse_trial"]
-
 
 def parse_trial(
     text: str | bytes,

@@ -17,8 +17,6 @@ from .journey import Journey
 from .notation import Points
 from .robots.reaction import ReactionSpec, check_shares, share_problems
 
-__all__ = ["Group", "SourceSpec", "Spawner"]
-
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
 """Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
 BODY_RADIUS = Distribution("uniform", (0.17, 0.23))

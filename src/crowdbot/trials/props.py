@@ -15,8 +15,6 @@ from crowdbot.world import FLOORS, RANDOM, SKIES, WALL_SURFACES
 
 from .fields import attribute, check
 
-__all__ = ["Appearance", "Cube", "Light", "Prop", "Table", "Tree"]
-
 
 class _FixedProp(ABC):
     """A prop that is fixed to the floor."""

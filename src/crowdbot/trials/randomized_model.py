@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 
 from .distribution import Distribution
 
-__all__ = ["RandomizedModel", "is_drawn", "names_of", "own"]
-
 Values = Mapping[int, Mapping[str, float]]
 
 

@@ -25,7 +25,6 @@ from .people import BODY_RADIUS
 if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
-__all__ = ["RecordedPeople", "Walk"]
 
 LONGEST_GAP = 2.0
 """Longest gap [s] that is interpolated; after a longer one the person returns as another."""

@@ -41,8 +41,6 @@ from .robots.robot_pose import RobotPose, mirrored_pose
 from .robots.robot_types import robot_folder_of, robot_of_type
 from .robots.safety import SafetySpec, safety_problems
 
-__all__ = ["Mount", "Planner", "RobotGoal", "RobotSpec"]
-
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
 """Defaults of a robot without a type [m, m, kg]."""
 MOST_FILES = 500

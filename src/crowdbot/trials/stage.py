@@ -28,7 +28,6 @@ from .props import Appearance, Cube, Light, Prop, Table, Tree
 if TYPE_CHECKING:
     from crowdbot.world import PhysicsStage
 
-__all__ = ["Obstacle", "Stage", "Wall", "area"]
 
 TWO_GROUNDS = "has both walkable and area; give one of them"
 NOTHING_PLACED = "acts on area and map only, and the stage has neither; move the points of the trial instead"

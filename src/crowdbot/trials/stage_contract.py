@@ -8,8 +8,6 @@ from crowdbot.core import InputError
 
 from .stage import Stage
 
-__all__ = ["check_stage"]
-
 PERSON = 0.3
 """Room that a person needs around its centre [m]."""
 CELLS = 100

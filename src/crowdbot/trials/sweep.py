@@ -16,8 +16,6 @@ from .fields import FieldProblem, attribute, check, quote_value
 from .partial_element import readable
 from .value_path import set_value, set_values
 
-__all__ = ["MOST_VARIANTS", "Sweep", "sweep_problems"]
-
 MOST_VARIANTS = 10_000
 CHECKED = 50
 """Number of variants that are checked when a file with sweeps is read."""

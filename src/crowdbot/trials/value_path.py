@@ -13,8 +13,6 @@ from crowdbot.core import Element, InputError, did_you_mean
 from .fields import FieldSpec, outline, quote_value
 from .robots.robot_parts import replace_robot
 
-__all__ = ["element_at", "remove_at", "set_value", "set_values", "text_of"]
-
 STEP = re.compile(r"([A-Za-z][A-Za-z_-]*)(?:\[([^\[\]]+)\])?")
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 

@@ -18,8 +18,6 @@ from .value_path import set_values, text_of
 from .xml.element_edit import needs_trust
 from .xml.writer import element_of
 
-__all__ = ["apply_values", "expand_sweeps"]
-
 
 @remarks_at_end()
 def apply_values(

@@ -32,8 +32,6 @@ from .scenario import (
 )
 from .statistics import mean_of, text_of
 
-__all__ = ["BOTTLENECK", "bottleneck_flow", "crossings", "steady_flow"]
-
 PEOPLE = 60
 ROOM, HALF = 8.0, 3.0
 """Length and half width of the room [m]."""

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["ISO_CASES", "RIMEA_CASES", "Case"]
-
 
 class Case(NamedTuple):
     """One case of a guideline.

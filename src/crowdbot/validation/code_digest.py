@@ -13,8 +13,6 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-__all__ = ["code_digest", "code_files"]
-
 PACKAGE = Path(__file__).parents[1]
 FOLLOWED = ("core", "measurement", "models", "validation")
 """Rooms whose code is followed; names from other rooms do not affect the results of a check."""

@@ -33,8 +33,6 @@ from .scenario import (
 )
 from .statistics import ends_of, mean_of, summarize_starts, worst_of
 
-__all__ = ["ASSIGNED_EXITS", "COUNTER_FLOW", "PREMOVEMENT", "SLOW_MEMBER"]
-
 WAITING = 10
 EARLIEST, LATEST = 10.0, 100.0
 """Premovement times of RiMEA test 5 [s], uniform."""

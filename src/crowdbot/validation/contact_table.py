@@ -26,8 +26,6 @@ from .contacts import CONTACT_TRIALS, LARGEST_OVERLAP, LARGEST_SHARE, measure_co
 from .rimea import CORRIDOR_TIME
 from .scenario import Report
 
-__all__ = ["CONTACT_REASONS", "CONTACT_SECONDS", "OTHER_VALUES", "STARTS", "compare_contacts", "write_contact_page"]
-
 STARTS = 20
 """Runs of each model in each trial."""
 CONTACT_SECONDS = 20.0

@@ -14,8 +14,6 @@ from crowdbot.models import CrowdModel
 from crowdbot.simulation import Episode, simulate_seeds
 from crowdbot.trials import Trial, load_trial
 
-__all__ = ["CONTACT_TRIALS", "LARGEST_OVERLAP", "LARGEST_SHARE", "ContactSummary", "measure_contacts"]
-
 CONTACT_TRIALS = (
     "crossing-flows",
     "two-way",

@@ -29,8 +29,6 @@ from .scenario import (
 from .section import section_of, section_values
 from .statistics import bin_values, find_steady_window, pool_bins, worst_of
 
-__all__ = ["CORRIDOR", "LENGTH", "SPREAD", "WIDTH", "corridor_crowd"]
-
 LENGTH, WIDTH = 12.0, 3.0
 DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0)
 """People per square metre."""

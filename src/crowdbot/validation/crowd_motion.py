@@ -14,8 +14,6 @@ from crowdbot.typing import Bools, Floats
 from .layouts import inside_solids
 from .scenario import RADIUS, SEEN, STEP, CrowdTracks, Report, Solid, substeps
 
-__all__ = ["deepest_overlap", "each_start", "one_start", "safety_of", "simulate_open", "simulate_periodic"]
-
 PATIENCE = 60.0
 """A crowd of which nobody has left for this time [s] is jammed."""
 

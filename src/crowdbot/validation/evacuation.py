@@ -33,8 +33,6 @@ from .scenario import (
 )
 from .statistics import ends_of, mean_of, summarize_starts, text_of, worst_of
 
-__all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS", "corner_times", "hall_departures"]
-
 LIMIT = 240.0
 """Time limit of a run [s]."""
 

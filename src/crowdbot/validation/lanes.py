@@ -17,8 +17,6 @@ from .crowd_motion import deepest_overlap, one_start, simulate_periodic
 from .scenario import FREE_SPEED, Check, Report, Row, Verdict, share, stream_of
 from .statistics import ends_of, find_steady_window, summarize_starts, text_of, worst_of
 
-__all__ = ["LANES", "NARROW"]
-
 LENGTH = 12.0
 WIDE, DENSITY = 4.0, 1.0
 """Width [m] and density [1/m2] of the recording bi_corr_400_b_03."""

@@ -8,19 +8,6 @@ import numpy as np
 
 from .scenario import SEEN, CrowdTracks, Solid
 
-__all__ = [
-    "CORNER_SOLIDS",
-    "bottleneck_solids",
-    "cabin_solids",
-    "corridor_walls",
-    "hall_solids",
-    "inside_solids",
-    "long_corner_solids",
-    "rings",
-    "two_rooms",
-    "waiting_room",
-]
-
 THICK = 0.5
 """Thickness of the walls [m]; those of cabins have 0.1 m."""
 CORNER_SOLIDS: list[Solid] = [

@@ -9,8 +9,6 @@ from crowdbot.typing import Floats
 
 from .scenario import FREE_SPEED
 
-__all__ = ["BOTTLENECK_FLOWS", "SOURCES", "SPECIFIC_FLOW", "line_speed", "weidmann_speed"]
-
 SPECIFIC_FLOW = 1.9
 """Persons per second and metre of width through a bottleneck, Seyfried et al. 2009."""
 

@@ -28,8 +28,6 @@ from .tables import (
     time_step_table,
 )
 
-__all__ = ["write_page"]
-
 STEADY = (
     "Steady state: of the mean forward speed of each start, found by the modified CUSUM method (Liao et al. 2016) with"
     " the last third of the run as reference; a start without one is measured in its last third"

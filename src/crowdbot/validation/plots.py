@@ -14,8 +14,6 @@ from .literature import BOTTLENECK_FLOWS, SPECIFIC_FLOW, line_speed, weidmann_sp
 from .run import Validation
 from .statistics import summarize_starts
 
-__all__ = ["PLOTS", "draw"]
-
 COLUMNS = 5
 MODEL, PEOPLE, CURVE, BAD = "#0072b2", "#9a9a9a", "#e69f00", "#d55e00"
 """Colours that are distinguishable with colour blindness (Okabe & Ito)."""

@@ -29,8 +29,6 @@ from .literature import line_speed, weidmann_speed
 from .scenario import Report
 from .section import METHOD, section_values
 
-__all__ = ["METHODS", "measure_recordings"]
-
 LEAST = 20
 """Minimum number of values of a mean."""
 FAR = 1e3

@@ -17,8 +17,6 @@ from .layouts import CORNER_SOLIDS, rings
 from .scenario import RADIUS, STEP, Check, Report, Row, Solid, Verdict, crowds, free_speeds, gate, share, stream_of
 from .statistics import mean_of, worst_of
 
-__all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "summarize_one"]
-
 SPEED = 1.33
 FASTEST, SLOWEST = 26.0, 34.0
 """Allowed times [s] for 40 m at 1.33 m/s, from the guideline."""

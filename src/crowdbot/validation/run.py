@@ -27,8 +27,6 @@ from .statistics import STARTS
 from .store import ResultFile, round_numbers, write_json
 from .time_steps import TIME_STEPS
 
-__all__ = ["CHECKS", "STUDIES", "CheckOutcome", "Validation", "select_models", "validate", "variant_of"]
-
 CHECKS: tuple[Check, ...] = (
     SINGLE_FILE,
     CORRIDOR,

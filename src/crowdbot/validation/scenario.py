@@ -14,31 +14,6 @@ from crowdbot.models import CrowdModel
 from crowdbot.trials import model_range
 from crowdbot.typing import Bools, Floats
 
-__all__ = [
-    "FREE_SPEED",
-    "RADIUS",
-    "SEEN",
-    "STEP",
-    "Check",
-    "CrowdTracks",
-    "Report",
-    "Row",
-    "Solid",
-    "Verdict",
-    "crowds",
-    "free_speeds",
-    "gate",
-    "opening",
-    "portion",
-    "share",
-    "starts",
-    "stream_of",
-    "stuck_part",
-    "stuck_start",
-    "substeps",
-    "tracks_of",
-]
-
 RADIUS = 0.2
 """Radius of all bodies [m]: the default of JuPedSim; shoulders are about 0.4 to 0.5 m wide."""
 FREE_SPEED = 1.34

@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 
 from .scenario import CrowdTracks
 
-__all__ = ["HALF_SECTION", "METHOD", "MIDDLE", "section_of", "section_values"]
-
 HALF_SECTION = 4.0
 """Half length of the section in which Voronoi cells are computed [m]."""
 MIDDLE = 1.0

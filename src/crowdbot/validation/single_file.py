@@ -17,8 +17,6 @@ from .literature import line_speed
 from .scenario import FREE_SPEED, RADIUS, Check, CrowdTracks, Report, Row, Verdict, share, stream_of
 from .statistics import find_steady_window, summarize_starts, worst_of
 
-__all__ = ["SINGLE_FILE", "file_crowd"]
-
 LENGTH = 20.0
 WIDTH = 0.7
 """Width [m]; two bodies of 0.4 m do not fit side by side."""

@@ -12,19 +12,6 @@ from crowdbot.core import stream
 from crowdbot.measurement import detect_steady_state, mean_over_starts
 from crowdbot.typing import Floats
 
-__all__ = [
-    "STARTS",
-    "SteadyWindow",
-    "bin_values",
-    "ends_of",
-    "find_steady_window",
-    "mean_of",
-    "pool_bins",
-    "summarize_starts",
-    "text_of",
-    "worst_of",
-]
-
 STARTS = 20
 """Independent starts of each point."""
 MEMORY = 20

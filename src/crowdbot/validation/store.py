@@ -12,8 +12,6 @@ from crowdbot.models import CrowdModel
 from .code_digest import code_digest
 from .scenario import Check, Row, substeps
 
-__all__ = ["ResultFile", "read_json", "round_numbers", "write_json"]
-
 
 class ResultFile:
     """Rows of a model by check and start.

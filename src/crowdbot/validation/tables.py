@@ -19,18 +19,6 @@ from .run import CHECKS, STUDIES, CheckOutcome, Validation
 from .scenario import FREE_SPEED, Check, Verdict
 from .time_steps import NAMES, TIME_STEPS
 
-__all__ = [
-    "ability_table",
-    "case_table",
-    "deficiencies",
-    "jams",
-    "model_table",
-    "preset_table",
-    "replace_incomplete",
-    "steady_table",
-    "time_step_table",
-]
-
 MISSING = CheckOutcome({}, Verdict("-", False, ""), 0.0, 0)
 FURTHER = tuple(check for check in STUDIES if check is not TIME_STEPS)
 UNITS = {

@@ -17,8 +17,6 @@ from .scenario import RADIUS, STEP, Check, Report, Row, Verdict, stream_of, subs
 from .single_file import file_crowd
 from .statistics import summarize_starts
 
-__all__ = ["TIME_STEPS", "time_step"]
-
 STUDIED = (0.01, 0.02, 0.05, 0.1)
 """Time steps [s]."""
 DENSITY, FILE_DENSITY = 2.0, 1.0

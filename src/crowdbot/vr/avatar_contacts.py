@@ -10,8 +10,6 @@ from crowdbot.simulation import Simulation
 from crowdbot.typing import Floats
 from crowdbot.world import two_body_force
 
-__all__ = ["AvatarContacts"]
-
 REGION = "chest"
 """Region of the body that a disc of the planar world touches."""
 STRONG = 60.0

@@ -15,8 +15,6 @@ from .headset_sample import HeadsetSample
 from .rigid_transform import RigidTransform
 from .rotation_matrices import matrices, unit_quaternions
 
-__all__ = ["BodyEstimator", "BodySize"]
-
 NECK = math.radians(50.0)
 """Largest angle between head and trunk; beyond it the trunk turns with the head."""
 SETTLE, SETTLE_WALKING = 2.0, 0.4

@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 from .body_estimate import BodySize
 from .headset_sample import HeadsetSample
 
-__all__ = ["POSE_SAMPLES", "BodyMeasure", "measure_pose"]
-
 POSE_SAMPLES = 30
 """Samples of which the median is taken."""
 STILL = 0.03

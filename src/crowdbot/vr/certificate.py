@@ -13,8 +13,6 @@ from typing import Any
 
 from crowdbot.core import cache_root, import_optional
 
-__all__ = ["certificate_files", "local_addresses", "tls_context"]
-
 DAYS = 397
 """Validity; browsers refuse certificates that are valid for longer."""
 RENEW = 30

@@ -7,8 +7,6 @@ import hashlib
 import hmac
 import re
 
-__all__ = ["HEADSET_COOKIE", "is_headset_path", "session_of_token", "token_of_session"]
-
 HEADSET_COOKIE = "crowdbot-headset"
 """Name of the cookie that holds the token of a headset; that of the operator stays beside it."""
 LENGTH = 32

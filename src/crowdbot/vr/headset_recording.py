@@ -19,8 +19,6 @@ from crowdbot.web import StateFrame
 
 from .headset_sample import HeadsetSample
 
-__all__ = ["HeadsetClock", "HeadsetRecord", "HeadsetRecorder", "read_headset_clock", "read_headset_recording"]
-
 MAGIC = b"CBHR1\n"
 ENTRY = struct.Struct("<BdI")
 """Kind, time of the server [s] and number of bytes of an entry."""

@@ -14,8 +14,6 @@ from crowdbot.web import StateFrame
 
 from .rotation_matrices import matrices, quaternion_blend, unit_quaternions
 
-__all__ = ["AXES", "CHANNEL", "HeadsetSample"]
-
 CHANNEL = "headset"
 AXES = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Rotation from the axes of WebXR (x right, y up, z backward) to those of the room (x forward, y left, z up)."""

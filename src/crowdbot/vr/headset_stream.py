@@ -12,8 +12,6 @@ from crowdbot.core import InputError, stream
 from .headset_sample import PARTS, HeadsetSample
 from .latency import ClockSync, LatencyLog
 
-__all__ = ["HeadsetStream", "StreamSettings"]
-
 HISTORY = 2.0
 """Samples older than the longest delay by this time [s] are left out."""
 LONGEST = 2.0

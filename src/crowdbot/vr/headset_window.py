@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.web import StateFrame, Window
 
-__all__ = ["HEADSET_COMMANDS", "HeadsetWindow", "headset_frame", "pack_triples"]
-
 HEADSET_COMMANDS = frozenset(
     ("simulator.description", "simulator.show_frame", "experiments.description", "experiments.show_frame",
      "experiments.draft", "experiments.finish_screen", "vr.pause", "vr.stop_robots")

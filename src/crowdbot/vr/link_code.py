@@ -7,8 +7,6 @@ from typing import Any
 
 from crowdbot.core import import_optional
 
-__all__ = ["link_picture", "link_text"]
-
 
 def link_picture(address: str) -> bytes:
     """Return an address as a QR code in SVG.

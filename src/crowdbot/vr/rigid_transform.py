@@ -13,8 +13,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["RigidFit", "RigidTransform", "fit_rigid"]
-
 FLAT = 1e-3
 """Smallest spread [m] of points across their main direction; below it they define no rotation."""
 

@@ -9,8 +9,6 @@ from crowdbot.simulation import Order, OwnSource, ParameterOrder, Simulation, Ve
 from crowdbot.trials import RobotSpec, Trial
 from crowdbot.web import navigator_orders
 
-__all__ = ["RobotStop", "hold_sources", "linked_robots", "movable_robots", "source_problems"]
-
 SOURCE = "vr"
 OPERATOR = "the stop button"
 """Reason for robots with a connection."""

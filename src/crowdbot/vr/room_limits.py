@@ -8,8 +8,6 @@ import numpy as np
 
 from crowdbot.core import InputError
 
-__all__ = ["RoomLimits"]
-
 
 @dataclass(frozen=True)
 class RoomLimits:

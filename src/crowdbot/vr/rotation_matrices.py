@@ -6,8 +6,6 @@ import numpy as np
 
 from crowdbot.typing import Floats
 
-__all__ = ["matrices", "quaternion_blend", "unit_quaternions"]
-
 
 def matrices(q: Floats) -> Floats:
     """Return the rotation matrices ``[..., 3, 3]`` of quaternions ``[..., 4]`` of any length above 0.

@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 from .rigid_transform import RigidFit, RigidTransform, fit_rigid
 from .room_limits import RoomLimits
 
-__all__ = ["PERSON", "ROOMS", "RealRoom", "SharedRooms"]
-
 ROOMS = ("person", "robot")
 FEWEST = 3
 """Points that define the place of a room."""

@@ -25,8 +25,6 @@ from .latency import read_headset_latency
 from .robot_stop import RobotStop, hold_sources
 from .vr_participant import VrParticipant
 
-__all__ = ["TrialSeats", "external_avatars", "free_place", "link_captures", "with_bodies"]
-
 CAPTURES = "motion-capture"
 """Name of the file of the raw samples of motion capture, as that of an avatar."""
 Watch = Callable[[Simulation], bool]

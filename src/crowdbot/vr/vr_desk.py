@@ -34,8 +34,6 @@ from .shared_rooms import PERSON, SharedRooms
 from .trial_seats import TrialSeats, external_avatars, free_place, link_captures, with_bodies
 from .vr_participant import VrParticipant, avatar_body
 
-__all__ = ["VrDesk"]
-
 TICK = 0.1
 """Interval [s] between two checks of the participants."""
 STATUS = 5

@@ -24,8 +24,6 @@ from .headset_sample import HeadsetSample
 from .headset_stream import HeadsetStream, StreamSettings
 from .shared_rooms import PERSON, SharedRooms
 
-__all__ = ["VrParticipant", "avatar_body"]
-
 SOURCE = "vr"
 CLOCK_INTERVAL = 1.0
 """Time between two records of the clock offset [s]."""

@@ -20,8 +20,6 @@ from .headset_window import HeadsetWindow
 from .vr_desk import VrDesk
 from .vr_participant import VrParticipant
 
-__all__ = ["VR_DESKS", "VrServer", "with_captures"]
-
 VR_DESKS: tuple[type[Desk], ...] = (*DESKS, VrDesk)
 """The tabs of the app with that for virtual reality."""
 

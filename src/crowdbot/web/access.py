@@ -10,8 +10,6 @@ import secrets
 from dataclasses import dataclass, field
 from urllib.parse import urlsplit
 
-__all__ = ["COOKIE", "AccessPolicy", "is_loopback"]
-
 COOKIE = "crowdbot-token"
 """Name of the cookie that holds the token after the first page."""
 SIGNATURE = 32

@@ -23,8 +23,6 @@ from .session_limits import CLASSROOM, SessionLimits
 from .window import Window
 from .workspace import SESSIONS, Workspace
 
-__all__ = ["AppServer"]
-
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -18,8 +18,6 @@ from .session_limits import SessionLimits
 from .state_frame import StateFrame
 from .workspace import Workspace
 
-__all__ = ["AppSession", "Viewer"]
-
 
 class Viewer(Protocol):
     """A window of a session."""

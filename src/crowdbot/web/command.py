@@ -10,8 +10,6 @@ from typing import Any, TypeVar
 
 from crowdbot.core import InputError, did_you_mean
 
-__all__ = ["call_command", "command", "command_names"]
-
 Method = TypeVar("Method", bound=Callable[..., Any])
 WORDS = {
     str: "text",

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from crowdbot.simulation import OrderSource
     from crowdbot.trials import Trial
 
-__all__ = ["Desk", "DeskWindows", "Resource"]
-
 
 class DeskWindows(Protocol):
     """What a desk knows of its session: the windows that show it and the folder that it may use."""

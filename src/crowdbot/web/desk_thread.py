@@ -8,8 +8,6 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-__all__ = ["DeskThread"]
-
 
 class DeskThread:
     """A daemon thread with a queue of calls.

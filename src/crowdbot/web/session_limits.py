@@ -7,9 +7,6 @@ from dataclasses import asdict, dataclass, field
 
 from crowdbot.core import InputError, machine_memory
 
-__all__ = ["CLASSROOM", "SessionLimits"]
-
-
 MEMORY = 0.8
 """Share of the memory of the machine that a job may use by default: a machine without memory answers nobody."""
 

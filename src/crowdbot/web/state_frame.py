@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["StateFrame"]
-
 MAGIC = b"CBF1"
 HEADER = struct.Struct("<4s4x8sII d")
 SECTION = struct.Struct("<8sHHI")

@@ -18,8 +18,6 @@ from .jobs.job_desk import JobDesk
 from .prediction import PredictionDesk
 from .simulator import SimulatorDesk
 
-__all__ = ["DESKS", "FirstView", "opened_first", "with_streams"]
-
 DESKS: tuple[type[Desk], ...] = (SimulatorDesk, PredictionDesk, EditorDesk, EvaluationDesk, ExperimentDesk, JobDesk)
 
 

@@ -14,8 +14,6 @@ from crowdbot.core import CrowdbotError, InputError
 from .app_session import AppSession
 from .state_frame import StateFrame
 
-__all__ = ["CREDIT", "Window"]
-
 CREDIT = 2
 """State frames that may be on their way to a window at the same time."""
 EVENTS = 1000

@@ -13,8 +13,6 @@ from xml.parsers import expat  # expat loads no external entity; declarations of
 from crowdbot.core import InputError
 from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, load_trial
 
-__all__ = ["SESSIONS", "Workspace", "shown_path"]
-
 SESSIONS = "sessions"
 """Folder of the other sessions, which lie inside the folder of the first one."""
 BEGINNING = 65_536

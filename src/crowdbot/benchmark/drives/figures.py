@@ -14,8 +14,6 @@ from crowdbot.world import Drive
 from .manoeuvre import Manoeuvre
 from .traces import SAMPLE, DriveTrace
 
-__all__ = ["DRIVE_COLUMNS", "FALLEN", "DriveFigures", "compare_traces", "grid_cells"]
-
 SLOPE = 2
 """Samples over which accelerations are measured: 0.04 s."""
 STEADY = 1.0

@@ -16,8 +16,6 @@ from .manoeuvre import Manoeuvre, manoeuvres
 from .trace_store import Run, TraceStore
 from .traces import DriveTrace
 
-__all__ = ["DRIVE_BARS", "STEPS", "DriveReport", "DriveRow", "measure_drives"]
-
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02)
 """Time steps of the engine [s]."""
 BARRED = (0.002, 0.005, 0.01)

@@ -11,8 +11,6 @@ from pathlib import Path
 
 from crowdbot.world import Robot, import_robot
 
-__all__ = ["maker_robot"]
-
 
 @contextlib.contextmanager
 def maker_robot(file: Path) -> Iterator[tuple[Robot, str]]:

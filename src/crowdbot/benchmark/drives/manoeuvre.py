@@ -12,8 +12,6 @@ from crowdbot.world import AckermannDrive, Drive, Omnidirectional, Robot
 
 from .traces import SAMPLE
 
-__all__ = ["Manoeuvre", "manoeuvres", "speed_grid"]
-
 HOLD = 2.0
 """Time [s] for which a speed of the grid is held after it is reached in the plane, and for standing after the stop."""
 

@@ -19,8 +19,6 @@ from crowdbot.world import Robot
 from .manoeuvre import Manoeuvre
 from .traces import DriveTrace, trace_physics, trace_planar
 
-__all__ = ["Run", "TraceStore", "drive_runs"]
-
 Run = tuple[Manoeuvre, DriveTrace, DriveTrace]
 """A manoeuvre with its motion in the physics world and in the plane."""
 MEASURED = ("world/**/*.py", "core/**/*.py", "benchmark/drives/traces.py")

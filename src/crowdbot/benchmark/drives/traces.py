@@ -14,8 +14,6 @@ from crowdbot.models import ORCA
 from crowdbot.typing import Floats
 from crowdbot.world import CommandDelay, Pending, PhysicsStage, PhysicsWorld, Robot, Twists
 
-__all__ = ["SAMPLE", "DriveTrace", "trace_physics", "trace_planar"]
-
 SAMPLE = 0.02
 """Time [s] between two samples of a trace, in which the command is constant."""
 

@@ -8,8 +8,6 @@ from typing import Any, ClassVar
 
 from crowdbot.core import Scene
 
-__all__ = ["EnginePeer"]
-
 
 class EnginePeer(ABC):
     """Another engine, with the settings that make it comparable with one of our models.

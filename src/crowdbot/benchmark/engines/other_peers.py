@@ -16,8 +16,6 @@ from crowdbot.models import ORCA, CollisionFreeSpeed, GroupForce
 
 from .engine_peer import EnginePeer
 
-__all__ = ["JuPedSimPeer", "NavgroundOrcaPeer", "PySocialForcePeer"]
-
 
 class JuPedSimPeer(EnginePeer):
     """The collision-free speed model of JuPedSim, with direct steering, the least work for it."""

@@ -9,8 +9,6 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["kernel_threads", "time_steps"]
-
 Start = Callable[[], Callable[[], object]]
 """Makes an engine at the start, and returns the function that makes one step of it."""
 

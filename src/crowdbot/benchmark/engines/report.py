@@ -23,8 +23,6 @@ from .other_peers import JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer
 from .paired_steps import kernel_threads, time_steps
 from .rvo2_peer import Rvo2Peer
 
-__all__ = ["EngineReport", "EngineSizes", "measure_engines"]
-
 PROTOCOL = (
     "People on a jittered grid, 0.5 per square metre, with random goals; both engines walk on from the same state with"
     " the same time step, 2 s or 300 000 steps of people from the start in each repetition. The engines alternate, so"

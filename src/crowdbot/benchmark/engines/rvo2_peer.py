@@ -19,8 +19,6 @@ from crowdbot.models import ORCA
 
 from .engine_peer import EnginePeer
 
-__all__ = ["Rvo2Peer"]
-
 FLAGS = ("-O3", "-march=native", "-DNDEBUG", "-fopenmp")
 REACH, MOST, HORIZON = 5.0, 10, 2.0
 SLOWEST = 300.0

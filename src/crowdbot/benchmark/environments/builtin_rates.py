@@ -14,8 +14,6 @@ from .rows import TrialRate
 from .sizes import BenchmarkSizes
 from .work_rate import TimedWork, WorkRate, rates
 
-__all__ = ["planar_trials", "trial_rates"]
-
 
 def planar_trials() -> Iterator[tuple[str, Trial]]:
     """Yield the built-in trials in the planar world by name; of sweeps, their first trial."""

@@ -11,8 +11,6 @@ from crowdbot.trials import Trial
 
 from .rows import CallRow
 
-__all__ = ["call_rows", "count_calls"]
-
 
 def count_calls(simulation: Simulation, steps: int) -> tuple[float, float]:
     """Return the calls of Python functions and of compiled functions per step, in the calling thread."""

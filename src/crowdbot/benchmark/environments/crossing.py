@@ -14,9 +14,6 @@ from crowdbot.typing import Floats
 
 from .work_rate import TimedWork
 
-__all__ = ["BEAMS", "CrossingTask", "advance_work", "crossing_trial", "episode_work", "reset_work"]
-
-
 BEAMS, RANGE = 180, 10.0
 """Beams of the scanner, and the range of the robot's sensors [m]."""
 CIRCLES = {10: (4.0, 0.35), 50: (10.0, 0.2)}

@@ -15,8 +15,6 @@ from crowdbot.core import import_optional
 from .crossing import RANGE, CrossingTask
 from .work_rate import TimedWork
 
-__all__ = ["IrSimPeer"]
-
 
 class IrSimPeer:
     """Makes environments of ir-sim without a window.

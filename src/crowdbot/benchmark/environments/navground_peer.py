@@ -10,8 +10,6 @@ from crowdbot.core import import_optional
 from .crossing import RANGE, CrossingTask
 from .work_rate import TimedWork
 
-__all__ = ["NavgroundPeer"]
-
 
 class NavgroundPeer:
     """Makes worlds of navground; all agents are omnidirectional and use its ORCA.

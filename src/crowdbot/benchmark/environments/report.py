@@ -21,8 +21,6 @@ from .rows import CallRow, EnvironmentRow, PeerRate, TrialRate
 from .sizes import BenchmarkSizes
 from .work_rate import TimedWork, rates
 
-__all__ = ["PEERS", "EnvironmentReport", "measure_environments"]
-
 PEERS: tuple[type[NavgroundPeer] | type[IrSimPeer], ...] = (NavgroundPeer, IrSimPeer)
 """The other simulators."""
 

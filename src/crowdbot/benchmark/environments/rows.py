@@ -7,8 +7,6 @@ from typing import Any
 
 from .work_rate import WorkRate
 
-__all__ = ["CallRow", "EnvironmentRow", "PeerRate", "TrialRate"]
-
 
 @dataclass(frozen=True)
 class PeerRate:

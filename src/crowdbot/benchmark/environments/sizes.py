@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from crowdbot.core import InputError
 
-__all__ = ["BenchmarkSizes"]
-
 
 @dataclass(frozen=True)
 class BenchmarkSizes:

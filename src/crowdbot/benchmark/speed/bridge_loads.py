@@ -22,8 +22,6 @@ from crowdbot.trials import Mount, Trial, load_trial
 
 from .measurement import Gauge
 
-__all__ = ["LOADED_BRIDGES", "LOAD_TOPICS", "BridgeLoad", "LoadTraffic", "bridge_load", "bridge_measurements"]
-
 BEAMS, WIDTH, HEIGHT, RATE = 1080, 640, 480, 10.0
 """Beams of the scanner, size of the image [pixels], and rate of both [Hz]."""
 SECONDS, WARM = 5.0, 1.0

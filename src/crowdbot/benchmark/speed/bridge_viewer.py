@@ -13,8 +13,6 @@ from typing import Any
 
 import aiohttp
 
-__all__ = ["main"]
-
 FOXGLOVE = "foxglove.sdk.v1"
 MESSAGE = 1
 """First byte of a message of a channel in the protocol of Foxglove."""

@@ -16,8 +16,6 @@ from crowdbot.recording import run
 
 from .measurement import Gauge
 
-__all__ = ["scheme_frames"]
-
 PEOPLE = 30
 """The frames with the closest number of people are used."""
 FRAMES = 15

@@ -24,8 +24,6 @@ from crowdbot.prediction import (
 
 from .measurement import Gauge, Measurement
 
-__all__ = ["learning_measurements"]
-
 UPDATES = 4
 SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
 """Number of people in synthetic scenes: mostly a few, sometimes dozens, as in recordings."""

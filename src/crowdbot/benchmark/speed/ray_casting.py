@@ -11,8 +11,6 @@ import numpy as np
 from crowdbot.core import Bodies, Scene, SpatialPose, import_optional, stream
 from crowdbot.sensors.beams import unit_vectors
 
-__all__ = ["mujoco_rays", "people_with_limbs"]
-
 LIMBS = 15
 
 

@@ -9,9 +9,6 @@ import numpy as np
 from crowdbot.core import Scene, import_optional
 from crowdbot.typing import Floats
 
-__all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
-
-
 JUPEDSIM = ("SocialForceModel", "CollisionFreeSpeedModelV2", "AnticipationVelocityModel")
 """Timed models of JuPedSim; the first was the fastest at 10 000 people."""
 

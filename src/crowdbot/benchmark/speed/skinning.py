@@ -10,8 +10,6 @@ from crowdbot.core import Bodies, Scene, Skins, SpatialPose, stream
 
 from .measurement import Measurement
 
-__all__ = ["posing_and_skinning", "rays_of_skins"]
-
 PEOPLE, OFTEN, ALLOWED = 100, 100, 0.01
 """Number of people, repeats per work, and reference time of one repeat [s]."""
 

@@ -26,8 +26,6 @@ from .learning import learning_measurements
 from .measurement import Gauge, Measurement
 from .workloads import measurements
 
-__all__ = ["SpeedRow", "environment", "measure"]
-
 
 @dataclass(frozen=True)
 class SpeedRow:

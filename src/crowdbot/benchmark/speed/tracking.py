@@ -21,8 +21,6 @@ from crowdbot.sensors import Gaussian, Lidar2D, Scan
 
 from .measurement import Measurement
 
-__all__ = ["TRACKING_PAIRS", "scan_prediction", "tracking"]
-
 PEOPLE, SCANS, BEAMS, PERIOD = 20, 20, 1080, 0.1
 LIMIT = 0.005
 """Time for a scan [s], the reference."""

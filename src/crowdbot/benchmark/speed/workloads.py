@@ -20,8 +20,6 @@ from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 from .skinning import posing_and_skinning, rays_of_skins
 from .tracking import TRACKING_PAIRS, scan_prediction, tracking
 
-__all__ = ["crowd", "measurements"]
-
 DENSITY = 0.5
 """People per square metre in timed crowds."""
 DT = 0.1

@@ -9,8 +9,6 @@ from crowdbot.bridges.fields import fields_of
 from crowdbot.bridges.verbs.definitions import interface_store
 from crowdbot.core import InputError
 
-__all__ = ["decode_fields"]
-
 MOST_BYTES = 1 << 20
 """Largest message or request of a client [bytes]."""
 

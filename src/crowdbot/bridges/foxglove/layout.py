@@ -7,8 +7,6 @@ from typing import Any
 from crowdbot.bridges.interface import RobotInterface
 from crowdbot.trials import Trial
 
-__all__ = ["foxglove_layout"]
-
 
 def foxglove_layout(trial: Trial) -> dict[str, Any]:
     """Return the layout for the first robot of a trial; write it as JSON and import it in the app.

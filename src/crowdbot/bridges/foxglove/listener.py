@@ -12,8 +12,6 @@ from crowdbot.core import InputError
 
 from .decoding import decode_fields
 
-__all__ = ["ClientListener"]
-
 STATE, RESET, STEPS = (f"/crowdbot/{name}" for name in ("set_simulation_state", "reset_simulation", "step_simulation"))
 MOST_CHANNELS = 256
 """Largest number of channels that a client may advertise."""

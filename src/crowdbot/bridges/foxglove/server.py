@@ -21,8 +21,6 @@ from crowdbot.recording import StepMessage
 from .decoding import decode_fields
 from .listener import ClientListener
 
-__all__ = ["PORT", "FoxgloveServer"]
-
 PORT = 8765
 BACKLOG = 256
 """Messages that wait for a slow client; the oldest are dropped."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 from crowdbot.core import InputError, Twist, check_number
 
-__all__ = ["CommandGuard", "DrivingArea", "GuardLimits"]
-
 
 @dataclass(frozen=True)
 class DrivingArea:

@@ -24,8 +24,6 @@ from crowdbot.trials import RobotSpec, Trial
 from .command_guard import CommandGuard
 from .robot_input import OdometryInput, StartAlignment, StopInput
 
-__all__ = ["JoinLatency", "JoinPort"]
-
 TWIST = "geometry_msgs/msg/Twist"
 PERIOD = 0.05
 """Longest real time [s] between two commands that leave: the robot hears that its guard is alive."""

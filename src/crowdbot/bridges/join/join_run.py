@@ -18,8 +18,6 @@ from crowdbot.trials import RobotPose, Trial
 from .command_guard import CommandGuard
 from .join_port import JoinPort
 
-__all__ = ["JoinRun", "joined_trial"]
-
 
 def joined_trial(trial: Trial, robot: str = "") -> Trial:
     """Return the trial with a robot that a real one moves.

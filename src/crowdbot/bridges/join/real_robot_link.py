@@ -20,8 +20,6 @@ from crowdbot.simulation import JointOrder, Order, OrderSource, RobotPoseOrder, 
 from .command_guard import CommandGuard, DrivingArea, GuardLimits
 from .join_port import PERIOD, JoinPort
 
-__all__ = ["RealRobotLink", "open_real_robot"]
-
 EVERYWHERE = DrivingArea(-1e6, -1e6, 1e6, 1e6)
 """Area of a simulated robot without one."""
 LOOK = 0.02

@@ -12,8 +12,6 @@ from crowdbot.bridges.interface import InputTopic
 from crowdbot.core import InputError, wrap_angle
 from crowdbot.simulation import Order
 
-__all__ = ["OdometryInput", "StartAlignment", "StopInput"]
-
 
 @dataclass(frozen=True)
 class OdometryInput(InputTopic):

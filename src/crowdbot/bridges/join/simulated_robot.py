@@ -13,8 +13,6 @@ from crowdbot.bridges.interface import RobotInterface
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-__all__ = ["SimulatedRobot"]
-
 PERIOD = 0.02
 """Time [s] between two odometry messages."""
 SILENCE = 0.5

@@ -14,8 +14,6 @@ from .motion_recording import MOST_FRAMES, MotionRecording, RecordedSubject
 from .pose_stream import MotionSample
 from .source_skeleton import MOST_JOINTS, SourceSkeleton, body_axes
 
-__all__ = ["read_bvh"]
-
 LEG = 0.85
 UNITS = (1.0, 0.01, 0.001, 0.056444)
 """Metres in one unit of length: m, cm, mm, and that of the CMU library (1/0.45 inch). A BVH file does not name it."""

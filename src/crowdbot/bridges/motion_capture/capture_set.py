@@ -13,8 +13,6 @@ from .motion_capture import MotionBinding, MotionCapture
 from .pose_stream import PoseStream
 from .stream_address import open_stream, parse_binding
 
-__all__ = ["CaptureSet"]
-
 Origin = Callable[[], tuple[float, float, float]]
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 
-__all__ = ["ClockOffset", "DelaySamples"]
-
 RESET = 2.0
 """A jump [s] between two clocks above which the estimate starts anew, for instance if the sender restarts."""
 

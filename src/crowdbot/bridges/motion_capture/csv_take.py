@@ -16,8 +16,6 @@ from .motion_recording import MOST_FRAMES, MotionRecording, RecordedSubject
 from .pose_stream import MotionSample
 from .rotations import normalize, rotate_about, to_matrices
 
-__all__ = ["read_csv"]
-
 UNITS = {"meters": 1.0, "centimeters": 0.01, "millimeters": 0.001}
 FROM_Y_UP = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """From the axes of Motive (x left, y up, z forward) to x forward, y left, z up."""

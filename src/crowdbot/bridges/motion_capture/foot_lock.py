@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 from .retargeting import Retargeting
 from .rotations import align_vectors, yaw_of
 
-__all__ = ["FootLock"]
-
 LIFTED = 0.05
 """Height of the ankle of the actor [m] above its place in standing from which on the foot is in the air."""
 MOVING = 0.3

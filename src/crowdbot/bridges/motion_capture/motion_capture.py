@@ -21,8 +21,6 @@ from .retargeting import Retargeting
 from .rotations import rotate_about, yaw_of
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["MotionBinding", "MotionCapture"]
-
 AHEAD = 9.0
 """A time stamp that is further ahead [s] is not given: the clocks of sender and simulation are not related yet."""
 EARLY = 1e-6

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 
 from .pose_stream import MotionSample, PoseStream, StreamStatistics
 
-__all__ = ["MOST_FRAMES", "MotionRecording", "RecordedSubject"]
-
 MOST_FRAMES = 1_000_000
 
 

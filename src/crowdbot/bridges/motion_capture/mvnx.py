@@ -16,8 +16,6 @@ from .pose_stream import MotionSample
 from .rotations import normalize, to_matrices
 from .xsens_segments import SEGMENTS, xsens_skeleton
 
-__all__ = ["read_mvnx"]
-
 MOST_TEXT = 100_000
 """Longest text of an element that is read [characters]."""
 COUNT = len(SEGMENTS)

@@ -24,8 +24,6 @@ from .rotations import to_matrices
 from .server_stream import AGAIN, ServerStream, checked_pose
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["NatNetStream"]
-
 PORT, DATA_PORT = 1510, 1511
 """Default ports of the server for commands and for multicast frames."""
 LOCAL_OFFSET = 0.003

@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 
 from .pose_receiver import BadDatagram
 
-__all__ = ["Body", "BoneDescription", "Frame", "Packet", "ServerInfo", "read_descriptions", "read_frame", "read_server"]
-
 CONNECT, SERVER_INFO, REQUEST, RESPONSE, REQUEST_DESCRIPTIONS, DESCRIPTIONS, FRAME, KEEP_ALIVE = 0, 1, 2, 3, 4, 5, 7, 10
 MOST_NAME = 256
 MOST_ITEMS = 4096

@@ -16,8 +16,6 @@ from crowdbot.core import InputError
 from .clock_offset import ClockOffset, DelaySamples
 from .pose_stream import MotionSample, PoseStream, StreamStatistics
 
-__all__ = ["BadDatagram", "PoseReceiver", "bind_socket"]
-
 MOST_SUBJECTS = 32
 SILENCE = 2.0
 """Time [s] without a datagram of a sender after which another one is accepted."""

@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["MotionSample", "PoseStream", "StreamStatistics"]
-
 
 @dataclass(frozen=True, eq=False)
 class MotionSample:

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 from .rotations import align_vectors, rotate_about, to_quaternions, yaw_of
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["Retargeting"]
-
 DIGITS = 6
 """Decimals of positions [m] and quaternions: an order with all bones stays below 1.5 kB."""
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from crowdbot.typing import Floats
 
-__all__ = ["align_vectors", "normalize", "rotate_about", "to_matrices", "to_quaternions", "yaw_of"]
-
 
 def to_matrices(quaternions: Floats) -> Floats:
     """Return the rotation matrices ``[..., 3, 3]`` of unit quaternions ``[..., 4]``."""

@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 from .pose_receiver import BadDatagram, PoseReceiver
 from .rotations import normalize
 
-__all__ = ["AGAIN", "FARTHEST", "ServerStream", "checked_pose"]
-
-
 AGAIN = 0.5
 """Time [s] between two requests, attempts to connect, or signs of life."""
 FARTHEST = 1e4

@@ -11,8 +11,6 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["MOST_JOINTS", "SourceSkeleton", "body_axes"]
-
 MOST_JOINTS = 300
 HAND, FOOT = ("hand", "wrist"), ("foot", "ankle")
 LEGS = (0.25, 1.6)

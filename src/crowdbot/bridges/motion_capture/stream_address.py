@@ -20,8 +20,6 @@ from .vrpn import VrpnStream
 from .xsens import PORT as XSENS_PORT
 from .xsens import XsensStream
 
-__all__ = ["open_stream", "parse_binding", "parse_captures"]
-
 SERVERS: dict[str, type[ServerStream]] = {"natnet": NatNetStream, "vrpn": VrpnStream}
 FILES = {".bvh": read_bvh, ".csv": read_csv, ".mvnx": read_mvnx}
 FORM = "SOURCE[#SUBJECT]=NAME[@X,Y,HEADING]"

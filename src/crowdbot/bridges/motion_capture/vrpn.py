@@ -14,8 +14,6 @@ from .pose_stream import MotionSample
 from .rotations import to_matrices
 from .server_stream import AGAIN, ServerStream, checked_pose
 
-__all__ = ["VrpnStream"]
-
 PORT = 3883
 """Default port of a VRPN server."""
 COOKIE = b"vrpn: ver. 07.35  0".ljust(24, b"\0")

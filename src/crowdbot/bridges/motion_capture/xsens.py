@@ -20,8 +20,6 @@ from .server_stream import FARTHEST, checked_pose
 from .source_skeleton import SourceSkeleton
 from .xsens_segments import SEGMENTS, xsens_skeleton
 
-__all__ = ["PORT", "XsensStream"]
-
 PORT = 9763
 """Default port of the network streamer."""
 HEADER = struct.Struct(">6sIBBIBBBBHH")

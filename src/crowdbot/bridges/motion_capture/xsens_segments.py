@@ -8,8 +8,6 @@ from crowdbot.typing import Floats
 
 from .source_skeleton import SourceSkeleton
 
-__all__ = ["SEGMENTS", "xsens_skeleton"]
-
 SEGMENTS = (
     "Pelvis", "L5", "L3", "T12", "T8", "Neck", "Head",
     "RightShoulder", "RightUpperArm", "RightForeArm", "RightHand",

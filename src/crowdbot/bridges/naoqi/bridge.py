@@ -21,8 +21,6 @@ from crowdbot.recording import StepMessage
 from .memory_keys import SENSORS, memory_values
 from .odometry_follower import OdometryFollower
 
-__all__ = ["NaoqiBridge"]
-
 PORT = 9559
 STARTUP, ENDING = 10.0, 5.0
 """Longest real time [s] of the first connection, and of the end."""

@@ -13,8 +13,6 @@ import numpy as np
 
 from crowdbot.messages import points_in
 
-__all__ = ["SENSORS", "memory_values"]
-
 PLATFORM = "Device/SubDeviceList/Platform"
 SEGMENTS = 15
 BUMPERS = ("FrontLeft", "Back", "FrontRight")

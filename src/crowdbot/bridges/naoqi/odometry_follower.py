@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from crowdbot.bridges.join.robot_input import StartAlignment
 from crowdbot.core import wrap_angle
 
-__all__ = ["OdometryFollower"]
-
 GAIN = 2.0
 """Velocity that corrects an error of the pose [1/s]."""
 LARGEST = 2.0

@@ -12,8 +12,6 @@ import aiohttp
 
 from crowdbot.core import InputError
 
-__all__ = ["DEFAULT", "Master", "master_address"]
-
 DEFAULT = "http://localhost:11311"
 ANSWER_TIME = 5.0
 """Longest real time [s] of a call."""

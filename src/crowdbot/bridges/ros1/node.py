@@ -21,8 +21,6 @@ from .master import master_address
 from .session import Ros1Session
 from .tcpros import pack_frame
 
-__all__ = ["Ros1Node"]
-
 STARTUP = 10.0
 """Longest real time [s] of the start and of the end."""
 

@@ -9,8 +9,6 @@ from crowdbot.bridges.interface import RobotInterface
 
 from .master import Master
 
-__all__ = ["Parameters"]
-
 TIME, DESCRIPTION = "/use_sim_time", "robot_description"
 
 

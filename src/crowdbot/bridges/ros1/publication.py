@@ -11,8 +11,6 @@ from crowdbot.messages import Ros1Messages
 
 from .tcpros import pack_header
 
-__all__ = ["ANY", "Publication", "ros1_kind"]
-
 ANY = "*"
 """Type and checksum of a subscriber that takes everything, such as ``rosbag record`` and ``rostopic hz``."""
 FULL = 1 << 18

@@ -6,8 +6,6 @@ from crowdbot.messages import Messages, Ros1Messages
 
 from .tcpros import pack_frame
 
-__all__ = ["log_frame"]
-
 LEVELS = {"info": 2, "warning": 4, "error": 8}
 """Levels of ``rosgraph_msgs/Log``."""
 

@@ -13,8 +13,6 @@ from crowdbot.core import InputError
 from .publication import ANY
 from .tcpros import pack_frame, pack_header, read_frame
 
-__all__ = ["ServicePort", "service_checksum"]
-
 ANSWER_TIME = 60.0
 """Longest real time [s] that a call waits for the simulation."""
 DEFINITIONS = {"Empty": "", "Trigger": "bool success\nstring message"}

@@ -27,8 +27,6 @@ from .slave_api import SlaveApi
 from .subscription import Ros1Subscription
 from .tcpros import ROS_ERRORS, pack_header, read_header
 
-__all__ = ["NODE", "Ros1Session"]
-
 NODE = "/crowdbot"
 LOG = OutputTopic("/rosout", "rosgraph_msgs/msg/Log", "", 0.0, STATE)
 WATCH = 1.0

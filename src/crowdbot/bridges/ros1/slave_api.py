@@ -9,8 +9,6 @@ from typing import Any
 
 from aiohttp import web
 
-__all__ = ["SlaveApi"]
-
 MOST_BODY = 1 << 20
 ENDING = 0.2
 """Longest real time [s] for open connections at the end."""

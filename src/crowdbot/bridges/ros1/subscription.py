@@ -17,8 +17,6 @@ from .master import Master
 from .publication import ANY, ros1_kind
 from .tcpros import ROS_ERRORS, pack_header, read_frame, read_header
 
-__all__ = ["Ros1Subscription"]
-
 FIRST, LONGEST = 0.2, 2.0
 """Real time [s] before the first and between later attempts to connect to a publisher again."""
 

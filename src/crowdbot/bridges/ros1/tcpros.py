@@ -12,8 +12,6 @@ from collections.abc import Mapping
 
 from crowdbot.core import InputError
 
-__all__ = ["MOST_BYTES", "ROS_ERRORS", "pack_frame", "pack_header", "read_frame", "read_header", "unpack_header"]
-
 SIZE = struct.Struct("<I")
 MOST_HEADER, MOST_BYTES = 1 << 16, 1 << 22
 """Largest header, and largest message that is received [bytes]."""

@@ -10,8 +10,6 @@ from pathlib import Path
 
 from crowdbot.core import InputError, lock_file
 
-__all__ = ["lock_domain"]
-
 FIRST, LAST = 101, 200
 """Domains that are given to runs; those below are left to people."""
 

@@ -19,8 +19,6 @@ from crowdbot.recording import StepMessage
 from .participant import Participant
 from .services import CALLS, add_services
 
-__all__ = ["Ros2Node"]
-
 NODE = "crowdbot"
 LAST_DOMAIN = 232
 """Largest domain whose ports exist on all systems."""

@@ -9,8 +9,6 @@ from typing import Any
 
 from crowdbot.core import InputError, MissingExtra
 
-__all__ = ["Participant"]
-
 SPIN = 0.1
 """Longest time [s] until the thread sees that it has to end."""
 

@@ -15,8 +15,6 @@ from crowdbot.core import InputError
 
 from .values import fill_message, message_fields
 
-__all__ = ["CALLS", "add_services", "service_class"]
-
 CALLS = 4
 """Number of calls that can wait for the simulation at the same time; the node needs as many threads."""
 ANSWER_TIME = 600.0

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["fill_message", "message_fields"]
-
 TYPES = {"float": float, "double": float, "boolean": bool, "string": str}
 """Python types of the numbers and texts of ROS; all others are whole numbers."""
 

@@ -13,8 +13,6 @@ from .graph import RosGraph, ros2_type
 from .peer import Peer
 from .rosapi import ROSAPI, answer_rosapi
 
-__all__ = ["SIMULATE_STEPS", "CallRelay"]
-
 SIMULATE_STEPS, STEP = "/crowdbot/simulate_steps", "/crowdbot/step_simulation"
 """The action of the simulation, ``simulation_interfaces/action/SimulateSteps``, and the service that does its work."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6

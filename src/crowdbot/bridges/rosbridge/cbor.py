@@ -9,8 +9,6 @@ import numpy as np
 
 from crowdbot.core import InputError
 
-__all__ = ["encode_cbor"]
-
 UNSIGNED, NEGATIVE, BYTES, TEXT, LIST, MAPPING, TAG = range(7)
 TYPED = {"<u2": 69, "<u4": 70, "<u8": 71, "|i1": 72, "<i2": 77, "<i4": 78, "<i8": 79, "<f4": 85, "<f8": 86}
 """Tags of little-endian arrays by NumPy type; bytes need none."""

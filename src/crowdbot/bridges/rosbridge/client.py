@@ -22,8 +22,6 @@ from .encoding import OutgoingMessage, dump_json
 from .frames import MOST_TEXT, FrameReader, field
 from .subscription import Subscription
 
-__all__ = ["RosbridgeClient"]
-
 LEFT_OUT = ("*/reading", "*/labels")
 """Patterns of topics that are not sent unless the user names them: exact readings and truth, which are large."""
 FIRST, LONGEST = 0.2, 5.0

@@ -15,8 +15,6 @@ from crowdbot.recording import StepMessage
 
 from .cbor import encode_cbor
 
-__all__ = ["COMPRESSIONS", "OutgoingMessage", "dump_json", "fragments", "png_frame", "read_png"]
-
 COMPRESSIONS = ("none", "png", "cbor", "cbor-raw")
 
 

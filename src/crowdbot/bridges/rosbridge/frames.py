@@ -8,8 +8,6 @@ from typing import Any
 
 from crowdbot.core import InputError
 
-__all__ = ["MOST_TEXT", "FrameReader", "field"]
-
 MOST_TEXT = 4 << 20
 """Largest size of a frame, and of all waiting fragments of a client [characters]: a camera image fits."""
 DEEPEST = 40

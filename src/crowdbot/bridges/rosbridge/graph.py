@@ -15,8 +15,6 @@ from crowdbot.core import InputError
 from .encoding import OutgoingMessage
 from .peer import Peer
 
-__all__ = ["NODE", "RosGraph", "ros2_type"]
-
 NODE = "/crowdbot"
 """Name of the simulation as a node."""
 MOST_TOPICS = 1000

@@ -7,8 +7,6 @@ from typing import Any, Protocol
 
 from .encoding import OutgoingMessage
 
-__all__ = ["Peer", "PeerCalls"]
-
 
 class PeerCalls(Protocol):
     """Calls of a client."""

@@ -15,7 +15,6 @@ from .graph import ros2_type
 if TYPE_CHECKING:
     from .graph import RosGraph
 
-__all__ = ["ROSAPI", "answer_rosapi", "type_details"]
 
 NODE = "/crowdbot"
 Request = Mapping[str, Any]

@@ -24,8 +24,6 @@ from .frames import MOST_TEXT
 from .graph import RosGraph
 from .session import ClientSession
 
-__all__ = ["PORT", "RosbridgeServer"]
-
 PORT = 9090
 MOST_CLIENTS, MOST_STEPS = 64, 200
 """Largest number of clients, and of steps whose messages wait for the thread of the server."""

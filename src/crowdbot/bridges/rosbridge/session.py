@@ -15,8 +15,6 @@ from .frames import FrameReader, field
 from .graph import RosGraph, ros2_type
 from .subscription import Subscription
 
-__all__ = ["ClientSession"]
-
 LEVELS = ("info", "warning", "error", "none")
 MOST_REPLIES, MOST_SUBSCRIPTIONS = 500, 500
 Frame = Mapping[str, Any]

@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 from .encoding import COMPRESSIONS, OutgoingMessage
 from .frames import field
 
-__all__ = ["Subscription"]
-
 LONGEST_QUEUE = 1000
 SMALLEST_FRAGMENT = 16
 

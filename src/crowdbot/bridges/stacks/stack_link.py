@@ -22,8 +22,6 @@ from crowdbot.simulation import Order, RobotControl, Simulation, VelocityOrder
 from .stack_port import StackPort
 from .stack_program import StackProgram
 
-__all__ = ["StackLink", "open_stack"]
-
 StackNavigator = RosbridgeNavigator | Ros2Navigator
 LOOK = 0.02
 """Longest real time [s] between two looks at the program."""

@@ -14,8 +14,6 @@ from crowdbot.recording import StepMessage
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
 
-__all__ = ["StackPort"]
-
 SHARED = ("/clock", "/tf", "/tf_static", "/map")
 """Topics of the scene that every robot software gets."""
 TRUE = ("/ground_truth/odom", "/reading", "/labels")

@@ -14,8 +14,6 @@ from typing import IO
 
 from crowdbot.core import InputError, check_programs, refuse_system
 
-__all__ = ["StackProgram"]
-
 PATIENCE = 3.0
 """Real time [s] between the request to end and the end by force."""
 LAST = 500

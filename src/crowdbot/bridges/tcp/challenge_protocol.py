@@ -15,8 +15,6 @@ from typing import Any, NamedTuple
 
 from crowdbot.core import InputError
 
-__all__ = ["NO_PICTURE", "ChallengeRequest", "encode_picture", "format_reply", "read_request"]
-
 LONGEST = 4096
 """Largest size of a request [bytes]."""
 NO_PICTURE, QUALITY = "JPG", 80

@@ -16,8 +16,6 @@ from crowdbot.recording import StepMessage
 
 from .challenge_protocol import LONGEST, NO_PICTURE, ChallengeRequest, encode_picture, format_reply, read_request
 
-__all__ = ["ChallengeServer"]
-
 PORT = 25001
 LOOK = 0.1
 """Longest real time [s] until a thread sees that the run has ended."""

@@ -10,8 +10,6 @@ from rosbags.typesys import get_types_from_msg
 
 from crowdbot.messages import Messages
 
-__all__ = ["MESSAGES", "PACKAGE", "SERVICES", "ServiceDefinition", "interface_store", "request_kind", "response_kind"]
-
 PACKAGE = "simulation_interfaces"
 
 MESSAGES = {

@@ -15,8 +15,6 @@ from crowdbot.simulation import Simulation
 
 from .results import UnsupportedFeature
 
-__all__ = ["HUMAN", "ROBOT", "Entity", "entities", "entity_of", "filter_entities", "state_of_entity"]
-
 ROBOT, HUMAN = 2, 3
 """Categories of ``simulation_interfaces/EntityCategory``."""
 BOX, SPHERE = 1, 3

@@ -6,8 +6,6 @@ from typing import Any
 
 from crowdbot.core import InputError
 
-__all__ = ["FAILED", "INCORRECT_STATE", "NOT_FOUND", "OK", "UNSUPPORTED", "UnsupportedFeature", "result"]
-
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
 
 

@@ -17,8 +17,6 @@ from crowdbot.world import builtin_robots, next_person
 from .entities import entities
 from .results import FAILED, NOT_FOUND, OK, result
 
-__all__ = ["SPAWNABLES", "spawn_order", "spawnables"]
-
 NAME_NOT_UNIQUE, NAME_INVALID, NO_RESOURCE, NAMESPACE_INVALID, PARSE_ERROR, INVALID_POSE = 101, 102, 104, 105, 106, 109
 """Results of ``simulation_interfaces/SpawnResult``."""
 PROPS = ("cube", "table", "tree")

@@ -25,8 +25,6 @@ from .results import FAILED, INCORRECT_STATE, NOT_FOUND, OK, UNSUPPORTED, Unsupp
 from .spawning import SOURCE, spawn_order, spawnables
 from .worlds import available_worlds, current_world, load_world
 
-__all__ = ["FEATURES", "Verbs", "answer_call"]
-
 FEATURES = (0, 1, 6, 8, 9, 10, 11, 12, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 40, 41, 44, 45, 50)
 """Supported features of ``simulation_interfaces/SimulatorFeatures``: all but named poses, bounds of entities, convex
 bounds, tags, setting the description of an entity, the action of steps, and unloading a world."""

@@ -11,8 +11,6 @@ from crowdbot.trials import Trial, builtin_trials, check_trial, load_trial, pars
 
 from .results import FAILED, OK, UNSUPPORTED, result
 
-__all__ = ["available_worlds", "current_world", "load_world"]
-
 NO_RESOURCE, PARSE_ERROR = 102, 103
 MOST_TEXT = 1_000_000
 

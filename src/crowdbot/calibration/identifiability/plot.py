@@ -8,8 +8,6 @@ from pathlib import Path
 
 from .profile import ParameterProfile
 
-__all__ = ["plot_profiles"]
-
 COLUMNS = 3
 LINE, RANGE, BEST = "#0072b2", "#e69f00", "#d55e00"
 

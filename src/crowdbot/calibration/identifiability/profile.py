@@ -19,8 +19,6 @@ from crowdbot.metrics import draw_counts, percentile_interval
 from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 
-__all__ = ["ParameterProfile", "profile_parameters"]
-
 RESAMPLES = 500
 
 

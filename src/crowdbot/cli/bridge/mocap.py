@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from crowdbot.bridges import CaptureSet, MotionCapture
     from crowdbot.trials import Trial
 
-__all__ = ["add_mocap", "open_capture_set", "open_captures", "print_captures"]
-
 
 def add_mocap(parser: argparse._ActionsContainer) -> None:
     """Declare the option ``--mocap``."""

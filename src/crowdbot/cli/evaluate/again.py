@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.evaluation import CellResult, EvaluationResult
 
-__all__ = ["print_worst", "worst_lines", "worst_values"]
 
 COUNT = 3
 """Number of seeds of a row."""

@@ -10,8 +10,6 @@ from crowdbot.cli.settings import load_settings_trial, settings
 if TYPE_CHECKING:
     from crowdbot.evaluation import EvaluationPlan
 
-__all__ = ["add_plan_options", "plan_of", "statistic_names"]
-
 
 def add_plan_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for sweeps and paired runs."""

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import CellResult, RealPlacement, RobotRecording
 
-__all__ = ["add_recording_options", "present_recordings"]
-
 
 def add_recording_options(parser: CommandParser) -> None:
     """Add the options for recordings of robots."""

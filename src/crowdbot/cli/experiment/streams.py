@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.experiments import StreamOutlets
 
-__all__ = ["add_streams", "open_outlets", "record_streams"]
-
 
 def add_streams(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""

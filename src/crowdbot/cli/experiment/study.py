@@ -12,8 +12,6 @@ from crowdbot.cli.output import add_json, note, number, print_json, print_table
 if TYPE_CHECKING:
     from crowdbot.experiments import Measure
 
-__all__ = ["add_analyse", "add_withdraw", "analyse", "withdraw_participant"]
-
 
 def add_analyse(parser: argparse.ArgumentParser) -> None:
     """Declare the options of ``analyse``."""

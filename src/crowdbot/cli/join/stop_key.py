@@ -12,8 +12,6 @@ from types import TracebackType
 
 from crowdbot.cli.output import note
 
-__all__ = ["StopKey"]
-
 GO = "go"
 LOOK = 0.1
 """Longest real time [s] until the thread sees that it has to end."""

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.world import DriveTest, Guess, Robot, RobotFolder
 
-__all__ = ["add_robot_options", "convert_robot", "is_robot_file"]
 
 ENDINGS = (".urdf", ".xacro", ".xml", ".sdf")
 MOST_ROWS = 60

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
 
-__all__ = ["add_body_options", "copy_beside", "write_body_file", "write_clip_file"]
-
 
 def add_body_options(parser: CommandParser) -> None:
     """Declare the options of a body."""

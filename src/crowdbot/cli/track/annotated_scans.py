@@ -14,7 +14,6 @@ from .tracker_choice import chosen_detectors, chosen_trackers
 if TYPE_CHECKING:
     from crowdbot.evaluation import AnnotatedScan
 
-__all__ = ["is_annotated", "read_annotated", "score_annotated"]
 
 FROG_SUFFIXES = (".h5", ".hdf5")
 

@@ -10,8 +10,6 @@ from crowdbot.cli.output import print_table
 if TYPE_CHECKING:
     from crowdbot.evaluation import TrackingRun
 
-__all__ = ["print_downstream", "score_downstream"]
-
 
 def score_downstream(options: argparse.Namespace, runs: dict[str, list[TrackingRun]]) -> dict[str, Any]:
     """Return the scores by tracker, predictor and input."""

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import ReadingLog, ScanProtocol, ScanScores
 
-__all__ = ["add_perception", "predict_perception"]
 
 PREDICTORS = ("last-scan", "moved-scan", "tracked-scene", "learned-scene")
 REFERENCE = "true-people"

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from crowdbot.evaluation import ReadingLog
     from crowdbot.perception import Detector
 
-__all__ = ["add_runs", "check_plain_runs", "reading_logs"]
-
 
 def add_runs(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
     """Add the options for the sensor and the runs."""

@@ -17,8 +17,6 @@ from .tracker_choice import chosen_detectors
 if TYPE_CHECKING:
     from crowdbot.evaluation import ReadingLog
 
-__all__ = ["print_statistics"]
-
 
 def print_statistics(options: argparse.Namespace) -> int:
     """Print the statistics of the scans of a trial, an episode or recorded scans."""

@@ -11,7 +11,6 @@ from crowdbot.cli.settings import add_settings, parse_settings
 if TYPE_CHECKING:
     from crowdbot.perception import Detector, PredictorMotion, Tracker
 
-__all__ = ["add_choice", "chosen_detectors", "chosen_trackers"]
 
 STEADY = "constant-velocity"
 

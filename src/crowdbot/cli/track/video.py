@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import VideoRun
 
-__all__ = ["add_video", "track_from_video"]
 
 REACH, FAR = 1.0, 10.0
 """Largest distance of a person and a track [m], and of people who must be found [m], by default."""

@@ -9,8 +9,6 @@ from crowdbot.cli.output import print_json, progress
 
 from .scan_training import check_scan_training
 
-__all__ = ["DETECTOR", "train_detector"]
-
 DETECTOR = "scan-network"
 EPOCHS = 12
 """Default number of passes over the generated scans."""

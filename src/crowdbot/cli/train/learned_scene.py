@@ -13,7 +13,6 @@ from .scan_training import check_scan_training
 if TYPE_CHECKING:
     from crowdbot.sensors import Scan
 
-__all__ = ["RUNS", "SCAN_PREDICTOR", "train_scan_predictor"]
 
 SCAN_PREDICTOR = "learned-scene"
 EPOCHS, RUNS = 20, 8

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-__all__ = ["check_scan_training"]
-
 
 def check_scan_training(options: argparse.Namespace, name: str) -> None:
     """Refuse options of trainings on recordings.

@@ -12,9 +12,6 @@ import numpy as np
 from crowdbot.core.kernels import kernel
 from crowdbot.typing import Words
 
-__all__ = ["HASH_BLOCK", "hash_blocks", "hash_start"]
-
-
 HASH_BLOCK = 128
 """Length of a block [bytes]."""
 IV = np.array(

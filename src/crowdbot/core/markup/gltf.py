@@ -19,8 +19,6 @@ from crowdbot.typing import Floats
 
 from .gltf_table import COMPONENT_BYTES, VALUES, check_gltf_table, glb_table, parse_table, table_rows, whole_value
 
-__all__ = ["GltfFile", "read_gltf"]
-
 MOST_BYTES = 256_000_000
 """Largest size of a file, and of all files that it refers to."""
 MOST_BUFFERS, MOST_EMPTY = 20, 1_000_000

@@ -9,18 +9,6 @@ from typing import Any
 
 from crowdbot.core.errors import InputError
 
-__all__ = [
-    "COMPONENT_BYTES",
-    "MOST_PARTS",
-    "MOST_TRIANGLES",
-    "VALUES",
-    "check_gltf_table",
-    "glb_table",
-    "parse_table",
-    "table_rows",
-    "whole_value",
-]
-
 MOST_TRIANGLES = 2_000_000
 MOST_PARTS = 2000
 """Maximum number of parts of a mesh, such as nodes, materials and named solids; each takes about 1 ms to read."""

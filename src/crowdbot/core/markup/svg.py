@@ -9,8 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"]
-
 PERSON_COLOR = "#3b6ea5"
 """Colour of people."""
 ROBOT_COLOR = "#d1495b"

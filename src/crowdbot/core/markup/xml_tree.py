@@ -16,8 +16,6 @@ from xml.parsers import expat  # expat loads no external entity; entities are re
 
 from crowdbot.core.errors import InputError
 
-__all__ = ["Element", "format_xml", "parse_number", "parse_xml", "read_bytes", "reject_entities"]
-
 MOST_BYTES = 4_000_000
 MOST_DEPTH = 20
 MOST_ELEMENTS = 50_000

@@ -10,8 +10,6 @@ import yaml
 
 from crowdbot.core.errors import InputError
 
-__all__ = ["parse_yaml"]
-
 MOST_LINES = 20_000
 MOST_DEPTH = 20
 MOST_NODES = 200_000

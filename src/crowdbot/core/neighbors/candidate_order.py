@@ -9,8 +9,6 @@ import numpy as np
 from crowdbot.core.kernels import kernel
 from crowdbot.typing import Floats, Rows
 
-__all__ = ["keep_nearest", "sort_by_distance", "sort_few"]
-
 
 @kernel(inline=True)
 def sort_few(near2: Floats, held: int, sorted_: Rows) -> None:

@@ -17,9 +17,6 @@ from crowdbot.typing import Floats, Rows
 
 from .candidate_order import keep_nearest, sort_by_distance
 
-__all__ = ["CHUNK", "SMALL", "SPARE", "Seekers", "search_in_grid"]
-
-
 CHUNK = 64
 """Number of agents in one work item of a thread."""
 SMALL = 512

@@ -13,8 +13,6 @@ import numpy as np
 from crowdbot.core.kernels import kernel, prange
 from crowdbot.typing import Bools, Floats, Rows
 
-__all__ = ["count_copies", "fill_copies", "find_period"]
-
 
 def find_period(place: Floats, seen: Bools) -> int:
     """Return after how many environments the positions and the visible agents repeat; E if they do not.

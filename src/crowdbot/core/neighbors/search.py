@@ -22,9 +22,6 @@ from .cell_grid import CHUNK, SMALL, SPARE, Seekers, search_in_grid
 from .copies import count_copies, fill_copies, find_period
 from .verlet_lists import search_again
 
-__all__ = ["CROWD", "FEW", "Neighbors", "nearest", "nearest_of_rows"]
-
-
 COUNT = np.dtype(np.int32)
 METHODS = ("auto", "brute", "grid")
 CROWD = 120

@@ -17,8 +17,6 @@ import numpy as np
 from crowdbot.core.kernels import kernel, prange
 from crowdbot.typing import Bools, Floats, Rows
 
-__all__ = ["search_again"]
-
 Search = Callable[..., Rows]
 """Fills ``agent [rows, K]`` and ``number [rows]`` for given seekers; returns the spatial order of the rows."""
 

@@ -20,8 +20,6 @@ from typing import Any, NoReturn
 
 from crowdbot.core.errors import InputError
 
-__all__ = ["UnreadableValue", "class_file", "describe_class", "reads_only", "unread_fields", "without_running_code"]
-
 MOST_BYTES = 1_000_000
 FIELD_MAKERS = ("parameter", "per_agent")
 _READS_ONLY: ContextVar[bool] = ContextVar("crowdbot_reads_only", default=False)

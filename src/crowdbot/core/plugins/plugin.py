@@ -24,17 +24,6 @@ from crowdbot.core.errors import InputError, UnknownName, did_you_mean
 from .class_source import describe_class, reads_only
 from .plugin_module import load_plugin_module, plugin_source
 
-__all__ = [
-    "attribute_names",
-    "attribute_problems",
-    "builtin_classes",
-    "builtin_name",
-    "find_class",
-    "from_attributes",
-    "kebab_case",
-    "required_fields",
-]
-
 SHORTENED = ("Navigator",)
 """Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
 

@@ -17,8 +17,6 @@ from crowdbot.core.errors import InputError
 
 from .class_source import class_file
 
-__all__ = ["load_plugin_module", "plugin_address", "plugin_source", "plugin_sources", "relative_name", "sources_of"]
-
 PREFIX = "crowdbot_plug_"
 logger = logging.getLogger("crowdbot")
 

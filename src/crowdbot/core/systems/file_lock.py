@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from typing import BinaryIO
 
-__all__ = ["lock_file"]
-
 LOCKED_BYTE = 1 << 30
 """Position of the locked byte on Windows, beyond any content, since locked bytes cannot be read by others there."""
 

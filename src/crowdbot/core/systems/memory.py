@@ -8,8 +8,6 @@ import re
 import sys
 from pathlib import Path
 
-__all__ = ["machine_memory", "peak_memory"]
-
 STATUS = Path("/proc/self/status")
 
 

@@ -8,8 +8,6 @@ from typing import NoReturn
 
 from crowdbot.core.errors import InputError
 
-__all__ = ["refuse_system", "system_name"]
-
 NAMES = {"linux": "Linux", "darwin": "macOS", "win32": "Windows"}
 
 

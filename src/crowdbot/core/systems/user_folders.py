@@ -6,8 +6,6 @@ import os
 import sys
 from pathlib import Path
 
-__all__ = ["user_cache_folder", "user_data_folder"]
-
 
 def user_cache_folder() -> Path:
     """Return the folder of crowdbot for what can be computed anew.

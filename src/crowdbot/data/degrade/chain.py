@@ -14,8 +14,6 @@ from crowdbot.data.trajectories import Trajectories
 
 from .degradation import Degradation, DegradedTracks
 
-__all__ = ["Chain"]
-
 
 @dataclass(frozen=True)
 class Chain:

@@ -12,8 +12,6 @@ from crowdbot.core import Paper, parameter
 from .degradation import Degradation, DegradedTracks
 from .row_ranks import iterate_ranks
 
-__all__ = ["CorrelatedNoise"]
-
 
 @dataclass(frozen=True)
 class CorrelatedNoise(Degradation):

@@ -14,8 +14,6 @@ from crowdbot.core import DataError, InputError, check_parameters, kebab_case, p
 from crowdbot.data.trajectories import Trajectories
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = ["GHOST", "Degradation", "DegradedTracks", "EmptyRecordingError"]
-
 GHOST = -1
 """True id of rows of false tracks."""
 

@@ -13,8 +13,6 @@ from crowdbot.core import parameter
 
 from .degradation import Degradation, DegradedTracks
 
-__all__ = ["FalseTracks"]
-
 Ghost = tuple[float, float, NDArray[np.float64], NDArray[np.float64]]
 
 

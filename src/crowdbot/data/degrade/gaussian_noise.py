@@ -11,8 +11,6 @@ from crowdbot.core import parameter
 
 from .degradation import Degradation, DegradedTracks
 
-__all__ = ["GaussianNoise"]
-
 
 @dataclass(frozen=True)
 class GaussianNoise(Degradation):

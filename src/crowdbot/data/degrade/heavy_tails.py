@@ -11,8 +11,6 @@ from crowdbot.core import Paper, parameter
 
 from .degradation import Degradation, DegradedTracks
 
-__all__ = ["HeavyTails"]
-
 
 @dataclass(frozen=True)
 class HeavyTails(Degradation):

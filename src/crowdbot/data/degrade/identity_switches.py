@@ -14,8 +14,6 @@ from crowdbot.typing import Ints
 
 from .degradation import Degradation, DegradedTracks
 
-__all__ = ["Encounter", "IdentitySwitches", "encounters"]
-
 
 class Encounter(NamedTuple):
     """An encounter of two tracks: the frame of their smallest distance, and their ids, the lower one first."""

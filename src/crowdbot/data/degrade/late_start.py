@@ -12,8 +12,6 @@ from crowdbot.core import InputError, parameter
 from .degradation import Degradation, DegradedTracks
 from .row_ranks import row_rank
 
-__all__ = ["LateStart"]
-
 
 @dataclass(frozen=True)
 class LateStart(Degradation):

@@ -13,8 +13,6 @@ from crowdbot.core import InputError, Paper, did_you_mean, parameter
 from .degradation import Degradation, DegradedTracks
 from .row_ranks import iterate_ranks
 
-__all__ = ["MissingFrames"]
-
 OF = ("person", "frame")
 
 

@@ -14,8 +14,6 @@ from crowdbot.typing import Bools, Floats
 
 from .degradation import GHOST, Degradation, DegradedTracks
 
-__all__ = ["Occlusion", "occlusion_mask"]
-
 
 def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
     """Return the mask ``[N]`` of people who are not visible from a point.

@@ -8,8 +8,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["iterate_ranks", "row_rank"]
-
 Indices = NDArray[np.intp]
 
 

@@ -16,8 +16,6 @@ from .plausibility import METRES_PER_DEGREE, FileColumns, check_walkers
 from .reader import ReadOptions
 from .time_base import row_rate_of
 
-__all__ = ["PER_METRE", "assemble", "check_units"]
-
 PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "px": 1.0, "deg": 1.0 / METRES_PER_DEGREE}
 """Units per metre; pixels are not converted, and degrees of longitude depend on the latitude, too."""
 

@@ -10,9 +10,6 @@ from crowdbot.core import DataError
 from crowdbot.data.rows import frame_step, where
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["RegularRows", "regular_rows", "row_rate_of_times"]
-
-
 SLOWEST, FASTEST = 1000.0, 1e-4
 """Range of the time step [s]; other values are not times in seconds."""
 SNAP = 0.25

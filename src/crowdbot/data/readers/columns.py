@@ -12,19 +12,6 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data.rows import integers, where
 
-__all__ = [
-    "TIME_UNITS",
-    "Columns",
-    "Lines",
-    "check_columns",
-    "check_quantities",
-    "find_columns",
-    "ids",
-    "labels",
-    "numbers",
-    "time_unit",
-]
-
 Columns = dict[str, NDArray[Any]]
 Lines = NDArray[np.int64] | None
 

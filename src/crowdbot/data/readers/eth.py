@@ -17,8 +17,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER", "eth_time_base"]
-
 ETH_VIDEO_FPS = 15.0
 ROOM = 50.0
 """Coordinates [m] beyond this are pixels; no recording of ETH and UCY is wider."""

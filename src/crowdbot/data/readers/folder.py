@@ -15,8 +15,6 @@ from .assemble import assemble
 from .reader import ReadOptions
 from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
 
-__all__ = ["bag_file", "read_folder"]
-
 BAG_INFO, BAG_ENDINGS = "metadata.yaml", (".mcap", ".db3")
 
 

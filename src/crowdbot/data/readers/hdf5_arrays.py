@@ -18,8 +18,6 @@ from crowdbot.core import DataError
 
 from . import hdf5_program
 
-__all__ = ["read_hdf5_arrays", "run_hdf5_program"]
-
 PROGRAM = hdf5_program.__file__
 SECONDS = 8
 """CPU time for reading an HDF5 file [s], and more for a large one:"""

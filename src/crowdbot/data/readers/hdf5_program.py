@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["COLUMNS", "limit_cpu_time", "read_arrays", "read_table"]
-
 COLUMNS = ("id", "frame", "x", "y")
 
 

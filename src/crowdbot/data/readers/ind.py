@@ -20,8 +20,6 @@ from .assemble import assemble
 from .columns import numbers
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 VIDEO_FPS = 25.0
 NAMES = ("trackId", "frame", "xCenter", "yCenter")
 END = "_tracks.csv"

@@ -16,8 +16,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 FPS = 15.0
 START = re.compile(r'^\s*\{\s*"labels"\s*:\s*\{')
 NUMBER = re.compile(r"\d+")

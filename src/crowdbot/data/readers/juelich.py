@@ -18,8 +18,6 @@ from .hdf5_arrays import run_hdf5_program
 from .hdf5_program import COLUMNS
 from .reader import Reader, ReadOptions
 
-__all__ = ["HDF5", "SQLITE"]
-
 UNIT = re.compile(r"\[\s*(mm|cm|m)\s*\]")
 
 

@@ -14,8 +14,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 ROW_RATE = 2.5
 """Rows per second [1/s]."""
 NEEDED = 6

@@ -19,8 +19,6 @@ from .assemble import assemble
 from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 HERMES_FPS = 16.0
 ROOM = 50.0
 """Coordinates beyond this [m] without a unit are centimetres; no indoor experiment is larger."""

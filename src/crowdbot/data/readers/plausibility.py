@@ -19,8 +19,6 @@ from crowdbot.data.trajectories import Trajectories
 from .reader import ReadOptions
 from .time_base import RowRateError
 
-__all__ = ["FileColumns", "check_walkers"]
-
 LONG_ROW, LONGEST_ROW = 1.0, 2.0
 """Time step [s] above which the speed decides whether ``fps`` is a row rate, and above which it always is one."""
 MIN_ROW_RATE, MAX_ROW_RATE = 0.5, 15.0

@@ -9,8 +9,6 @@ from typing import NamedTuple
 from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 
-__all__ = ["ReadOptions", "Reader"]
-
 
 @dataclass(frozen=True)
 class ReadOptions:

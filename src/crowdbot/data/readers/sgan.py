@@ -12,8 +12,6 @@ from .assemble import assemble
 from .eth import eth_time_base
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 HIDDEN = "?"
 ENOUGH = 100
 """Minimum number of track steps to check the order of the columns."""

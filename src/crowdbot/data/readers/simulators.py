@@ -22,9 +22,6 @@ from .assemble import assemble
 from .clock import regular_rows
 from .reader import Reader, ReadOptions
 
-__all__ = ["VADERE", "VISWALK"]
-
-
 STEP = 0.4
 """Time step of tracks from footsteps [s], that of Vadere unless a scenario changes it."""
 TOLERANCE = 1e-6

@@ -18,8 +18,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 NAMES = ("obsvs", "preds", "times")
 
 

@@ -40,8 +40,6 @@ from .columns import (
 from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
-__all__ = ["ATC", "CSV", "PARQUET", "ROBOT", "read_persons"]
-
 ROBOT = "robot"
 """Tracks with this label are robots."""
 DELIMITERS = ",;\t"

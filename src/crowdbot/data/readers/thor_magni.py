@@ -22,8 +22,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 FPS = 100.0
 FIRST = "FILE_ID"
 MOST_METADATA = 100

@@ -12,8 +12,6 @@ from crowdbot.core import DataError
 
 from .reader import ReadOptions
 
-__all__ = ["RowRateError", "check_fps", "row_rate_of"]
-
 CONVENTIONAL_FPS = {6: 15.0, 10: 25.0, 12: 30.0}
 """fps by frame step of files with rows of 0.4 s: ETH, UCY and the leave-one-out files, and SDD in the TrajNet cut."""
 MAX_FPS = 10_000.0

@@ -21,8 +21,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 MAX_LINE = 1_000_000
 """Characters of one line; a line of the format has about 100."""
 

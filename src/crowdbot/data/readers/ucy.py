@@ -20,8 +20,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER", "UCY_TO_METRES"]
-
 VIDEO_FPS = 25.0
 MAX_INTERPOLATED = 2_000_000
 """Most rows after interpolation, ten times those of the longest UCY recording: two lines can span any time."""

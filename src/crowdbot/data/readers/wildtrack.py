@@ -18,8 +18,6 @@ from crowdbot.data.trajectories import Trajectories
 from .assemble import assemble
 from .reader import Reader, ReadOptions
 
-__all__ = ["READER"]
-
 FPS = 10.0
 START = re.compile(r"^\s*\[\s*\{")
 COLUMNS, ROWS = 480, 1440

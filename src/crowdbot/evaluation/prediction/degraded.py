@@ -16,8 +16,6 @@ from crowdbot.prediction import Predictor, degraded_windows
 
 from .predictor_score import score_predictor
 
-__all__ = ["DegradedScore", "DegradedTask", "sweep_degradations"]
-
 
 @dataclass(frozen=True)
 class DegradedTask:

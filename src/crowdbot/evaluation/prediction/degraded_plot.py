@@ -11,8 +11,6 @@ from typing import Any
 
 from .degraded import DegradedScore
 
-__all__ = ["plot_degradation"]
-
 COLUMNS = 4
 STYLES = (
     ("#0072b2", "o"), ("#e69f00", "s"), ("#009e73", "^"), ("#cc79a7", "D"),

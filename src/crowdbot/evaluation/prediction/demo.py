@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from crowdbot.simulation import Episode
     from crowdbot.trials import Trial
 
-__all__ = ["Demo", "run_demo"]
 
 TRIAL = "crossing-flows"
 STEP = 0.4

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from crowdbot.metrics import Score
     from crowdbot.simulation import Episode
 
-__all__ = ["PredictionResult", "write_demo_report"]
 
 COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
 """Colours that are distinguishable with colour blindness (Okabe & Ito)."""

@@ -23,7 +23,6 @@ from .window_results import FrameResults, predict_windows
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["PredictorEvaluation", "PredictorJob", "PredictorJobResult", "PredictorResult"]
 
 MIN_JOBS = 8
 """Minimum number of jobs per recording."""

@@ -15,8 +15,6 @@ from crowdbot.prediction import PredictorSpec
 
 from .evaluation import PredictorEvaluation, PredictorResult
 
-__all__ = ["animate_window", "plot_errors", "plot_frames"]
-
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
 """Colours that are distinguishable with colour blindness (Okabe & Ito), then brown and grey."""
 PEOPLE, TRUTH, ORACLE = "#9a9a9a", "#000000", "#f0c987"

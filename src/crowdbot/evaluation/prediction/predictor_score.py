@@ -11,8 +11,6 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import PersonErrors, Score, person_errors
 from crowdbot.prediction import Predictor
 
-__all__ = ["score_predictor"]
-
 CHUNK_NUMBERS = 4_000_000
 """Approximate number of predicted values in memory at once (32 MB per array)."""
 

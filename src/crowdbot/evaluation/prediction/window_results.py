@@ -16,8 +16,6 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import PersonErrors, person_errors
 from crowdbot.prediction import Predictor
 
-__all__ = ["FrameResults", "WindowResults", "predict_windows"]
-
 
 @dataclass(frozen=True)
 class FrameResults:

@@ -11,9 +11,6 @@ from crowdbot.core import Pose
 from crowdbot.sensors import Reading, Scan
 from crowdbot.typing import Floats
 
-__all__ = ["AnnotatedScan", "planar_scan"]
-
-
 NO_BOXES: Floats = np.zeros((0, 4))
 """Default of the boxes that do not count."""
 

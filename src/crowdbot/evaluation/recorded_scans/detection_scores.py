@@ -16,9 +16,6 @@ from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan
 
-__all__ = ["DetectionScores", "score_detections", "score_positions"]
-
-
 LONGEST_GAP = 1.0
 """After a longer time without a scan [s], trackers begin again."""
 

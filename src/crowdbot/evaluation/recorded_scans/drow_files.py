@@ -14,9 +14,6 @@ from crowdbot.typing import Floats
 from .annotated_scan import AnnotatedScan, planar_scan
 from .text_lines import read_text_lines
 
-__all__ = ["read_drow"]
-
-
 FIELD_OF_VIEW = math.radians(225.0)
 """Field of view of the scanner, a SICK S300."""
 MOST_SCANS, MOST_BEAMS = 1_000_000, 10_000

@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan, planar_scan
 
-__all__ = ["read_frog"]
-
-
 FIELD_OF_VIEW = math.radians(180.0)
 """Field of view of the scanner."""
 MAX_RANGE = 10.0

@@ -16,9 +16,6 @@ from .annotated_scan import AnnotatedScan
 from .pcd_file import read_pcd
 from .text_lines import read_text_lines
 
-__all__ = ["read_lcas"]
-
-
 HEIGHT = 0.8
 """Height of the scanner above the floor [m]."""
 RINGS, RING_STEP, LOWEST = 16, math.radians(2.0), math.radians(-15.0)

@@ -13,9 +13,6 @@ from numpy.lib import format as npy
 from crowdbot.core import DataError
 from crowdbot.typing import Floats
 
-__all__ = ["read_npy_row"]
-
-
 LARGEST = 131_072
 """Largest size of a file [bytes]."""
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}

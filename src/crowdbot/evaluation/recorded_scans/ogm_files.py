@@ -16,9 +16,6 @@ from crowdbot.typing import Floats
 from .annotated_scan import planar_scan
 from .npy_file import read_npy_row
 
-__all__ = ["OGM_PERIOD", "find_ogm_split", "read_ogm"]
-
-
 OGM_PERIOD = 0.1
 """Time between two scans [s]."""
 FIELD_OF_VIEW = math.radians(270.0)

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 
-__all__ = ["read_pcd"]
-
 LARGEST = 64_000_000
 """Largest size of a file [bytes]."""
 MOST_POINTS, MOST_FIELDS, MOST_COUNT = 1_000_000, 64, 4096

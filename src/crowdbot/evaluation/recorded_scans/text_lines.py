@@ -6,8 +6,6 @@ from pathlib import Path
 
 from crowdbot.core import DataError
 
-__all__ = ["read_text_lines"]
-
 
 def read_text_lines(path: Path, largest: int, what: str) -> list[str]:
     """Return the lines of a file in UTF-8.

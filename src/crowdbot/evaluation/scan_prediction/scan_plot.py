@@ -8,8 +8,6 @@ import numpy as np
 
 from .scan_scores import SCAN_SCORES, ScanScores
 
-__all__ = ["plot_scan_scores"]
-
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000")
 
 

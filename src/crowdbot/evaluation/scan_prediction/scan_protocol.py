@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 from crowdbot.core import InputError, check_number
 from crowdbot.metrics import OccupancyGrid
 
-__all__ = ["SOGMP", "ScanProtocol"]
-
 WARM_UP = 1.0
 """Time of a log before the first forecast [s], if all scans are seen."""
 

@@ -25,9 +25,6 @@ from crowdbot.typing import Floats
 
 from .scan_protocol import ScanProtocol
 
-__all__ = ["SCAN_SCORES", "ScanScores", "TruePeople", "score_scans"]
-
-
 DEFAULT = ScanProtocol()
 SCAN_SCORES = {
     "occupancy_iou": "",

@@ -16,17 +16,6 @@ from crowdbot.data import Recording
 from crowdbot.sensors import Lens
 from crowdbot.typing import Floats
 
-__all__ = [
-    "CameraCalibration",
-    "RobotOdometry",
-    "TruePaths",
-    "iterate_frames",
-    "read_camera",
-    "read_odometry",
-    "read_true_paths",
-]
-
-
 LARGEST = 1_000_000
 """Largest size of a file of calibration [bytes]."""
 MOST_ROWS = 10_000_000

@@ -17,9 +17,6 @@ from crowdbot.typing import Floats
 
 from .tracking_run import TrackingRun
 
-__all__ = ["DOWNSTREAM_INPUTS", "DOWNSTREAM_SCORES", "estimate_downstream"]
-
-
 STEP, OBSERVE, AHEAD = 0.4, 8, 8
 """Time between rows [s], and numbers of observed and predicted rows."""
 DOWNSTREAM_INPUTS = ("true", "tracked", "tracked, uncertain")

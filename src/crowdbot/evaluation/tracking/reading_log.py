@@ -16,8 +16,6 @@ from crowdbot.sensors import Reading
 from crowdbot.simulation import Simulation, SimulationRun, StepRecord
 from crowdbot.trials import Trial, check_trial, parse_trial
 
-__all__ = ["LoggedReading", "ReadingLog", "log_readings", "read_readings"]
-
 MIN_BEAMS = 3
 """People who return fewer beams are hidden: they need not be found."""
 

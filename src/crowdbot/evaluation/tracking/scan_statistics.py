@@ -14,9 +14,6 @@ from crowdbot.core import InputError
 from crowdbot.sensors import PointCloud, Reading, Scan, planar_pose
 from crowdbot.typing import Floats
 
-__all__ = ["BAND_LIMITS", "ReturnsOfPeople", "scan_statistics"]
-
-
 BAND_LIMITS = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 27.0)
 """Limits of the bands of distance [m]."""
 REACH = 0.45

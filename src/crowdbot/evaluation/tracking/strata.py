@@ -15,9 +15,6 @@ from crowdbot.typing import Bools, Floats
 
 from .tracking_run import TrackingRun
 
-__all__ = ["STRATA", "estimate_strata"]
-
-
 DISTANCES: tuple[float, ...] = (0.0, 3.0, 6.0, 9.0, math.inf)
 """Limits of the distance from the robot [m]."""
 DENSITIES: tuple[float, ...] = (0.0, 0.15, 0.3, math.inf)

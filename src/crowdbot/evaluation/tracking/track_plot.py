@@ -11,8 +11,6 @@ from crowdbot.sensors import PointCloud
 
 from .tracking_run import TrackingRun
 
-__all__ = ["plot_tracks"]
-
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a")
 """Colours that are distinguishable with colour blindness (Okabe & Ito), and brown; tracks repeat them."""
 TRUE, WALL, SCAN = "#b8b8b8", "#404040", "#000000"

@@ -13,8 +13,6 @@ from crowdbot.perception import Detections, Detector, Tracker, Tracks
 
 from .reading_log import ReadingLog
 
-__all__ = ["TrackingRun", "estimate_scores", "track_people"]
-
 
 @dataclass(frozen=True)
 class TrackingRun:

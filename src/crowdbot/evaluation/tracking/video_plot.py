@@ -13,9 +13,6 @@ from crowdbot.typing import Floats
 from .camera_files import TruePaths
 from .video_run import VideoForecast, VideoRun
 
-__all__ = ["plot_video_run"]
-
-
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a")
 LAST = 4.0
 """Time before the last frame that is drawn [s]."""

@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 
 from .camera_files import CameraCalibration, RobotOdometry, TruePaths, iterate_frames
 
-__all__ = ["VideoForecast", "VideoRun", "track_video"]
-
-
 STEP = 0.4
 """Time between the rows of a forecast [s]."""
 MARGIN = 0.5

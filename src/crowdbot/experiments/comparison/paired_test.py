@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["PairedTest", "paired_test"]
-
 
 class PairedTest(NamedTuple):
     """The difference of two conditions, second minus first, within participants.

@@ -12,7 +12,6 @@ from .study import COLORS, TrialMeasures
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_paths"]
 
 COLUMNS = 3
 WIDE = 2.0

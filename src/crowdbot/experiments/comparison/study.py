@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["COLORS", "EmulatedPerson", "Measure", "RecordedTrial", "Study", "TrialMeasures"]
-
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Colours of the conditions (Okabe, Ito)."""

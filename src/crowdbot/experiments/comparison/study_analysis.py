@@ -27,8 +27,6 @@ from .study import Measure, RecordedTrial, Study, TrialMeasures
 from .trial_latency import LATENCY_FILE, read_trial_latency
 from .view_track import looking_shares
 
-__all__ = ["LOOKING", "SETTLING", "ConditionTest", "StudyAnalysis", "analyse_study", "experiment_of", "rating_measures"]
-
 SETTLING = 2.0
 """Time at the start of a trial that is left out of steady motions [s]."""
 LOOKING: Mapping[str, Measure] = {

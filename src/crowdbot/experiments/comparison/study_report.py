@@ -20,7 +20,6 @@ from .study_analysis import StudyAnalysis
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["measures_figure", "write_study_report"]
 
 STYLE = """
 :root { color-scheme: light dark; }

@@ -11,8 +11,6 @@ from typing import NamedTuple
 from crowdbot.core import InputError, explain_write_errors
 from crowdbot.trials import Avatar
 
-__all__ = ["LATENCY_FILE", "TrialLatency", "read_trial_latency", "write_trial_latency"]
-
 LATENCY_FILE = "latency.json"
 
 

@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 
 from .study import RecordedTrial
 
-__all__ = ["ViewTrack", "looking_shares", "view_track"]
-
 GAZE_TYPE = "Gaze"
 GAZE_CHANNELS = ("direction_x", "direction_y", "direction_z")
 """Channels of a stream of the type ``Gaze``: the direction in the frame of the head (x ahead, y left, z up)."""

@@ -18,7 +18,6 @@ from crowdbot.typing import Floats
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["CrossingStudy"]
 
 PARALLEL = math.sin(math.radians(10.0))
 """Sine of the smallest angle between the two ways."""

@@ -6,8 +6,6 @@ import math
 
 from crowdbot.core import stream
 
-__all__ = ["EmulatedGlances"]
-
 EYE_HEIGHT = 1.58
 """Height of the eyes [m]."""
 FORWARD = 0.1

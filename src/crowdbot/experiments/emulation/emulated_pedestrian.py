@@ -17,8 +17,6 @@ from crowdbot.typing import Floats
 from .emulated_glances import EmulatedGlances
 from .participant_agent import participant_agent
 
-__all__ = ["EmulatedPedestrian", "PedestrianWalk"]
-
 ACCELERATION = 1.5
 """Largest change of the velocity [m/s2]."""
 STOP = 0.3

@@ -6,8 +6,6 @@ import math
 
 from crowdbot.core import stream
 
-__all__ = ["EmulatedWander"]
-
 WANDER_TIME = 2.0
 """Correlation time [s]."""
 

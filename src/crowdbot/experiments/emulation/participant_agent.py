@@ -5,8 +5,6 @@ from __future__ import annotations
 from crowdbot.core import InputError
 from crowdbot.trials import Avatar, Trial
 
-__all__ = ["participant_agent"]
-
 
 def participant_agent(trial: Trial) -> tuple[Avatar, int]:
     """Return the avatar of the participant, the first ``external`` one, and the index of its agent.

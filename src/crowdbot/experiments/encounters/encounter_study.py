@@ -18,7 +18,6 @@ from crowdbot.typing import Floats
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["EncounterStudy"]
 
 PERSONAL = 1.2
 """Personal distance of Hall (1966), The Hidden Dimension [m], between the centres."""

@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 
 from .leading import roles_of
 
-__all__ = ["EmulatedParticipant", "EmulatedWalk"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class EmulatedParticipant:

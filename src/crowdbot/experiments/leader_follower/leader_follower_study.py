@@ -26,8 +26,6 @@ from .leading import Roles, roles_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["LeaderFollowerStudy"]
-
 
 class LeaderFollowerStudy(Study):
     """A robot or the participant leads, the other one keeps the distance.

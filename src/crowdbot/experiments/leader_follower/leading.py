@@ -8,8 +8,6 @@ from crowdbot.core import InputError
 from crowdbot.navigation import FollowerNavigator, SinusoidNavigator
 from crowdbot.trials import Avatar, RobotSpec, Trial
 
-__all__ = ["Roles", "roles_of"]
-
 
 class Roles(NamedTuple):
     """The two of a trial, and whether the robot leads."""

@@ -6,8 +6,6 @@ from typing import Any
 
 from crowdbot.core import MissingExtra
 
-__all__ = ["load_pylsl"]
-
 
 def load_pylsl() -> Any:
     """Return the module ``pylsl``.

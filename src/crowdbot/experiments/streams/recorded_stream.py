@@ -12,8 +12,6 @@ import numpy as np
 from crowdbot.core import EpisodeError
 from crowdbot.typing import Floats
 
-__all__ = ["COLUMNS", "STREAMS", "RecordedStream", "read_streams"]
-
 STREAMS = "streams"
 """Folder of the streams in the folder of a participant."""
 COLUMNS = ("stream_time", "offset", "clock")

@@ -12,8 +12,6 @@ from crowdbot.trials import Trial
 
 from .lab_streaming_layer import load_pylsl
 
-__all__ = ["EVENTS_STREAM", "HEADS_STREAM", "ROBOTS_STREAM", "StreamOutlets"]
-
 EVENTS_STREAM, HEADS_STREAM, ROBOTS_STREAM = "crowdbot-events", "crowdbot-heads", "crowdbot-robots"
 HEAD = {"x": "m", "y": "m", "z": "m", "qw": "1", "qx": "1", "qy": "1", "qz": "1"}
 ROBOT = {"x": "m", "y": "m", "heading": "rad"}

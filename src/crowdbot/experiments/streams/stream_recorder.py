@@ -18,8 +18,6 @@ from crowdbot.core import CrowdbotError, EpisodeError, InputError
 from .lab_streaming_layer import load_pylsl
 from .recorded_stream import COLUMNS, STREAMS
 
-__all__ = ["StreamRecorder"]
-
 INTERVAL = 0.05
 """Time between two reads [s]."""
 OFFSET_INTERVAL = 1.0

@@ -14,8 +14,6 @@ from crowdbot.core import EpisodeError
 from crowdbot.simulation import StepRecord
 from crowdbot.typing import Floats
 
-__all__ = ["CLOCK_FILE", "TrialClock", "TrialClockLog", "read_trial_clock"]
-
 CLOCK_FILE = "clock.csv"
 HEAD = "time,monotonic,utc\n"
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from crowdbot.humans import KEYPOINT_EDGES, KEYPOINTS
 
-__all__ = ["encode_mask", "join_annotations", "write_images"]
-
 Table = Mapping[str, NDArray[Any]]
 PERSON = 1
 """Category of people, as in COCO."""

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from crowdbot.core import SpatialPose
 from crowdbot.typing import Floats
 
-__all__ = ["kitti_line", "write_kitti"]
-
 Table = Mapping[str, NDArray[Any]]
 CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 """Rotation from x forward, y left, z up to the axes of KITTI: x right, y down, z forward."""

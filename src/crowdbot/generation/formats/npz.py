@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["write_npz"]
-
 
 def write_npz(
     tables: Mapping[str, Mapping[str, NDArray[Any]]], path: Path, compressed: bool, seeds: Sequence[int]

@@ -17,8 +17,6 @@ from crowdbot.typing import Floats
 
 from .clip import Clip
 
-__all__ = ["pose_activities"]
-
 HANDS = {
     "carry": (0.21, 0.085, -0.215), "read": (0.185, 0.045, -0.135), "pram": (0.25, 0.115, -0.235),
     "wheelchair": (0.25, 0.125, -0.245),

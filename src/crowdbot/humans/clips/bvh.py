@@ -10,8 +10,6 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["Bvh", "read_bvh"]
-
 MOST_JOINTS, MOST_FRAMES, MOST_CHARACTERS = 400, 20_000, 200_000_000
 CHANNELS = {f"{axis}{kind}": (k, kind) for kind in ("position", "rotation") for k, axis in enumerate("XYZ")}
 

@@ -12,8 +12,6 @@ from crowdbot.core import InputError
 from crowdbot.humans.asset import shapes
 from crowdbot.typing import Floats
 
-__all__ = ["SUFFIX", "Clip", "read_clip", "write_clip"]
-
 SUFFIX = ".clip"
 FORMAT = "crowdbot-clip-1"
 MOST_FRAMES, MOST_BYTES = 3000, 40_000_000

@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 from .bvh import Bvh
 from .clip import MOST_FRAMES, Clip
 
-__all__ = ["NEEDED", "clip_of", "map_bones"]
-
 WALKING = 0.3
 """Speed [leg lengths per s] from which on a motion is a gait."""
 RATE = 60.0

@@ -21,8 +21,6 @@ from crowdbot.humans.quaternions import from_matrix, multiply, to_matrix
 from crowdbot.humans.vectors import Vector, normalize, rotate, write_frame, write_turn
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["LYING", "FallPose", "blend_fall_poses", "fall_postures"]
-
 LYING = 0.5 * math.pi
 """Tilt [rad] of a lying person."""
 PROTECTED = math.radians(50.0)

@@ -14,8 +14,6 @@ from crowdbot.humans.person import Person
 from crowdbot.humans.wardrobe import Outfit, region_colors
 from crowdbot.typing import Bytes, Floats
 
-__all__ = ["CHARTS", "body_uv", "paint_body"]
-
 SIDE = 512
 """Side [pixels] of the picture of a person."""
 CHARTS = {

@@ -9,8 +9,6 @@ from crowdbot.humans.people import People
 from crowdbot.humans.posture import Posture
 from crowdbot.typing import Floats
 
-__all__ = ["KEYPOINTS", "KEYPOINT_EDGES", "keypoint_places"]
-
 KEYPOINTS = (
     "nose", "left_eye", "right_eye", "left_ear", "right_ear", "left_shoulder", "right_shoulder", "left_elbow",
     "right_elbow", "left_wrist", "right_wrist", "left_hip", "right_hip", "left_knee", "right_knee", "left_ankle",

@@ -13,8 +13,6 @@ from crowdbot.typing import Floats, Ints
 
 from .rigged_body import RiggedBody
 
-__all__ = ["BodyRows", "body_rows", "included_rows"]
-
 SOLE = 0.015
 """Height [m] of the points of the foot that belong to the sole."""
 FEWEST = 12

@@ -13,8 +13,6 @@ from crowdbot.humans.asset import shapes
 from crowdbot.humans.clips.retarget import NEEDED, map_bones
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["Character", "read_character"]
-
 MOST_TRIANGLES, MOST_JOINTS = 400_000, 1000
 
 

@@ -11,8 +11,6 @@ import numpy as np
 
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["EdgeCollapse"]
-
 Point = tuple[float, ...]
 BORDER = 30.0
 """Weight of planes that hold the lines between labels, over those of the faces."""

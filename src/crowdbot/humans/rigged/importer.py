@@ -17,8 +17,6 @@ from .rest_pose import rest_pose
 from .rigged_body import RiggedBody
 from .simplify import detail_levels
 
-__all__ = ["ImportedBody", "import_body"]
-
 
 class ImportedBody(NamedTuple):
     """A body, the bones that its skeleton lacks, and sentences about what is left out."""

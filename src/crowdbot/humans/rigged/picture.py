@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 from .character import Character
 from .rigged_body import PICTURE
 
-__all__ = ["CharacterPicture", "character_picture", "material_picture"]
-
 MOST_PIXELS = 70_000_000
 MOST_MATERIALS = 64
 FORMATS = ("PNG", "JPEG", "WEBP")

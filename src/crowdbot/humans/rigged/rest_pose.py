@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 
 from .character import Character
 
-__all__ = ["RestPose", "rest_pose"]
-
 HEIGHTS = (0.5, 2.5)
 LEANING = math.radians(25.0)
 """Largest angle of the trunk from upright in the file."""

@@ -17,8 +17,6 @@ from crowdbot.core import InputError
 from crowdbot.humans.asset import LEVELS, shapes
 from crowdbot.typing import Bytes, Floats, Ints
 
-__all__ = ["BODY_NAME", "RiggedBody", "RiggedLevel", "read_body", "write_body"]
-
 BODY_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}\.body")
 """Names of body files: files beside a trial."""
 FORMAT = "crowdbot-body-1"

@@ -17,8 +17,6 @@ from crowdbot.typing import Floats, Ints
 from .edge_collapse import EdgeCollapse
 from .rigged_body import RiggedLevel
 
-__all__ = ["TRIANGLES", "detail_levels"]
-
 TRIANGLES = (30_000, 3000, 900)
 """Largest number of triangles of each level of detail."""
 DENSE = 10_000

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-__all__ = ["BodyRegion"]
-
 
 class BodyRegion(NamedTuple):
     """Limits of a region of the body, as of ISO/TS 15066.

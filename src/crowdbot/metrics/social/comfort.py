@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["comfort_metrics", "personal_space_cost", "zone_violations"]
-
 DISCOMFORT = 0.2
 """Clearance [m] below which a step is uncomfortable (CrowdNav)."""
 WEIGHT = 0.5

@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["conflict_metrics", "conflict_shares", "fear_and_panic"]
-
 SMALL = 0.01
 """Times [s] and speeds below this are 0 (SocNavData2026)."""
 MOST_FEAR = 10.0

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
-__all__ = ["Coordination", "coordination"]
-
-
 LARGEST_GAP = 1.0 / 4.0
 """Part of a period between two samples of the leader across which the leader is not interpolated."""
 LAGS = 100

@@ -14,8 +14,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["crowd_effect", "empty_scene_ratios"]
-
 Measure = Callable[[Floats, Floats, Floats], float]
 NEIGHBOR = 5.0
 """People who come closer to the robot than this [m], between centres, are its neighbours."""

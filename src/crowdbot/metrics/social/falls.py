@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Protocol
 
-__all__ = ["FALL_METRICS", "HIC15_LIMIT", "FallOutcome", "fall_hic15", "fall_metrics"]
-
 PULSE = 690.0
 """Peak acceleration of a head that hits a hard floor per impact speed [1/s]. Hajiaghamemar et al. 2015,
 doi:10.1007/s10439-015-1255-1: 95 % of 107 standing falls of dummies have 2.02 to 7.41 m/s and 146 to 502 g, which is

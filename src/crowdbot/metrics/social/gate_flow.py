@@ -11,8 +11,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["count_crossings", "find_gate", "gate_metrics"]
-
 REACH = 5.0
 """Largest distance [m] of an end of the gate from the place on the path."""
 STEP = 0.25

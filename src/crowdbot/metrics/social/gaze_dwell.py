@@ -12,9 +12,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError, check_number
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["GAZE_HALF_ANGLE", "HEAD_HALF_ANGLE", "GazeDwell", "gaze_dwell"]
-
-
 HEAD_HALF_ANGLE = math.radians(15.0)
 """Half angle of the cone about the direction of a head [rad]. Most natural saccades are of 15 degrees or less (Bahill,
 Adler, Stark 1975, Investigative Ophthalmology 14, 468-469); the head turns for more."""

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["detect_groups", "distance_to_hull", "group_metrics"]
-
 TOGETHER = 1.5
 """Mean distance of two members of a group [m] at most ..."""
 ALIKE = 0.3

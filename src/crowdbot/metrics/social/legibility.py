@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["legibility", "legibility_metrics"]
-
 ANGLES = (-90.0, -45.0, 0.0, 45.0, 90.0)
 """Directions [degrees] of possible goals as seen from the start, relative to the true one."""
 

@@ -12,8 +12,6 @@ from crowdbot.metrics.agent_states import AgentLog
 
 from .robot_log import RobotLog
 
-__all__ = ["LogMetric", "check_log_metric"]
-
 
 @dataclass(frozen=True)
 class LogMetric(ABC):

@@ -18,8 +18,6 @@ from .social_force import force_metrics
 from .surroundings import density_metrics, person_metrics
 from .task import task_metrics
 
-__all__ = ["LOG_FAMILIES", "log_metrics"]
-
 LOG_FAMILIES: dict[str, Callable[[RobotLog], dict[str, float]]] = {
     "task": task_metrics,
     "path": path_metrics,

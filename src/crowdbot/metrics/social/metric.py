@@ -8,8 +8,6 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-__all__ = ["Metric", "metric_families", "metric_page", "metric_table"]
-
 
 class Metric(NamedTuple):
     """One metric of the table.

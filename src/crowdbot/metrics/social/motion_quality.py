@@ -11,8 +11,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["accelerations", "motion_metrics", "path_irregularity", "spectral_arc_length"]
-
 FREEZE = 5.0
 """Time at rest [s] above which the robot is frozen."""
 CUT_OFF = 10.0

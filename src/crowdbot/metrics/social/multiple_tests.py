@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-__all__ = ["correct_p_values"]
-
 
 def correct_p_values(p_values: Sequence[float]) -> list[float]:
     """Return p-values after the correction of Holm; NaN values stay and do not count.

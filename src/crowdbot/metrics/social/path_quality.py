@@ -11,8 +11,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["path_metrics", "sample_path", "time_warping_distance"]
-
 SPACING = 0.25
 """Distance [m] of the points of both paths that dynamic time warping compares."""
 

@@ -19,8 +19,6 @@ from crowdbot.typing import Bools, Floats
 
 from .body_region import BodyRegion
 
-__all__ = ["RobotLog"]
-
 
 @dataclass(frozen=True, eq=False)
 class RobotLog:

@@ -9,8 +9,6 @@ from typing import Protocol
 from .body_region import BodyRegion
 from .robot_log import RobotLog
 
-__all__ = ["RegionImpact", "head_injury_criterion", "impact_region_metrics", "severity_metrics"]
-
 STATURE = 1.75
 """Stature of the person [m] for the heights of body regions."""
 HEIGHTS = {

@@ -8,8 +8,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["force_metrics", "social_force"]
-
 FACTOR, LAMBDA, GAMMA, N, N_PRIME = 2.1, 2.0, 0.35, 2.0, 3.0
 """Parameters of the social force (Moussaid et al. 2009, https://doi.org/10.1098/rspb.2009.0405), as in light-SFM."""
 OBSTACLE_FACTOR, OBSTACLE_SIGMA = 10.0, 0.2

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 from .robot_log import RobotLog
 from .voronoi_density import voronoi_metrics
 
-__all__ = ["density_metrics", "person_metrics"]
-
 RADII = {"2_5m": 2.5, "3m": 3.0, "5m": 5.0, "10m": 10.0}
 """Radii [m] of densities (CrowdBot)."""
 LONG = 0.5

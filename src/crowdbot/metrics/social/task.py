@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["count_failures_to_progress", "task_metrics"]
-
 PROGRESS = 0.2
 """Decrease of the distance to the goal [m] that counts as progress ..."""
 PROGRESS_TIME = 5.0

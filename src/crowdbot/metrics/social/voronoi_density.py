@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
-__all__ = ["voronoi_density", "voronoi_metrics"]
-
 RADIUS = 2.5
 """Radius [m] of the disc around the robot, and of the disc around a person that holds the cell."""
 RAYS = 120

@@ -9,8 +9,6 @@ import numpy as np
 
 from .track_comparison import TrackComparison, match_nearest
 
-__all__ = ["ClearMot", "clear_mot"]
-
 
 @dataclass(frozen=True)
 class ClearMot:

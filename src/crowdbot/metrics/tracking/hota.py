@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 
 from .track_comparison import TrackComparison
 
-__all__ = ["Hota", "hota"]
-
 THRESHOLDS = np.arange(0.05, 0.99, 0.05)
 """Thresholds of similarity."""
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from .track_comparison import TrackComparison
 
-__all__ = ["identity_f1"]
-
 
 def identity_f1(table: TrackComparison, reach: float = 0.5) -> float:
     """Return IDF1 = 2 IDTP / (people + tracks), both over all instants; NaN without both.

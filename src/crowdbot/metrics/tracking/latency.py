@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .track_comparison import TrackComparison, match_nearest
 
-__all__ = ["track_latency"]
-
 
 def track_latency(table: TrackComparison, times: ArrayLike, reach: float = 0.5) -> NDArray[np.float64]:
     """Return the time from the first sight of each person to the first track, ``[A]`` [s]; ``inf`` if never tracked.

@@ -9,8 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .track_comparison import TrackComparison, match_nearest
 
-__all__ = ["OcclusionCount", "count_occlusions"]
-
 BACK = 1.0
 """A person who is not tracked this long after an occlusion [s] is lost."""
 

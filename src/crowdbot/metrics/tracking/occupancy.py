@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError, check_number
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["OccupancyGrid", "occupancy_iou", "range_error", "structural_similarity", "weighted_squared_error"]
-
 
 @dataclass(frozen=True)
 class OccupancyGrid:

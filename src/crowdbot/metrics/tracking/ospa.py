@@ -10,8 +10,6 @@ from crowdbot.typing import Floats
 
 from .track_comparison import TrackComparison
 
-__all__ = ["gospa", "ospa"]
-
 
 def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Floats:
     """Return the optimal subpattern assignment distance at each instant, ``[T]`` [m]; 0 without people and tracks.

@@ -7,9 +7,6 @@ from numpy.typing import ArrayLike
 
 from crowdbot.typing import Floats
 
-__all__ = ["scan_time_to_collision"]
-
-
 SLOWEST = 0.05
 """A robot that is slower [m/s] has no time to collision."""
 

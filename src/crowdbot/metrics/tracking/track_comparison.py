@@ -10,8 +10,6 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = ["TrackComparison", "match_nearest"]
-
 FORBIDDEN = 1e9
 
 

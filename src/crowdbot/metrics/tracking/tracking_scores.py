@@ -13,8 +13,6 @@ from .occlusions import count_occlusions
 from .ospa import gospa, ospa
 from .track_comparison import TrackComparison
 
-__all__ = ["TRACKING_SCORES", "tracking_scores"]
-
 TRACKING_SCORES = {
     "mota": "",
     "motp": "m",

@@ -22,9 +22,6 @@ from .cost_terms import HalfPlanes
 from .neighbor_view import NeighborView
 from .velocity_cost import VelocityCost, length, suitable_optimiser
 
-__all__ = ["CostModel"]
-
-
 OPTIMISERS = ("natural", "gradient", "sampling", "closed-form")
 SAMPLES = ("polar", "umans", "random")
 EQUAL = 1e-9

@@ -17,22 +17,6 @@ from crowdbot.typing import Floats
 from .neighbor_view import NeighborView
 from .velocity_cost import Force, VelocityCost, length
 
-__all__ = [
-    "CollisionDistance",
-    "Effort",
-    "FreeWay",
-    "GoalForce",
-    "HalfPlanes",
-    "Inertia",
-    "ModelForce",
-    "NoiseTerm",
-    "PowerLawEnergy",
-    "PowerLawForce",
-    "PreferredVelocity",
-    "ReciprocalObstacles",
-]
-
-
 EDGE = 1e-9
 """Tolerance [m/s] outside of a half plane."""
 SLOWEST = 1e-9

@@ -14,8 +14,6 @@ from crowdbot.core import Neighbors, PerAgent, Scene, per_agent
 from crowdbot.models.model import rows
 from crowdbot.typing import Floats
 
-__all__ = ["NeighborView"]
-
 
 @dataclass(frozen=True)
 class NeighborView:

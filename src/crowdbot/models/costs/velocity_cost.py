@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 
 from .neighbor_view import NeighborView
 
-__all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
-
-
 STEP = 1e-4
 """Half step [m/s] of numerical gradients."""
 

@@ -35,9 +35,6 @@ from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
-__all__ = ["Boids"]
-
-
 VARIANTS = ("predictive", "crowdbot")
 WALL_REACH = math.sqrt(2.0)
 """Range of walls in the CrowdBot simulator, in radii."""

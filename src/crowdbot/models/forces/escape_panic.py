@@ -36,9 +36,6 @@ from crowdbot.typing import Floats
 
 from .wall_surfaces import surface_distance, wall_surfaces
 
-__all__ = ["EscapePanic"]
-
-
 VARIANTS = ("textbook", "crowdbot")
 WALL_REACH = math.sqrt(2.0)
 """Range of walls in the CrowdBot simulator, in radii."""

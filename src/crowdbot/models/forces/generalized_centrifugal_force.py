@@ -22,9 +22,6 @@ from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
 from crowdbot.typing import Floats
 
-__all__ = ["GeneralizedCentrifugalForce"]
-
-
 CONTACT = 0.5
 """Distance [m] between ellipses, or between ellipse and wall, below which the force does not grow hyperbolically."""
 STILL = 1e-3

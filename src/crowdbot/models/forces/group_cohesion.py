@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene, kernel
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["Groups", "group_acceleration", "groups_of", "pysocialforce_group_acceleration"]
-
 
 class Groups(NamedTuple):
     """Group members: the group of a row is ``member[begin[row]:end[row]]``, including the row itself."""

@@ -35,9 +35,6 @@ from crowdbot.typing import Floats, Ints
 from .group_cohesion import Groups, group_acceleration, groups_of, pysocialforce_group_acceleration
 from .wall_surfaces import surface_distance, wall_surfaces
 
-__all__ = ["GroupForce"]
-
-
 VARIANTS = ("moussaid", "pysocialforce")
 ARRIVED = 0.5
 """Distance to the goal [m] below which PySocialForce stops an agent."""

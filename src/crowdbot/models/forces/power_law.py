@@ -23,9 +23,6 @@ from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
-__all__ = ["PowerLaw"]
-
-
 SHRUNK = 0.99
 """Reach of overlapping bodies as a fraction of their distance, which gives them a time to collision."""
 STRONGEST = 1e12

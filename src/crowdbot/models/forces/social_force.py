@@ -32,9 +32,6 @@ from crowdbot.models.model import (
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
 from crowdbot.typing import Floats
 
-__all__ = ["SocialForce"]
-
-
 VARIANTS = ("gradient", "umans2018")
 UMANS_LOOK_AHEAD = 0.5
 """Factor of ``look_ahead`` in the 2018 library: 1 s for a parameter of 2 s (fitted to its output)."""

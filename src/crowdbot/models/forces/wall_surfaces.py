@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from crowdbot.core import Walls, kernel
 from crowdbot.typing import Floats
 
-__all__ = ["WallSurfaces", "is_nearest_corner", "surface_distance", "wall_surfaces"]
-
 
 class WallSurfaces(NamedTuple):
     """Faces and corners of walls."""

@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 from .goal import Goal
 from .headings import extrapolate
 
-__all__ = ["CurrentDirection"]
-
 
 @dataclass(frozen=True)
 class CurrentDirection(Goal):

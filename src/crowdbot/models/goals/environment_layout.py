@@ -18,9 +18,6 @@ from .headings import MOVING, angle_between, extrapolate, length, median, rotate
 from .learned_velocity import LearnedVelocity
 from .routes import Routes
 
-__all__ = ["EnvironmentLayout"]
-
-
 ZIEBART = Paper(
     "Ziebart, Ratliff, Gallagher, Mertz, Peterson, Bagnell, Hebert, Dey, Srinivasa",
     2009,

@@ -13,9 +13,6 @@ from crowdbot.typing import Floats, Ints
 
 from .headings import length
 
-__all__ = ["clusters", "hull", "openings", "track_ends"]
-
-
 MOST_ENDS = 3000
 """Maximum number of end points to cluster; above it, every k-th point is used."""
 STEP = 0.1

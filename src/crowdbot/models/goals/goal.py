@@ -12,8 +12,6 @@ from crowdbot.core import InputError, kebab_case
 from crowdbot.data import PlaceLayout, Trajectories, Windows, steady_velocity
 from crowdbot.typing import Floats
 
-__all__ = ["Choices", "Goal"]
-
 
 @dataclass(frozen=True)
 class Choices:

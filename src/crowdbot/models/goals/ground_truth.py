@@ -15,8 +15,6 @@ from crowdbot.typing import Floats
 
 from .goal import Goal
 
-__all__ = ["GroundTruth"]
-
 
 @dataclass(frozen=True, eq=False)
 class GroundTruth(Goal):

@@ -7,9 +7,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats
 
-__all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate", "unit"]
-
-
 MOVING = 0.2
 """Minimum speed [m/s] for a valid heading, above the sway of standing people."""
 

@@ -18,9 +18,6 @@ from .headings import MOVING, angle_between, extrapolate, length, rotate, unit
 from .learned_velocity import LearnedVelocity, mean_velocity, pairs_of
 from .turn_histogram import BINS, TurnSamples, accumulate, median_turn
 
-__all__ = ["LearnedDestinations"]
-
-
 BENNEWITZ = Paper(
     "Bennewitz, Burgard, Cielniak, Thrun",
     2005,

@@ -12,9 +12,6 @@ from crowdbot.core import InputError
 from crowdbot.data import Trajectories, Windows, fill_gaps, slice_rows, steady_velocity
 from crowdbot.typing import Floats
 
-__all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
-
-
 RIDGE = 0.01
 """Regularisation of the weights, as a fraction of the mean square of the inputs."""
 ROUNDS = 15

@@ -12,9 +12,6 @@ from crowdbot.typing import Bools, Floats
 
 from .headings import length, unit
 
-__all__ = ["Routes", "mark_visible"]
-
-
 CLEARANCE = 0.4
 """Distance at which people pass corners [m]."""
 

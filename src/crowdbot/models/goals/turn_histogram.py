@@ -10,9 +10,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["BINS", "TurnSamples", "accumulate", "median_turn"]
-
-
 WIDEST = math.pi / 2
 """Largest turn in the histogram [rad]."""
 BINS = 61

@@ -26,9 +26,6 @@ from crowdbot.typing import Floats
 from .robot_avoidance import AVOIDANCE, avoid_robots, avoid_robots_part, robots_in
 from .space_ahead import HeadwayRows, limit_speeds, limit_speeds_part
 
-__all__ = ["HeadwayLayer", "arguments_of", "copy_field", "find_layered", "make_class", "with_headway"]
-
-
 MOST = 16
 """Number of nearest agents that are compared: more do not fit around a body within the corridor."""
 DEVIATIONS = 2.0

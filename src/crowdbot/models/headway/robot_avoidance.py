@@ -12,9 +12,6 @@ from crowdbot.models.agent_rows import RADIUS, VX, VY, WISH_X, WISH_Y, X, Y
 from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["AVOIDANCE", "avoid_robots", "avoid_robots_part", "robots_in"]
-
-
 AVOIDANCE = ("robot_gap", "robot_horizon", "robot_weight", "robot_slowing", "robot_behind", "robot_caution")
 """Parameters of the layer, in the order of the columns that the kernel gets; the caution is not read in a step."""
 TURNS, SPEEDS = 16, 5

@@ -12,9 +12,6 @@ from crowdbot.core import CHUNK, Neighbors, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.typing import Floats
 
-__all__ = ["HeadwayRows", "limit_speeds", "limit_speeds_part"]
-
-
 SLOWEST = 1e-9
 """Speeds below this [m/s] have no direction."""
 SMALLEST_SHARE = 1e-3

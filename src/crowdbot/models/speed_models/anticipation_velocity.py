@@ -24,9 +24,6 @@ from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, way_to, within
 
-__all__ = ["AnticipationVelocity"]
-
-
 CREEP = 0.01
 """Below this speed [m/s] agents shuffle: forward, backward or not at all."""
 ALIGNED = 1e-3

@@ -25,9 +25,6 @@ from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, push_by_walls, way_to, within
 
-__all__ = ["CollisionFreeSpeedV3"]
-
-
 MEMORY = "steering_angle"
 """Name in the memory of a scene: angle [rad] of each agent from the direction past the walls to its heading."""
 STRAIGHT = 0.05

@@ -10,9 +10,6 @@ import math
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["best_velocity", "clip_speed"]
-
-
 PARALLEL = 1e-5
 """Lines count as parallel if the sine of their angle is at most this."""
 

@@ -28,8 +28,6 @@ from .orca_lines import (
     edges_of,
 )
 
-__all__ = ["ORCA"]
-
 SHORTEST = 1e-3
 """Minimum time horizon [s]; a horizon of 0 has no line."""
 

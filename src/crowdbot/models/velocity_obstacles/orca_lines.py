@@ -16,20 +16,6 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.agent_rows import RADIUS, VX, VY, X, Y
 from crowdbot.typing import Floats
 
-__all__ = [
-    "BLOCK",
-    "BLOCK_ROWS",
-    "LINE",
-    "SHARE",
-    "Edges",
-    "avoid_agent",
-    "avoid_agents",
-    "avoid_edge",
-    "edges_in_reach",
-    "edges_of",
-]
-
-
 COVERED = 1e-5
 """An edge is skipped if earlier lines cover it up to this tolerance [m/s]."""
 BLOCK = 32

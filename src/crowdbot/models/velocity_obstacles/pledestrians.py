@@ -24,8 +24,6 @@ from crowdbot.typing import Floats
 from .linear_program import best_velocity
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
 
-__all__ = ["PLEdestrians"]
-
 SHORTEST = 1e-3
 """Minimum time horizon [s]; a horizon of 0 has no line."""
 ROUNDS = 30

@@ -26,9 +26,6 @@ from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_
 from .vog_fellows import MOST_FELLOWS, pick_fellows, unit, walking_direction
 from .vog_samples import SAMPLES, SLOW, keep_best, sample_around, sample_first
 
-__all__ = ["VOG"]
-
-
 MEMORY = "vog_calm"
 """Name in the memory of a scene: calm of each agent, which grows with the time since its last large velocity change."""
 CALM = 1.0

@@ -12,9 +12,6 @@ from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment, time_to_segment
 from crowdbot.typing import Floats
 
-__all__ = ["CONE", "DIRECTED", "FELLOW", "collision", "companion", "cone", "fellowship", "own_way", "walls_near"]
-
-
 CONE = 10
 """Columns of a cone: direction to the neighbour (2), cap, radius, near tangent (normal 2, offset), far tangent (3)."""
 FELLOW = 11

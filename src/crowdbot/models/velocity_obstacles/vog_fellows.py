@@ -9,9 +9,6 @@ from crowdbot.typing import Floats, Ints
 
 from .vog_cost import DIRECTED
 
-__all__ = ["MOST_FELLOWS", "pick_fellows", "unit", "walking_direction"]
-
-
 MOST_FELLOWS = 16
 """Maximum number of group members considered."""
 ALIKE = 0.7

@@ -9,9 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["SAMPLES", "SLOW", "keep_best", "sample_around", "sample_first"]
-
-
 SAMPLES = 48
 """Maximum number of samples per level."""
 SLOW = 0.1

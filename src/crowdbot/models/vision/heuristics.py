@@ -22,9 +22,6 @@ from crowdbot.models.model import (
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["Heuristics"]
-
-
 ANGLES = 61
 """Number of candidate directions: the desired one and as many on each side."""
 EQUAL = 1e-9

@@ -21,9 +21,6 @@ from crowdbot.typing import Floats
 
 from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, retreat, threat_of_neighbor, threat_of_wall
 
-__all__ = ["Tangent"]
-
-
 REACTION = 3.5
 """Time to contact [s] at which agents with the default errors react (measured on the original)."""
 RELAXATION = 1.0

@@ -14,9 +14,6 @@ from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment, time_to_contact, time_to_segment
 from crowdbot.typing import Floats
 
-__all__ = ["MOST", "RETREAT", "THREAT", "insert", "least_change", "retreat", "threat_of_neighbor", "threat_of_wall"]
-
-
 CONTACT = 0.5
 """Time to contact [s] at which the agent that passes first reacts (measured on the original)."""
 STILL = 0.1

@@ -34,9 +34,6 @@ from crowdbot.typing import Floats
 
 from .vbm_slopes import FAN, FIELD, STEEP, STILL, desire_slopes, look_at_walls, mean_slopes, sum_slopes
 
-__all__ = ["VBM"]
-
-
 VARIANTS = ("agents", "crowdbot")
 MOST_RAYS = 4096
 FAST = 1e6

@@ -11,9 +11,6 @@ from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.typing import Floats
 
-__all__ = ["FAN", "FIELD", "STEEP", "STILL", "desire_slopes", "look_at_walls", "mean_slopes", "slopes", "sum_slopes"]
-
-
 FIELD = math.radians(150.0)
 """Width of the field of view [rad]."""
 FAN = 15

@@ -23,9 +23,6 @@ from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment
 from crowdbot.typing import Floats
 
-__all__ = ["WarpDriver"]
-
-
 SAMPLES = 20
 """Number of points of the planned path."""
 HALF, CELL = 3.0, 0.1

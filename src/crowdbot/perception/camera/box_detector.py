@@ -16,9 +16,6 @@ from crowdbot.perception.detector import Detector
 from crowdbot.sensors import Lens, Reading, RgbImage, spatial_pose
 from crowdbot.typing import Floats
 
-__all__ = ["BoxDetector", "Boxes", "opencv", "select_boxes"]
-
-
 COLUMNS = 181
 """Number of directions of the coverage."""
 HEIGHT_SD = 0.1

@@ -11,8 +11,6 @@ from crowdbot.core import check_number
 
 from .box_detector import BoxDetector, Boxes, opencv, select_boxes
 
-__all__ = ["HogPeople"]
-
 BODY = 0.75
 """Height of a person over that of the window, 128 pixels with a margin of 16 above and below."""
 ASPECT = 0.41

@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 
 from .box_detector import BoxDetector, Boxes, opencv, select_boxes
 
-__all__ = ["NetworkPeople"]
-
-
 LAYOUTS = ("yolov5", "yolov8")
 LARGEST = 1_000_000_000
 """Largest size of a file [bytes]."""

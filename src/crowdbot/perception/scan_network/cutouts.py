@@ -9,9 +9,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["SAMPLES", "collect_votes", "cut_windows"]
-
-
 SAMPLES = 48
 """Number of ranges of a cutout."""
 WIDTH = 1.66

@@ -19,9 +19,6 @@ from crowdbot.typing import Floats
 
 from .cutouts import SAMPLES, collect_votes, cut_windows
 
-__all__ = ["ScanNetwork"]
-
-
 FAR = 1e3
 """Range of a beam without a return in cutouts [m]."""
 

@@ -11,9 +11,6 @@ from crowdbot.core import Pose
 from crowdbot.sensors import cast_plane
 from crowdbot.typing import Floats, Ints
 
-__all__ = ["LabelledScan", "generate_scan"]
-
-
 RAYS = (360, 450, 541, 720, 811, 1080)
 """Numbers of beams in a full turn."""
 SPACE = 10.0

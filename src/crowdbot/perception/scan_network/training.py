@@ -17,9 +17,6 @@ from crowdbot.typing import Floats
 from .cutouts import SAMPLES, cut_windows
 from .generated_scans import LabelledScan, generate_scan
 
-__all__ = ["NetworkFit", "train_scan_network"]
-
-
 HIDDEN = 64
 """Width of the two hidden layers."""
 BATCH = 1024

@@ -14,9 +14,6 @@ from .scan_forecast import ScanForecast
 from .scan_predictor import ScanPredictor, continue_motion
 from .static_segments import scan_segments
 
-__all__ = ["LastScan", "MovedScan"]
-
-
 MEMORY = 5
 """Number of scans that give the velocity of the sensor."""
 

@@ -15,9 +15,6 @@ from crowdbot.typing import Floats
 from .track_features import FEATURES, LAGS, EarlierTracks, person_frames, track_features
 from .tracked_scene import SceneState, TrackedScene
 
-__all__ = ["AHEAD", "LearnedScene", "LearnedState"]
-
-
 AHEAD = (0.5, 1.0, 2.0, 3.0)
 """Times [s] for which the network predicts; between them the correction is interpolated, after them it stays."""
 WALKING = 0.5

@@ -18,8 +18,6 @@ from .learned_scene import AHEAD
 from .track_features import FEATURES, EarlierTracks, person_frames, track_features
 from .tracked_scene import TrackedScene
 
-__all__ = ["MotionFit", "ScannedRun", "train_learned_scene"]
-
 ScannedRun = Sequence[tuple[Scan, Mapping[int, tuple[float, float]]]]
 """Scans of a run in the order of time, each with the true positions x, y [m] of people by id."""
 

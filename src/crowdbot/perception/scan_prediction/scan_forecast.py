@@ -10,8 +10,6 @@ from crowdbot.core import InputError, Pose
 from crowdbot.metrics import OccupancyGrid
 from crowdbot.typing import Floats
 
-__all__ = ["ScanForecast"]
-
 
 @dataclass(frozen=True)
 class ScanForecast:

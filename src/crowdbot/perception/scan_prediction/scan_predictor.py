@@ -16,8 +16,6 @@ from crowdbot.typing import Floats
 
 from .scan_forecast import ScanForecast
 
-__all__ = ["ScanPredictor", "continue_motion"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class ScanPredictor(ABC):

@@ -11,9 +11,6 @@ from crowdbot.core import kernel
 from crowdbot.sensors import Scan, planar_pose
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["scan_segments", "static_segments"]
-
-
 GAP = 0.15
 """Neighbouring points closer than this [m], plus three beam widths, are on one surface."""
 

@@ -14,9 +14,6 @@ from crowdbot.perception.tracks import Tracks
 from crowdbot.sensors import Scan, planar_pose
 from crowdbot.typing import Floats
 
-__all__ = ["FEATURES", "EarlierTracks", "person_frames", "track_features"]
-
-
 LAGS = (0.5, 1.0)
 """Times before now [s] whose velocities are features."""
 NEIGHBOURS, SIGHT = 5, 6.0

@@ -21,9 +21,6 @@ from .scan_forecast import ScanForecast
 from .scan_predictor import ScanPredictor, continue_motion
 from .static_segments import static_segments
 
-__all__ = ["SceneState", "TrackedScene", "walk_straight"]
-
-
 MARGIN = 0.15
 """Points this far [m] outside the body of a person still belong to the person."""
 

@@ -16,27 +16,6 @@ from crowdbot.data import Windows, fill_gaps
 from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.typing import Bools, Floats
 
-__all__ = [
-    "AGENT_FEATURES",
-    "HISTORY",
-    "LOOKAHEAD_ROWS",
-    "NEAR",
-    "NEIGHBOR_FEATURES",
-    "PREDICTED_ROWS",
-    "REACH",
-    "ROWS",
-    "SPEED_CLASSES",
-    "AgentHistories",
-    "agent_features",
-    "agent_histories",
-    "heading_vectors",
-    "interpolate_gaps",
-    "planned_positions",
-    "rotate",
-    "speed_class",
-]  # fmt: skip
-
-
 ROWS = 8
 """Number of observed rows."""
 HISTORY = (ROWS - 1) * STEP

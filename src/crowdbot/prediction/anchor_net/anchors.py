@@ -27,9 +27,6 @@ from crowdbot.typing import Floats
 
 from .agent_frame import HISTORY, PREDICTED_ROWS, agent_histories, heading_vectors, rotate
 
-__all__ = ["Anchors", "cluster_centers", "resample_paths", "residuals", "scatter_to_slots"]
-
-
 CHAI = Paper(
     "MultiPath", 2019, "MultiPath: multiple probabilistic anchor trajectory hypotheses for behavior prediction",
     "CoRL", "10.48550/arXiv.1910.05449",

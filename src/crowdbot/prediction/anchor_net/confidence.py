@@ -14,8 +14,6 @@ from .agent_frame import PREDICTED_ROWS, SPEED_CLASSES, speed_class
 from .forward_pass import feature_limit, network_output
 from .training_data import NO_AUGMENTATION, TrainingSet, make_batch
 
-__all__ = ["calibrate_confidence"]
-
 Numbers = dict[str, NDArray[Any]]
 
 TEMPERATURES = np.exp(np.linspace(-3.0, 1.5, 91))

@@ -19,9 +19,6 @@ from crowdbot.typing import Bools, Floats
 
 from .agent_frame import PREDICTED_ROWS, rotate
 
-__all__ = ["LINE_SHARE", "FilteredTracks", "filter_tracks", "filtered_lines"]
-
-
 LINE_SHARE = 0.8
 """Share of the filtered line in the single trajectory of people who surely walk straight with a noisy track, in weights
 for other places. Chosen with weights that did not learn from the data sets on which they were scored: 0.6 is better by

@@ -12,8 +12,6 @@ from crowdbot.typing import Floats
 
 from .layers import attend, dense
 
-__all__ = ["feature_limit", "network_output", "reach_of"]
-
 
 def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
     """Return the network output ``[N, O]``: residuals of all futures, scores, single residual, spreads."""

@@ -13,9 +13,6 @@ import numpy as np
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["attend", "dense"]
-
-
 BLOCK = 8
 """Number of people that share one pass over the weights of a layer."""
 

@@ -12,9 +12,6 @@ from crowdbot.typing import Floats
 from .agent_frame import PREDICTED_ROWS, rotate
 from .anchors import resample_paths
 
-__all__ = ["future_covariances", "total_covariances"]
-
-
 HORIZON = 4.8
 """Horizon of the training [s]; beyond it standard deviations grow in proportion to time."""
 WIDENED, FILTERED = 3.0, 0.2

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, SPEED_CLASSES
 
-__all__ = ["LAYERS", "NEEDED", "wrong_array"]
-
 LAYERS = ("own_1", "own_2", "query", "near_1", "near_2", "both_1", "both_2", "out")
 OTHERS = ("basis", "centres", "spread", "width", "temperature", "widening", "nobody", "alone")
 NEEDED = (*OTHERS, *(f"{layer}_{part}" for layer in LAYERS for part in ("weight", "bias")))

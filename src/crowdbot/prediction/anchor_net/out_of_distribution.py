@@ -12,9 +12,6 @@ from crowdbot.typing import Floats
 
 from .agent_frame import ROWS, AgentHistories
 
-__all__ = ["out_of_distribution"]
-
-
 EVEN = (0.005, 0.015)
 """Deviation of a track from a straight line at constant speed [m]: even below the first, not even above the second."""
 EVEN_SHARE = (0.1, 0.3)

@@ -14,8 +14,6 @@ from crowdbot.prediction.training.checkpoint import load_checkpoint
 from .network_shapes import wrong_array
 from .plan_reaction import SHAPES, PlanReaction
 
-__all__ = ["load_own_weights", "load_reaction", "load_start_weights"]
-
 NO_REACTION = "none"
 
 

@@ -18,9 +18,6 @@ from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, planned_positions, rotate
 
-__all__ = ["SHAPES", "ClosestApproach", "PlanReaction", "Walks", "encounters", "reaction_displacements", "time_shapes"]
-
-
 RADIUS = 0.25
 """Radius of people and robots without one [m]."""
 BLUNT = 0.1

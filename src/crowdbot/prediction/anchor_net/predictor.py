@@ -45,9 +45,6 @@ from .out_of_distribution import out_of_distribution
 from .own_weights import load_own_weights, load_reaction
 from .plan_reaction import PlanReaction, Walks, reaction_displacements
 
-__all__ = ["AnchorNet", "Modes"]
-
-
 SAMPLES = ("set", "draws")
 MOST_AT_ONCE = 2048
 """Number of people per network evaluation."""

@@ -16,9 +16,6 @@ from crowdbot.typing import Floats
 from .agent_frame import PREDICTED_ROWS, agent_histories, heading_vectors, rotate
 from .plan_reaction import SHAPES, PlanReaction, Walks, encounters, time_shapes
 
-__all__ = ["ReactionSamples", "fit_reaction"]
-
-
 ROUNDS = 20
 """Rounds of iteratively reweighted least squares."""
 SMALLEST = 0.05

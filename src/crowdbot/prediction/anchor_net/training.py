@@ -34,8 +34,6 @@ from .training_data import (
     training_set_of,
 )
 
-__all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
-
 Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000

@@ -28,19 +28,6 @@ from .agent_frame import (
     rotate,
 )
 
-__all__ = [
-    "GENERAL",
-    "Augmentation",
-    "TrainingBatch",
-    "TrainingSet",
-    "augment_people",
-    "make_batch",
-    "reverse_time",
-    "training_set",
-    "training_set_of",
-]
-
-
 DRIFT = 0.8
 """Correlation of drifting noise from row to row."""
 AT_ONCE = 64

@@ -8,9 +8,6 @@ import numpy as np
 
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["AgentFrames", "agent_frames", "headings"]
-
-
 MOVED = 0.1
 """Minimum displacement for a heading [m]; below it, more rows are used."""
 SPANS = (2, 4)

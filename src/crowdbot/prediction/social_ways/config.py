@@ -9,8 +9,6 @@ from typing import Any
 
 from crowdbot.core import InputError, did_you_mean
 
-__all__ = ["ADVERSARIAL", "FRAMES", "PRESETS", "STEADY", "SocialWaysConfig", "config_of", "preset"]
-
 ADVERSARIAL = ("cross-entropy", "least-squares")
 FRAMES = ("person", "world")
 

@@ -18,9 +18,6 @@ from .agent_frames import AgentFrames, agent_frames
 from .config import SocialWaysConfig
 from .network import SceneInput
 
-__all__ = ["Normalization", "scene_input", "states_of"]
-
-
 MOST = 2000
 """Maximum number of scenes for the normalization."""
 LEAST = 1e-3

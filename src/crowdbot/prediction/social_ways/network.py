@@ -20,8 +20,6 @@ from torch import Tensor, nn
 
 from .config import SocialWaysConfig
 
-__all__ = ["Discriminator", "Generator", "SceneInput", "social_features"]
-
 SMALL = 1e-6
 
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from .inputs import Normalization
     from .network import Generator
 
-__all__ = ["SocialWays", "SocialWaysNetwork"]
-
 
 KIND = "social-ways"
 TRIES = 3

@@ -25,8 +25,6 @@ from .inputs import Normalization, scene_input, states_of
 from .network import Discriminator, Generator, SceneInput
 from .predictor import SocialWaysNetwork
 
-__all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
-
 DRAWS, CHECKED = 20, 60
 """Number of draws and maximum number of scenes for validation errors."""
 ASIDE = 0.01

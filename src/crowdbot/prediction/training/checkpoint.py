@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["load_checkpoint", "save_checkpoint"]
-
 FORMAT = 1
 """Version of the file format."""
 ARRAY, PAIRS = "$array", "$pairs"

@@ -24,8 +24,6 @@ from crowdbot.core import InputError, stream
 
 from .checkpoint import load_checkpoint, save_checkpoint
 
-__all__ = ["BEST", "LAST", "LOG", "LogRow", "Trainable", "TrainingResult", "TrainingSchedule", "train"]
-
 BEST, LAST, LOG = "best.npz", "last.npz", "log.csv"
 """Files in the folder of a training: best weights, training state, log."""
 

@@ -14,9 +14,6 @@ from crowdbot.typing import Floats
 
 from .simulated_crowds import CROWD_MODELS, STEP
 
-__all__ = ["ENCOUNTERS", "REACTING_MODELS", "people_encounters", "robot_encounters"]
-
-
 ENCOUNTERS = {"head-on": np.pi, "crossing": 0.5 * np.pi, "overtaking": 0.0, "oblique": 0.75 * np.pi}
 """Kind of encounter -> angle between the directions of the people and of the robot [rad]."""
 REACTING_MODELS = tuple(model for model in CROWD_MODELS if model != "social-force")

@@ -17,17 +17,6 @@ from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data import NoWindowError, Recording, Windows
 from crowdbot.typing import Bools, Floats, Ints
 
-__all__ = [
-    "FOLDS",
-    "Samples",
-    "Scenes",
-    "TimeSplit",
-    "leave_out",
-    "recordings_with_windows",
-    "short_recordings",
-    "split_in_time",
-]
-
 FOLDS = {
     "eth": ("biwi_eth",),
     "hotel": ("biwi_hotel",),

@@ -9,9 +9,6 @@ from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.simulated import Simulated
 from crowdbot.typing import Floats
 
-__all__ = ["CROWD_LAYOUTS", "CROWD_MODELS", "simulated_crowds"]
-
-
 CROWD_MODELS = ("orca", "social-force", "power-law", "collision-free-speed", "anticipation-velocity")
 """Crowd models of the training data."""
 CROWD_LAYOUTS = ("one-way", "two-way", "crossing", "everywhere")

@@ -8,8 +8,6 @@ from typing import Any
 
 from crowdbot.core import InputError, import_optional
 
-__all__ = ["to_tensors", "torch_device", "torch_module", "torch_threads"]
-
 
 def torch_module() -> Any:
     """Return torch.

@@ -20,7 +20,6 @@ from .floor_view import floor_points, hidden_floor
 if TYPE_CHECKING:
     from crowdbot.trials.stage import Stage
 
-__all__ = ["OVERVIEW", "Camera", "overview"]
 
 OVERVIEW = "overview"
 """Name of the automatic camera that shows the whole stage; a camera of the trial with this name replaces it."""

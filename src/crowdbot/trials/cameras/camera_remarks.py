@@ -14,8 +14,6 @@ from crowdbot.trials.trial import Trial
 from .camera import Camera
 from .floor_view import floor_points, hidden_floor
 
-__all__ = ["camera_remarks"]
-
 IN_WALL = 0.02
 """A camera nearer to a wall [m] is in it; walls without an area are as thick."""
 MARGIN = 10.0

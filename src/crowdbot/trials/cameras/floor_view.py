@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from crowdbot.trials.stage import Stage
 
-__all__ = ["floor_points", "hidden_floor"]
 
 GRID = 24
 """Number of rows and columns of floor points over a stage."""

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from .fault import SensorFault
 
-__all__ = ["BlindSensor"]
-
 
 @dataclass(frozen=True)
 class BlindSensor(SensorFault):

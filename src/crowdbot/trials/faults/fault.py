@@ -14,8 +14,6 @@ from crowdbot.trials.notation import NAME
 from crowdbot.trials.partial_element import readable
 from crowdbot.typing import Bools, Floats
 
-__all__ = ["Fault", "FaultSpec", "SensorFault", "fault_problems", "have_same_kinds"]
-
 LONG = 86_400.0
 """End of a fault that lasts until the trial ends [s]."""
 

@@ -8,8 +8,6 @@ from crowdbot.core import InputError
 
 from .fault import SensorFault
 
-__all__ = ["LateSensor"]
-
 MOST = 60.0
 """Largest delay [s]."""
 

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from .fault import Fault
 
-__all__ = ["LocalizationOffset"]
-
 
 @dataclass(frozen=True)
 class LocalizationOffset(Fault):

@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 
 from .fault import Fault
 
-__all__ = ["LostCommands"]
-
 
 @dataclass(frozen=True)
 class LostCommands(Fault):

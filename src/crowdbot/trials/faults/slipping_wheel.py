@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 
 from .fault import Fault
 
-__all__ = ["SlippingWheel"]
-
 SIDES = {"left": 1.0, "right": -1.0}
 
 

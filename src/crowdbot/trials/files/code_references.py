@@ -11,8 +11,6 @@ from pathlib import Path, PurePosixPath
 from crowdbot.core import Element, InputError, parse_xml, plugin_sources, read_bytes, source_digest
 from crowdbot.trials.xml.trial_text import parse_trial_xml
 
-__all__ = ["code_digest", "code_references", "is_code"]
-
 ENDINGS = (".py", ".pyc", ".pyo", ".pyw", ".pyd", ".so")
 ADDRESS = re.compile(r"([^\s,;|\"':=]+):[A-Za-z_]")
 

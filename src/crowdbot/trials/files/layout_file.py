@@ -15,8 +15,6 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-__all__ = ["builtin_stages", "load_layout"]
-
 _STAGES = Path(__file__).parents[2] / "assets" / "stages"
 
 KINDS = ".xml (trial), .yaml (ROS map), .wkt, .txt or .geojson (walkable area)"

@@ -22,7 +22,6 @@ from .trial_files import read_beside, resolve_file
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["FARTHEST_FILE", "FilePlacement", "area_of", "is_area_file", "map_files", "map_of"]
 
 FARTHEST_FILE = 1e8
 """Largest coordinate in a file [m], above those of UTM (1e7) and Web Mercator (2e7); at it, a double has 1e-8 m."""

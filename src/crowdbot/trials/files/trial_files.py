@@ -7,8 +7,6 @@ from pathlib import Path
 from crowdbot.core import InputError
 from crowdbot.data import folder_files
 
-__all__ = ["read_beside", "recording_files", "resolve_file", "resolve_recording"]
-
 
 def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
     """Return the path of a file that a trial names.

@@ -12,8 +12,6 @@ from crowdbot.core import InputError, parse_number
 from crowdbot.trials.fields import FieldProblem, attribute, check
 from crowdbot.trials.notation import Points
 
-__all__ = ["Door"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Door:

@@ -9,8 +9,6 @@ from typing import Any
 from crowdbot import world
 from crowdbot.trials.fields import attribute, check
 
-__all__ = ["UNEVEN", "GroundElement", "Platform", "Ramp", "Stairs", "Threshold", "ground_of"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Ramp:

@@ -13,8 +13,6 @@ from crowdbot.typing import Floats
 
 from .elements import Stairs
 
-__all__ = ["floor_plan"]
-
 GROUND_COLOR, DOOR_COLOR = "#b08d57", "#2a7f9e"
 HEAD = 0.25
 """Length of the strokes of an arrowhead, as a share of the width of a slope."""

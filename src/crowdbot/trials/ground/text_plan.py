@@ -6,8 +6,6 @@ from crowdbot.core import Element, Path2D, format_xml, parse_xml
 
 from .plan import floor_plan
 
-__all__ = ["floor_plan_of_xml"]
-
 DRAWN = ("ramp", "stairs", "platform", "threshold", "door")
 """Elements of a stage that a floor plan has."""
 

@@ -16,8 +16,6 @@ from .foreign_text import json_of
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, number_in
 
-__all__ = ["import_arena", "is_arena"]
-
 Spot = tuple[float, float]
 OWN = ("pedsim_agents", "robots", "static_obstacles", "map_path", "robot_position")
 """Keys that only scenarios of Arena-Rosnav have."""

@@ -19,8 +19,6 @@ from crowdbot.world import Building, read_building
 
 from .original import ImportedTrial
 
-__all__ = ["import_building", "is_building"]
-
 HEIGHTS = (0.25, 0.9, 1.6)
 """Heights above the floor [m] at which a building is cut."""
 STRAIGHT = 0.02

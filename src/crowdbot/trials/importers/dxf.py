@@ -25,8 +25,6 @@ from crowdbot.trials.validation.stage_size import LARGEST_EXTENT, SMALLEST_EXTEN
 from .dxf_curves import Ring, arc_points, bulge_points
 from .original import ImportedTrial
 
-__all__ = ["UNITS", "import_dxf", "is_dxf"]
-
 MOST_BYTES = 64_000_000
 MOST_ENTITIES = 50_000
 MOST_WALLS = 10_000

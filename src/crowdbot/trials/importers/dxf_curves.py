@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-__all__ = ["Ring", "arc_points", "bulge_points"]
-
 Ring = tuple[tuple[float, float], ...]
 
 DEVIATION = 0.01

@@ -22,8 +22,6 @@ from .pedsim import import_pedsim
 from .umans import import_umans
 from .vadere import import_vadere
 
-__all__ = ["import_trial"]
-
 XML_FILES: dict[str, Callable[[Path], ImportedTrial]] = {
     "Simulation": import_umans,
     "scenario": import_pedsim,

@@ -10,8 +10,6 @@ from typing import Any
 from crowdbot.core import InputError, TrialError, parse_yaml
 from crowdbot.trials.xml.trial_text import read_trial_bytes
 
-__all__ = ["json_of", "yaml_of"]
-
 MOST_BYTES = 4_000_000
 COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*')
 

@@ -22,8 +22,6 @@ from crowdbot.world import frame, roll_pitch_yaw
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, circle
 
-__all__ = ["import_gazebo"]
-
 LOW, HIGH = 0.1, 1.8
 """Heights [m] between which a solid is in the way of people."""
 MOST_FILES, MOST_DEPTH = 200, 5

@@ -23,8 +23,6 @@ from crowdbot.trials.xml.trial_text import read_trial_bytes
 
 from .original import ImportedTrial
 
-__all__ = ["import_hunavsim"]
-
 DURATION = 120.0
 LARGEST = 1e6
 MOST_BYTES = 4_000_000

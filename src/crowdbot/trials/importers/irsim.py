@@ -16,8 +16,6 @@ from .foreign_text import yaml_of
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box, circle, move, number_in
 
-__all__ = ["import_irsim", "is_irsim"]
-
 Spot = tuple[float, float]
 STATE, SPEED, GOAL_RADIUS = (1.0, 1.0, 0.0), 1.0, 0.1
 """Defaults of IR-SIM: the place of an object, its largest speed [m/s], and the distance at arrival [m]."""

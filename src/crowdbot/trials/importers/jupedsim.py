@@ -22,8 +22,6 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box
 
-__all__ = ["import_jupedsim"]
-
 Spot = tuple[float, float]
 OUTSIDE = "-1"
 EXIT_DEPTH = 0.3

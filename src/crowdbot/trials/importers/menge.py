@@ -21,8 +21,6 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box, move
 
-__all__ = ["import_menge"]
-
 Spot = tuple[float, float]
 MODELS: dict[str, type[CrowdModel]] = {"orca": ORCA, "helbing": SocialForce}
 MOST_AGENTS = 5000

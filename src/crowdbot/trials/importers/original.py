@@ -24,8 +24,6 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from .original_crowd import Walker, crowds_of
 from .original_order import DEFAULT, Plan
 
-__all__ = ["ImportedTrial", "import_original", "plan_of", "trials_of"]
-
 NEVER = 600.0
 """Duration [s] of a trial without an end."""
 ROOTS = ("Trial", "Config")

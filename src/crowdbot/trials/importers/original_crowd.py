@@ -12,8 +12,6 @@ from crowdbot.models import CrowdModel
 from crowdbot.trials.agent import AgentParameter
 from crowdbot.trials.crowd import Crowds
 
-__all__ = ["Walker", "crowds_of"]
-
 KINDS: dict[str, tuple[type[CrowdModel], dict[str, str]]] = {
     "RVOconfig": (
         models.ORCA,

@@ -12,8 +12,6 @@ from pathlib import Path, PurePosixPath
 from crowdbot.core import InputError, TrialError
 from crowdbot.trials.files.trial_files import resolve_file
 
-__all__ = ["Plan"]
-
 MOST_LINES = 1000
 MOST_USERS = 100
 MOST_FILES = 100_000

@@ -24,8 +24,6 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from .original import ImportedTrial
 from .umans import number_of
 
-__all__ = ["import_pedsim"]
-
 ROBOT = 2
 """Type of agents that are robots."""
 SINK = 2

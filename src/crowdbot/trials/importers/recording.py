@@ -21,7 +21,6 @@ from crowdbot.world import DifferentialDrive
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
 
-__all__ = ["recorded_trial"]
 
 TICK = 0.05
 """Longest time step [s]; the time between two rows of a recording is a whole number of steps."""

@@ -25,7 +25,6 @@ from .original import ImportedTrial
 if TYPE_CHECKING:
     from crowdbot.world import Drive
 
-__all__ = ["ImportedScene", "as_number", "box", "circle", "move", "number_in"]
 
 Spot = tuple[float, float]
 FARTHEST = 1e6

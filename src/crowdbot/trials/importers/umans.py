@@ -21,8 +21,6 @@ from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
 from .original import ImportedTrial
 
-__all__ = ["import_umans", "number_of"]
-
 RADIUS, SPEED = 0.24, 1.3
 LARGEST = 1e6
 COSTS: dict[str, type[CrowdModel]] = {

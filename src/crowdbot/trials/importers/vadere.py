@@ -26,8 +26,6 @@ from crowdbot.trials.xml.trial_text import read_trial_bytes
 
 from .original import ImportedTrial
 
-__all__ = ["import_vadere"]
-
 CIRCLE = 16
 """Corners of a circle."""
 SILENT = (

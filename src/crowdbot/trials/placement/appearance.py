@@ -21,16 +21,6 @@ from .spawn_placement import InitialPeople
 if TYPE_CHECKING:
     from crowdbot.trials.trial import Trial
 
-__all__ = [
-    "PeopleAppearance",
-    "PersonAppearance",
-    "draw_appearances",
-    "people_appearance",
-    "read_bodies",
-    "read_clips",
-    "trial_bodies",
-    "trial_clips",
-]
 
 OUTFITS = 1000
 

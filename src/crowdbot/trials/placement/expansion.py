@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from crowdbot.models import CrowdModel
     from crowdbot.trials.trial import Trial
 
-__all__ = ["expand_spawners"]
-
 
 def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     """Return a trial whose spawners are replaced by agents at the places drawn with a seed.

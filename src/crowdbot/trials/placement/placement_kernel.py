@@ -13,9 +13,6 @@ from crowdbot.typing import Bools, Floats, Ints, Words
 
 from .spawn_placement import GAP
 
-__all__ = ["Polygons", "place_people"]
-
-
 DOUBT = 1e-9
 """Distance [m] to a limit, relative to coordinates above 1 m, below which the kernel does not decide."""
 MOST_MISSES = 64_000

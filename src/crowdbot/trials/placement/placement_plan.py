@@ -23,9 +23,6 @@ from .population import place, place_fixed, recorded_people
 from .spawn_layouts import draw_layout, goal_discs
 from .spawn_placement import GAP, TRIES, InitialPeople, OccupiedDiscs, draw_heading
 
-__all__ = ["PeopleBatch", "PlacementPlan"]
-
-
 MOST_PEOPLE = 1000
 """Number of people above which they are placed one environment after the other, with a grid of occupied discs."""
 SMALLEST = 1e-5

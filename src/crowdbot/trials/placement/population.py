@@ -18,8 +18,6 @@ from crowdbot.trials.stage import Stage, area
 from .spawn_layouts import goal_discs
 from .spawn_placement import InitialPeople, OccupiedDiscs, SpawnPlacement
 
-__all__ = ["place", "place_fixed", "recorded_people"]
-
 MOST_PROBLEMS = 100
 EXACT = 1e-9
 

@@ -20,9 +20,6 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.typing import Floats, Ints, Words
 
-__all__ = ["draw_layout", "goal_discs"]
-
-
 CLEARANCE = 0.2
 """Clearance between people, and to robots, at the beginning and at their goals [m]."""
 TRIES = 300

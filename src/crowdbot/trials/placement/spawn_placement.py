@@ -20,9 +20,6 @@ from crowdbot.typing import Floats
 
 from .spawn_layouts import draw_layout
 
-__all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "draw_heading", "points_in"]
-
-
 GAP = 0.01
 """Smallest gap [m] between two people at the beginning."""
 TRIES = 2000

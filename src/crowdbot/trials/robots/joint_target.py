@@ -13,7 +13,6 @@ from crowdbot.world import check_joint
 if TYPE_CHECKING:
     from crowdbot.world import Robot
 
-__all__ = ["JointTarget", "joint_positions", "joint_problems"]
 
 LINE = r"\S.{0,199}"
 

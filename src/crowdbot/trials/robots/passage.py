@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
     from crowdbot.trials.trial import Trial
 
-__all__ = ["passage_remarks"]
 
 PRECISION = 0.001
 """Precision [m] of the width of a passage."""

@@ -7,8 +7,6 @@ from typing import Any
 
 from crowdbot.sensors import Lidar2D, Lidar3D
 
-__all__ = ["ABOUT_PEOPLE", "PEOPLE_INPUTS", "people_problems"]
-
 PEOPLE_INPUTS = ("seen", "true", "tracked")
 ABOUT_PEOPLE = (
     "people in observations: seen (true states of those in the latest readings), true (everybody), or tracked (found in"

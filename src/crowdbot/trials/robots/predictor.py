@@ -13,8 +13,6 @@ from crowdbot.prediction import WEIGHTS_FIELDS, Predictor
 from crowdbot.trials.fields import attribute, check, mounted_field, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
 
-__all__ = ["RobotPredictor", "forecast_problems"]
-
 SAME = 1e-6
 """Tolerance of times [s] and of numbers of steps."""
 

@@ -12,8 +12,6 @@ from crowdbot.trials.fields import FieldProblem, attribute, check
 from crowdbot.trials.partial_element import readable
 from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
 
-__all__ = ["ReactionSpec", "check_shares", "robot_reactions", "share_problems"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class ReactionSpec:

@@ -15,7 +15,6 @@ from crowdbot.world import Drive
 if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
 
-__all__ = ["describe_robot", "override_remarks", "remarks_at_end", "replace_robot", "robot_lines"]
 
 logger = logging.getLogger(__name__)
 

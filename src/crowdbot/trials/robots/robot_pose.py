@@ -18,7 +18,6 @@ from crowdbot.trials.files.trial_files import resolve_file
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource
 
-__all__ = ["RobotPose", "mirrored_pose", "start_problem"]
 
 SAME = 0.01
 """Tolerance of a start [m] and [rad]."""

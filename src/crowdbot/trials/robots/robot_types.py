@@ -10,8 +10,6 @@ from crowdbot.core import InputError, RobotError, did_you_mean, reads_only
 from crowdbot.trials.fields import quote_value
 from crowdbot.world import builtin_robots
 
-__all__ = ["robot_folder_of", "robot_of_type"]
-
 
 def robot_folder_of(name: str, folder: Path | None, trust: bool) -> Path | None:
     """Return the robot folder next to the trial, None for a built-in robot.

@@ -10,8 +10,6 @@ from typing import Any
 from crowdbot.navigation import ExternalNavigator, SafetyLayer
 from crowdbot.trials.fields import attribute, check
 
-__all__ = ["SafetySpec", "safety_problems"]
-
 DEFAULT = SafetyLayer()
 
 

@@ -26,8 +26,6 @@ from .crowds import circle_crossing
 from .parts import STILL, box, number, robot, scenario, uniform
 from .preset import Preset, PresetOption
 
-__all__ = ["ARENAS"]
-
 GOLDEN = 0.6180339887498949
 """Golden ratio: the fractional parts of its multiples are spread evenly."""
 RADIUS = PresetOption(7.0, "radius of the circle", "m", 4.0, 30.0)

@@ -24,8 +24,6 @@ from crowdbot.world import Omnidirectional
 from .parts import box, number, scenario
 from .preset import Preset, PresetOption
 
-__all__ = ["CROWDNAV"]
-
 STEP = 0.25
 """Time step and control period [s]."""
 SIDE = 10.0

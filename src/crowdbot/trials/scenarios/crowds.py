@@ -23,8 +23,6 @@ from crowdbot.world import Omnidirectional
 from .parts import box, corridor, flow, number, pairs, robot, scenario
 from .preset import Preset, PresetOption
 
-__all__ = ["CROWDS", "DENSITIES"]
-
 DENSITIES = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 """Densities of the density ladder [people/m2]; the last one is a stress test."""
 

@@ -23,8 +23,6 @@ from crowdbot.world import DifferentialDrive
 from .parts import box, corridor, robot, scenario, uniform
 from .preset import Preset, PresetOption
 
-__all__ = ["MEETINGS"]
-
 WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.2, 20.0)
 PERSON = PresetOption(1.2, "speed of the person", "m/s", 0.1, 2.5)
 ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)

@@ -15,8 +15,6 @@ from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Mount, RobotGoal, RobotSpec, Trial
 from crowdbot.world import DifferentialDrive, Drive
 
-__all__ = ["CROWD", "STILL", "box", "corridor", "flow", "number", "pairs", "robot", "scenario", "uniform"]
-
 CROWD = ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=1.0)
 
 STILL = 0.01

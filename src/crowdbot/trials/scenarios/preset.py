@@ -14,8 +14,6 @@ from crowdbot.core import InputError, TrialError, did_you_mean, find_class, pars
 from crowdbot.trials.parser import check_trial
 from crowdbot.trials.trial import RobotSpec, Trial
 
-__all__ = ["Preset", "PresetOption"]
-
 
 @dataclass(frozen=True)
 class PresetOption:

@@ -18,8 +18,6 @@ from crowdbot.trials.trial import Trial
 from .parts import STILL, box, corridor, robot, scenario
 from .preset import Preset, PresetOption
 
-__all__ = ["SHARED_WAYS"]
-
 WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.6, 20.0)
 ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)
 BACK = math.pi

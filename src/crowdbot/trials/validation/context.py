@@ -18,8 +18,6 @@ from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 from crowdbot.world import Router
 
-__all__ = ["DeclaredNames", "Problems", "ValidationContext"]
-
 Problems = Iterator[tuple[Any, str]]
 """Elements with a problem, each with the end of a sentence about it."""
 

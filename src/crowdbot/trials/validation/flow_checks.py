@@ -25,9 +25,6 @@ from crowdbot.world import Router
 
 from .context import DeclaredNames, Problems, ValidationContext
 
-__all__ = ["arrival_count", "duplicate_names", "flows", "inaccessible_stops", "names"]
-
-
 BATCHES = 30
 """Number of batches of points in which a place with room for a body is searched."""
 SPOTS = 6

@@ -16,8 +16,6 @@ from crowdbot.world import Ground
 from .context import Problems, ValidationContext
 from .flow_checks import duplicate_names
 
-__all__ = ["ground_problems", "ground_remarks"]
-
 
 def ground_problems(checked: ValidationContext) -> Iterator[Problems]:
     """Yield the problems of uneven ground, doors, and the places of robots."""

@@ -10,8 +10,6 @@ from crowdbot.trials.crowd import Crowds
 from crowdbot.trials.randomized_model import RandomizedModel
 from crowdbot.trials.trial import Trial
 
-__all__ = ["MODEL_RANGES", "ModelRange", "model_range", "range_remarks"]
-
 STEP_TOLERANCE = 1e-9
 FREE = "no fundamental diagram: its speed is within 10 % of Weidmann's curve up to 0.7 people/m2 only"
 SLOW = "a one-way crowd of 0.25 people/m2 walks at 0.7 m/s"

@@ -14,8 +14,6 @@ from .ground_checks import ground_remarks
 from .model_ranges import range_remarks
 from .stage_size import stage_size_remarks
 
-__all__ = ["fitting", "misfits", "trial_remarks"]
-
 
 def fitting(periods: Sequence[float]) -> float:
     """Return a time step [s] of at most 0.1 s that divides all periods [s], 0 if it would be below 0.005 s.

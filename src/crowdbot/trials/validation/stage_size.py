@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from crowdbot.trials.trial import Trial
 
-__all__ = ["LARGEST_EXTENT", "SMALLEST_EXTENT", "size_text", "stage_size_remarks"]
-
 SMALLEST_EXTENT = 2.0
 LARGEST_EXTENT = 2000.0
 """Plausible extents of a stage, the longer side of the box around it [m]."""

@@ -38,8 +38,6 @@ from .ground_checks import ground_problems
 from .rates import fitting, misfits
 from .zones import areas, shape_problem
 
-__all__ = ["problems_of", "robot_place_problem"]
-
 MOST_VALUES = 100_000_000
 """Largest number of recorded scenes times agents; an episode is kept in memory."""
 MOST_ARRIVALS = 100_000

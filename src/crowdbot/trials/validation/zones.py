@@ -13,8 +13,6 @@ from crowdbot.trials.stage import Stage, area
 
 from .context import ValidationContext
 
-__all__ = ["Area", "areas", "shape_problem"]
-
 SMALLEST = 1e-6
 """Smallest area [m2] of a zone where people enter, go or leave."""
 

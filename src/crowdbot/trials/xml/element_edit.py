@@ -11,8 +11,6 @@ from crowdbot.trials.value_path import element_at, remove_at
 from .trial_text import parse_trial_xml
 from .writer import element_of, trial_xml
 
-__all__ = ["add_element", "needs_trust", "remove_element"]
-
 MOST_TEXT = 1_000_000
 """Largest XML text of an element [characters]."""
 

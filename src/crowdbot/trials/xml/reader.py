@@ -32,8 +32,6 @@ from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
 from .reader_result import ReaderResult
 
-__all__ = ["ROOT", "XmlReader"]
-
 ROOT = "trial"
 
 

@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 
 from crowdbot.core import Element, TrialError
 
-__all__ = ["ReaderProblem", "ReaderResult"]
-
 MOST_PROBLEMS = 100
 
 

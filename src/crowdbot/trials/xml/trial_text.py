@@ -6,8 +6,6 @@ from pathlib import Path
 
 from crowdbot.core import Element, TrialError, parse_xml, read_bytes
 
-__all__ = ["parse_trial_xml", "read_trial_bytes"]
-
 
 def read_trial_bytes(path: Path) -> bytes:
     """Return the content of a trial file.

@@ -21,8 +21,6 @@ from crowdbot.trials.fields import FieldSpec, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
 
-__all__ = ["element_from", "element_of", "trial_xml"]
-
 
 def trial_xml(trial: Any) -> str:
     """Return the XML text of a trial.

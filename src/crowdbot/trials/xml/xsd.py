@@ -16,8 +16,6 @@ from crowdbot.trials.fields import LARGEST, Constraint, FieldSpec, PluginSpec, o
 from crowdbot.trials.notation import Points
 from crowdbot.trials.trial import Trial
 
-__all__ = ["schema"]
-
 NUMBER = r"[+\-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+\-]?[0-9]{1,4})?"
 POINT = rf"{NUMBER}\s*,\s*{NUMBER}"
 KINDS = {

@@ -10,8 +10,6 @@ import numpy as np
 from crowdbot.bridges import MotionSample, PoseStream, StreamStatistics
 from crowdbot.vr.rotation_matrices import unit_quaternions
 
-__all__ = ["StreamTap", "sample_record"]
-
 
 def sample_record(sample: MotionSample) -> dict[str, Any]:
     """Return a sample as it came, JSON: positions ``[J, 3]`` [m] and quaternions ``[J, 4]`` of its joints.

@@ -16,8 +16,6 @@ from crowdbot.vr.rotation_matrices import matrices
 
 from .stream_tap import sample_record
 
-__all__ = ["Suit"]
-
 TURN, PLACE = 10.0, 2.0
 """Time constants [s] with which heading and place of the suit follow those of the headset: suits drift slowly."""
 JUMP = 0.5

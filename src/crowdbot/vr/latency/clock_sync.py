@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 
-__all__ = ["ClockSync"]
-
 DRIFT = 1e-4
 """Assumed largest drift between two clocks [s/s]: an old exchange counts as less certain by it."""
 

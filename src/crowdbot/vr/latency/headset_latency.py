@@ -13,8 +13,6 @@ from crowdbot.experiments import TrialLatency
 from crowdbot.typing import Floats
 from crowdbot.vr.headset_recording import read_headset_clock, read_headset_recording
 
-__all__ = ["HeadsetLatency", "read_headset_latency"]
-
 
 class HeadsetLatency(NamedTuple):
     """Delays of a participant, with all added delays.

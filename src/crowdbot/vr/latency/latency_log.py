@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 
-__all__ = ["LatencyLog"]
-
 LATEST = 200
 """Number of delays of which the median is taken."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["EditHistory"]
-
 MOST_CHARACTERS = 64_000_000
 """Characters of all texts; the oldest are dropped."""
 

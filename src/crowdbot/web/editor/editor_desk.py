@@ -36,8 +36,6 @@ from .edit_history import EditHistory
 from .element_table import element_table
 from .xml_document import XmlDocument, XmlNode
 
-__all__ = ["EditorDesk"]
-
 EMPTY = """<?xml version="1.0" encoding="UTF-8"?>
 <trial name="new-trial" duration="60" seed="1">
   <stage/>

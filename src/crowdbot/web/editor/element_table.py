@@ -10,8 +10,6 @@ from typing import Any
 from crowdbot.core import builtin_classes
 from crowdbot.trials import Distribution, Points, Trial, outline
 
-__all__ = ["element_table"]
-
 
 @functools.cache
 def element_table() -> dict[str, Any]:

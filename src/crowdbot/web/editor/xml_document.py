@@ -10,8 +10,6 @@ from xml.sax.saxutils import escape
 
 from crowdbot.core import Element, InputError, parse_xml
 
-__all__ = ["XmlDocument", "XmlNode"]
-
 TOKEN = re.compile(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>"
     r"|<(?P<close>/?)(?P<tag>[^\s/>!?]+)(?P<rest>(?:[^>\"']|\"[^\"]*\"|'[^']*')*?)(?P<empty>/?)>",

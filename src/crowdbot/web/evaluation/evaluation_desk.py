@@ -29,8 +29,6 @@ from crowdbot.world import builtin_robots
 from .evaluation_request import FILE, EvaluationRequest, describe_robots
 from .imported_result import RESULT, cell_of_result, import_result
 
-__all__ = ["EvaluationDesk"]
-
 METRICS = (
     "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
 )  # fmt: skip

@@ -27,8 +27,6 @@ from crowdbot.web.jobs.job_forms import check_text
 from crowdbot.web.workspace import shown_path
 from crowdbot.world import Robot
 
-__all__ = ["FILE", "EvaluationRequest", "describe_robots"]
-
 FILE = "request.json"
 MOST_RUNS = 100_000
 

@@ -18,8 +18,6 @@ from crowdbot.evaluation import (
 from crowdbot.trials import builtin_trials, load_builtin_trial, load_trial
 from crowdbot.web.workspace import Workspace
 
-__all__ = ["RESULT", "cell_of_result", "import_result"]
-
 RESULT = "result.json"
 NAME = re.compile(r"[^\w.-]+")
 

@@ -41,8 +41,6 @@ from crowdbot.web.simulator import StageView
 from .question_form import question_form
 from .session_streams import SessionStreams, StreamChoice, chosen_streams
 
-__all__ = ["ExperimentDesk"]
-
 
 class ExperimentDesk(Desk):
     """The experiments tab: one session of a participant, which the operator and the participant see.

@@ -6,8 +6,6 @@ from typing import Any
 
 from crowdbot.experiments import Choice, FreeText, Number, Scale
 
-__all__ = ["question_form"]
-
 
 def question_form(question: Choice | Scale | Number | FreeText) -> dict[str, Any]:
     """Return a question as JSON: name, text, required, hint, kind and what the kind needs.

@@ -9,8 +9,6 @@ from pathlib import Path
 
 from crowdbot.experiments import StreamOutlets, StreamRecorder
 
-__all__ = ["SessionStreams", "StreamChoice", "chosen_streams"]
-
 
 @dataclass(frozen=True)
 class StreamChoice:

@@ -16,8 +16,6 @@ from crowdbot.core import InputError
 from .job import JobWork
 from .job_process import LINE, JobPipe
 
-__all__ = ["command_work", "run_command"]
-
 LONGEST = 2000
 
 

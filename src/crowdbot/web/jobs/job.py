@@ -15,8 +15,6 @@ from typing import Any
 from .job_process import CPU, END, LINE, SHARE, run_work
 from .job_record import CANCELLED, DONE, FAILED, RUNNING, JobRecord
 
-__all__ = ["Job", "JobWork"]
-
 DIED = "the worker process has died (out of memory?)"
 CPU_USED = "the processor time of the jobs is used up"
 

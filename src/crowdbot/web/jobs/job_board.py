@@ -19,8 +19,6 @@ from crowdbot.web.workspace import Workspace
 from .job import CPU_USED, Job, JobWork
 from .job_record import RUNNING, WAITING, JobRecord
 
-__all__ = ["JobBoard"]
-
 FOLDER = ".crowdbot-jobs"
 LIST = "jobs.json"
 MOST_RECORDS = 100

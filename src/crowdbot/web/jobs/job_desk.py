@@ -17,8 +17,6 @@ from .command_job import command_work
 from .job import JobWork
 from .job_forms import FORMS, read_values, results_name
 
-__all__ = ["JobDesk"]
-
 MOST_FILES = 200
 MOST_ZIP = 200e6
 """Largest results that are packed into one file [B]."""

@@ -16,8 +16,6 @@ from crowdbot.trials import builtin_trials
 from crowdbot.web.prediction.example_recordings import EXAMPLES, copy_example
 from crowdbot.web.workspace import Workspace
 
-__all__ = ["FORMS", "JobForm", "check_text", "read_values", "results_name"]
-
 Row = dict[str, Any]
 
 RECORDINGS = (".txt", ".csv", ".tsv", ".parquet", ".mcap", ".json", ".ndjson", ".h5", ".hdf5", ".bag", ".vsp")

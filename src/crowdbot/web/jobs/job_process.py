@@ -17,8 +17,6 @@ from typing import Any
 
 from crowdbot.core import CrowdbotError, peak_memory
 
-__all__ = ["CPU", "END", "LINE", "SHARE", "JobPipe", "run_work"]
-
 SHARE, LINE, CPU, END = "job.share", "job.line", "job.cpu", "job.end"
 """Kinds of messages that every job sends: completed share, line of the log, processor time [s], end with a problem."""
 BEAT, LOOK = 1.0, 0.2

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["CANCELLED", "DONE", "FAILED", "INTERRUPTED", "RUNNING", "WAITING", "JobRecord"]
-
 WAITING, RUNNING, DONE, FAILED, CANCELLED, INTERRUPTED = (
     "waiting", "running", "done", "failed", "cancelled", "interrupted",
 )  # fmt: skip

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["BackgroundPicture", "parse_homography"]
-
 MOST_PIXELS = 40_000_000
 """Largest picture that is read."""
 LONGEST = 1600

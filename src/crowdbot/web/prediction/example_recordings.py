@@ -8,8 +8,6 @@ from importlib import resources
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.web.workspace import Workspace
 
-__all__ = ["EXAMPLES", "copy_example"]
-
 EXAMPLES = {
     "bottleneck": "people leave a hall through a door, with walls and a robot (simulated)",
     "crossing-flows": "a robot crosses a corridor with a two-way flow of 40 people (simulated)",

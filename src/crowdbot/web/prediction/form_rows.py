@@ -13,8 +13,6 @@ from crowdbot import calibration, models, prediction
 from crowdbot.core import InputError, Parameter, builtin_classes, did_you_mean, parameters, required_fields
 from crowdbot.data import FORMATS, PROTOCOLS, TIME_BASES, Degradation
 
-__all__ = ["builtin_kinds", "form_rows", "scheme_tables", "written_values"]
-
 Row = dict[str, Any]
 
 LEARN = "needs a learning part of the recording"

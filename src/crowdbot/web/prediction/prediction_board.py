@@ -19,8 +19,6 @@ from .prediction_worker import PredictionTask, TaskMember, input_windows
 from .predictor_choice import PredictorChoice
 from .scene_frame import recording_bounds
 
-__all__ = ["BoardMember", "PredictionBoard"]
-
 MOST_PREDICTORS = 12
 MOST_WINDOWS = 20_000
 CLEAN, DEGRADED = "clean", "degraded"

@@ -25,8 +25,6 @@ from .result_tables import frame_table, horizon_rows, person_table, score_table,
 from .scene_frame import window_frame
 from .stored_results import StoredResults
 
-__all__ = ["PredictionDesk"]
-
 ANIMATIONS = {"animation.gif": "image/gif", "animation.mp4": "video/mp4", "animation.webp": "image/webp"}
 TABLES = ("frames.csv", "frames.parquet", "people.csv", "people.parquet")
 RECENT = 30

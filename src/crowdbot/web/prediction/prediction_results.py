@@ -15,8 +15,6 @@ from crowdbot.metrics import PersonErrors, Score
 
 from .prediction_worker import WindowPart
 
-__all__ = ["VARIABLES", "PredictorResults", "plain_number"]
-
 VARIABLES = {
     "ade": ("Error (ADE)", "m"),
     "fde": ("Final error (FDE)", "m"),

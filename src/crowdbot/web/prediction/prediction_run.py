@@ -12,8 +12,6 @@ from crowdbot.web.jobs.job_board import JobBoard
 from .prediction_results import PredictorResults
 from .prediction_worker import PredictionTask, run_calibration, run_task
 
-__all__ = ["PredictionRun"]
-
 
 class PredictionRun:
     """Predictors that run as a job of the session; its thread collects their results.

@@ -16,8 +16,6 @@ from crowdbot.web.workspace import shown_path
 from .form_rows import builtin_kinds, written_values
 from .predictor_choice import PredictorChoice
 
-__all__ = ["DegradationChoice", "PredictionSetup", "recording_of"]
-
 OPTIONS = (
     "format",
     "fps",

@@ -18,8 +18,6 @@ from crowdbot.metrics import PersonErrors, Score
 from crowdbot.prediction import PredictorSpec, Simulated, degraded_windows
 from crowdbot.web.jobs.job_process import JobPipe
 
-__all__ = ["PredictionTask", "TaskMember", "WindowPart", "input_windows", "run_calibration", "run_task"]
-
 Floats = NDArray[np.float32]
 BATCH = 16
 """Windows that are predicted together where no crowd is calibrated."""

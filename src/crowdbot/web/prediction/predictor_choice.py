@@ -13,8 +13,6 @@ from crowdbot.prediction import WEIGHTS_FIELDS, PredictorSpec, Simulated
 
 from .form_rows import builtin_kinds, written_values
 
-__all__ = ["MOST_SAMPLES", "PredictorChoice"]
-
 MOST_SAMPLES = 100
 MOST_BUDGET = 100_000
 SIMULATED = "simulated"

@@ -12,8 +12,6 @@ from crowdbot.metrics import Score
 from .prediction_board import CLEAN, INPUTS, BoardMember, PredictionBoard
 from .prediction_results import VARIABLES, PredictorResults, plain_number
 
-__all__ = ["frame_table", "horizon_rows", "person_table", "score_table", "variable_names", "variable_rows"]
-
 
 def variable_names(board: PredictionBoard) -> list[dict[str, str]]:
     """Return the variables of the online plots: those of every run, then the fitted parameters."""

@@ -13,8 +13,6 @@ from crowdbot.web.state_frame import StateFrame
 
 from .prediction_results import PredictorResults
 
-__all__ = ["recording_bounds", "window_frame"]
-
 
 def window_frame(
     index: int,

@@ -24,8 +24,6 @@ from .prediction_board import BoardMember, PredictionBoard
 from .prediction_results import PredictorResults
 from .prediction_worker import WindowPart
 
-__all__ = ["StoredResults"]
-
 Arrays = dict[str, NDArray[Any]]
 FILE = ".crowdbot-drafts/prediction-results.npz"
 ABOUT = "about"

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
-__all__ = ["BONE_UNIT", "pack_bones"]
-
 BONE_UNIT = 32767.0
 """Quaternions are sent in units of ``1 / BONE_UNIT``."""
 

@@ -14,8 +14,6 @@ from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.typing import Bytes, Floats
 from crowdbot.web.state_frame import StateFrame
 
-__all__ = ["SensorImage", "encode_image", "image_descriptions", "sensor_images"]
-
 LARGEST = 1280
 """Largest side of an image that is sent [pixels]; of larger ones, every second pixel is sent, or every third, ..."""
 QUALITY = 82

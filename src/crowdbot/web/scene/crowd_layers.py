@@ -13,8 +13,6 @@ from crowdbot.core import Scene
 from crowdbot.prediction import Live, Predictor
 from crowdbot.typing import Floats
 
-__all__ = ["CELL", "DENSITY_UNIT", "PredictedPaths", "collision_lines", "density_field"]
-
 CELL, MARGIN, MOST_CELLS = 0.5, 2.0, 160
 """Side of a cell of the density field [m], space around the people [m], and largest number of cells of a side."""
 SCALE = 1.0

@@ -19,8 +19,6 @@ from .scene_revision import scene_revision
 from .sensor_arrays import cone_angle
 from .stage_description import scene_bounds, scene_focus, stage_description, zone_descriptions
 
-__all__ = ["scene_description"]
-
 KINDS: dict[type, str] = {
     Lidar2D: "scan", Lidar3D: "cloud", Ultrasound: "cone", Infrared: "cone", RGBCamera: "camera", DepthCamera: "camera",
 }  # fmt: skip

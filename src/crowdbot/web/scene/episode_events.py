@@ -13,8 +13,6 @@ from crowdbot.recording import RecordedEpisode
 from crowdbot.simulation import PushOrder
 from crowdbot.typing import Floats
 
-__all__ = ["NEAR_MISS", "EpisodeEvent", "episode_events", "episode_series"]
-
 NEAR_MISS = 0.2
 """Clearance [m] below which passing is a near miss; CrowdNav calls it discomfort."""
 STALL_SPEED, STALL = 0.05, 1.0

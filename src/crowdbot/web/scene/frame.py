@@ -21,8 +21,6 @@ from .scene_instant import SceneInstant
 from .scene_revision import scene_revision
 from .sensor_arrays import cloud_array, range_array, scan_array
 
-__all__ = ["LAYERS", "instant_frame", "scene_frame"]
-
 Arrays = dict[str, NDArray[Any]]
 LAYERS = {
     "scans": "Laser returns",

@@ -16,8 +16,6 @@ from crowdbot.world import PeopleMotion
 from .frame import scene_frame
 from .walking_bodies import WalkingBodies
 
-__all__ = ["app_measurements"]
-
 PEOPLE, BEAMS = 200, 1080
 STATES, REPEATS = 10, 20
 """States of a timed call, and calls of the measurement of processor time."""

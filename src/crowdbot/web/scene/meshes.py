@@ -16,8 +16,6 @@ from crowdbot.web.desk import Resource
 from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import Robot, link_surface
 
-__all__ = ["body_mesh", "robot_mesh", "scene_resource", "shown_links"]
-
 UNIT = 1e-4
 """Length of one unit of the vertices of bodies [m]."""
 MOST_IMAGES = 64

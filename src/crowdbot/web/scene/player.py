@@ -22,8 +22,6 @@ from .episode_events import EpisodeEvent, episode_events
 from .frame import LAYERS, scene_frame
 from .meshes import scene_resource
 
-__all__ = ["PlayerFile", "write_player"]
-
 SHOWN = ("scans", "ranges", "forces", "goals")
 """Layers in a file."""
 LEVELS = (1, 2)

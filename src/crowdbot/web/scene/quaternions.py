@@ -6,8 +6,6 @@ import numpy as np
 
 from crowdbot.typing import Floats
 
-__all__ = ["quaternions"]
-
 
 def quaternions(rotation: Floats) -> Floats:
     """Return the unit quaternions w, x, y, z ``[..., 4]`` of rotations ``[..., 3, 3]``; the largest part is positive.

@@ -21,8 +21,6 @@ from .robot_links import link_frames, standing_links
 from .scene_instant import SceneInstant
 from .walking_bodies import WalkingBodies
 
-__all__ = ["RecordedScene", "simulation_reason"]
-
 STRIDE, BEFORE = 0.1, 1.0
 """Time step [s] of gaits, and time [s] that people have walked before an instant that was jumped to."""
 FAR = 1.0

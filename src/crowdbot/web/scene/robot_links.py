@@ -17,8 +17,6 @@ from crowdbot.world import Robot, frame, free_joints, simulated_body
 from .meshes import shown_links
 from .quaternions import quaternions
 
-__all__ = ["link_frames", "link_poses", "standing_links"]
-
 
 def link_poses(simulation: Simulation, scene: Any, control: RobotControl) -> Floats:
     """Return position [m] and quaternion w, x, y, z ``[L, 7]`` of the links with shapes of a robot in the world.

@@ -17,8 +17,6 @@ from crowdbot.world import PeopleMotion, worlds_of
 
 from .robot_links import link_poses
 
-__all__ = ["SceneInstant"]
-
 
 @dataclass(frozen=True, eq=False)
 class SceneInstant:

@@ -7,8 +7,6 @@ import threading
 import weakref
 from typing import Any
 
-__all__ = ["scene_revision"]
-
 _numbers: dict[int, tuple[weakref.ref[Any], int]] = {}
 _count = itertools.count(1)
 _lock = threading.Lock()

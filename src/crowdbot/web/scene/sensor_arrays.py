@@ -12,8 +12,6 @@ from crowdbot.core import Pose
 from crowdbot.sensors import Ultrasound
 from crowdbot.typing import Floats
 
-__all__ = ["NOTHING", "cloud_array", "cone_angle", "range_array", "scan_array"]
-
 NOTHING = 65_535
 """Range of a beam without a return."""
 LARGEST = 65.5

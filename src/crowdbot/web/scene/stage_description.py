@@ -12,8 +12,6 @@ from crowdbot.trials import Trial
 from crowdbot.typing import Floats
 from crowdbot.world import CubeBody, TableBody, TreeBody
 
-__all__ = ["scene_bounds", "scene_focus", "stage_description", "zone_descriptions"]
-
 MARGIN = 1.0
 """Free space [m] around what is shown."""
 

@@ -8,8 +8,6 @@ from crowdbot.simulation import Simulation
 from crowdbot.trials import people_appearance
 from crowdbot.world import PeopleMotion, worlds_of
 
-__all__ = ["WalkingBodies"]
-
 
 class WalkingBodies:
     """Bodies that walk along with a simulation and change nothing in it.

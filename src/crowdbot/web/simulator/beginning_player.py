@@ -12,8 +12,6 @@ from crowdbot.web.desk import DeskWindows, Resource
 
 from .recorded_beginning import RecordedBeginning
 
-__all__ = ["BeginningPlayer"]
-
 TICK = 0.05
 """Real time [s] between two looks at the clock."""
 

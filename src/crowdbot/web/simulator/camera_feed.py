@@ -13,8 +13,6 @@ from crowdbot.simulation import Simulation
 from crowdbot.web.desk import DeskWindows
 from crowdbot.web.scene import SensorImage, encode_image, sensor_images
 
-__all__ = ["CameraFeed"]
-
 Recorded = Callable[[SensorImage], Reading | None]
 SHARE = 0.15
 """Largest share of a processor core for making images."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["FIRST"]
-
 FIRST: tuple[str, dict[str, str], int] = (
     "two-way",
     {"robot/type": "pepper", "end/collision": "false"},

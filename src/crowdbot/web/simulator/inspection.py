@@ -14,8 +14,6 @@ from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.web.scene import SceneInstant
 from crowdbot.world import Drive, slot_of, worlds_of
 
-__all__ = ["inspect_agent", "people_rows"]
-
 
 def inspect_agent(simulation: Simulation, agent: int) -> dict[str, Any]:
     """Return kind, id, rows [name, value, unit], goal and paths of the parameters of a person or robot.

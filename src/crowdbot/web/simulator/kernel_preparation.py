@@ -15,8 +15,6 @@ from crowdbot.core import cache_folder
 
 from .first_trial import FIRST
 
-__all__ = ["compile_kernels", "prepare_kernels"]
-
 MARK = "app-first-trial"
 """File in the folder of the kernels; written when those of the first trial are there."""
 STEPS = 8

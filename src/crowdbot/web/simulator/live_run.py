@@ -23,8 +23,6 @@ from .paced_loop import PacedLoop
 from .recorded_beginning import RecordedBeginning
 from .stage_view import StageView
 
-__all__ = ["LiveRun"]
-
 Controls = dict[str, OrderSource]
 SHARE = 0.02
 """Largest share of the real time for metrics that are computed while a trial runs."""

@@ -11,8 +11,6 @@ from crowdbot.core import Scene
 from crowdbot.metrics import clearance, local_density, time_to_collision, wall_clearance
 from crowdbot.simulation import Simulation
 
-__all__ = ["LIVE_VALUES", "LiveValue", "live_values"]
-
 
 class LiveValue(NamedTuple):
     """Name, title and unit of a value."""

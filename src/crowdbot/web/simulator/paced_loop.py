@@ -10,8 +10,6 @@ from typing import TypeVar
 
 from crowdbot.core import InputError, PacedClock
 
-__all__ = ["SPEEDS", "PacedLoop"]
-
 Result = TypeVar("Result")
 SPEEDS = (0.1, 100.0)
 """Lowest and highest speed relative to real time; None is as fast as possible."""

@@ -16,8 +16,6 @@ from crowdbot.web.scene import EpisodeEvent, RecordedScene, episode_events, epis
 from .paced_loop import PacedLoop
 from .stage_view import StageView
 
-__all__ = ["Playback"]
-
 NEAR = 2.0
 """Time [s] up to which the simulation for the inspector is continued; beyond it, a keyframe is nearer on average."""
 

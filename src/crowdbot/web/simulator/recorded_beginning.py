@@ -22,8 +22,6 @@ from crowdbot.web.desk import Resource
 from crowdbot.web.scene import WalkingBodies, scene_description, scene_frame, scene_resource, scene_revision
 from crowdbot.web.state_frame import StateFrame
 
-__all__ = ["RecordedBeginning", "shipped_beginning"]
-
 Arrays = dict[str, NDArray[Any]]
 FILE = "first-trial.xz"
 MILLIMETRE = 1e-3

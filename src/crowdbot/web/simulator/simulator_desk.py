@@ -61,8 +61,6 @@ from .stage_view import StageView
 from .trial_preview import thumbnail, trial_preview
 from .value_rows import parameter_rows, value_rows
 
-__all__ = ["SimulatorDesk", "navigator_orders"]
-
 HISTORY = 1500
 """Instants of the live values that a new window gets."""
 AVATAR = "you"

@@ -27,8 +27,6 @@ from crowdbot.world import PeopleMotion, worlds_of
 from .camera_feed import CameraFeed
 from .live_values import live_values
 
-__all__ = ["StageView"]
-
 FRAME = 1.0 / 60.0
 """Shortest real time [s] between two frames."""
 SHARE = 0.1

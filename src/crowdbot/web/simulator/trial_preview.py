@@ -22,8 +22,6 @@ from crowdbot.core import (
 from crowdbot.trials import Trial, load_builtin_trial, load_trial, trial_titles
 from crowdbot.typing import Floats
 
-__all__ = ["thumbnail", "trial_preview"]
-
 MOST = 150
 PACE = 1.3
 """Speed [m/s] of people and robots in a preview."""

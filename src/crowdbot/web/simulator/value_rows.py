@@ -9,8 +9,6 @@ from typing import Any
 from crowdbot.core import builtin_classes, builtin_name
 from crowdbot.trials import PRESETS, Trial, outline
 
-__all__ = ["parameter_rows", "value_rows"]
-
 AT_START = (
     "name", "about", "seed", "world", "physics-step", "bodies", "step", "capacity", "spawner", "agent", "recorded",
     "avatar", "journey", "sweep", "camera", "recording", "duration",

@@ -11,8 +11,6 @@ from crowdbot.core import DataError
 from crowdbot.data.mcap_reader import McapChannel, McapError, McapReader, has_summary
 from crowdbot.data.source import Source
 
-__all__ = ["Bag", "Receive", "Wanted", "read_bag"]
-
 Wanted = Callable[[str, str], bool]
 """Whether the messages of a topic and a type are read."""
 Receive = Callable[[str, str, Callable[[], Any]], None]

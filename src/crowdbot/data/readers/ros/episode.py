@@ -27,8 +27,6 @@ from crowdbot.data.trajectories import Trajectories
 from .bags import Bag, read_bag
 from .frames import SECOND, Frames, frame_name, stamp_of
 
-__all__ = ["PEOPLE_TYPES", "READER", "ROS1", "SQLITE"]
-
 PEOPLE = "/people"
 ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
 TRUTH_ENDING = "/ground_truth/odom"

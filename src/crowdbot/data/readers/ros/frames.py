@@ -11,9 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.typing import Floats
 
-__all__ = ["SECOND", "WORLD_FRAMES", "Frames", "frame_name", "stamp_of"]
-
-
 SECOND = 1_000_000_000
 WORLD_FRAMES = frozenset(("map", "odom", "odom_combined", "world", "earth"))
 """Names of frames that do not move (REP 105), perhaps after a namespace: ``robot/odom``."""

@@ -28,9 +28,6 @@ from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 from crowdbot.typing import Floats
 
-__all__ = ["KITTI", "MOT", "SDD"]
-
-
 SDD_FPS, KITTI_FPS = 30.0, 10.0
 LABEL = re.compile(r'"([^"\n]*)"')
 MOT_CLASSES = (

@@ -21,8 +21,6 @@ from crowdbot.data.readers.reader import Reader, ReadOptions
 from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
 
-__all__ = ["EDINBURGH", "FOUR_ROWS", "GRAND_CENTRAL", "GRAND_CENTRAL_FPS", "triples"]
-
 EDINBURGH_FPS, EDINBURGH_SCALE = 9.0, 0.0247
 GRAND_CENTRAL_FPS = 25.0
 TRACK = re.compile(r"^\s*TRACK\.R(\d{1,15})\s*=\s*\[(.*)\]\s*;?\s*$")
