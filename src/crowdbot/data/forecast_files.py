@@ -20,7 +20,7 @@ from .rows import LARGEST
 from .source import MAX_ROWS, Source
 from .windows import Windows
 
-__all__ = ["ForecastRows", "check_forecast_suffix", "read_forecasts", "write_forecasts"]
+__all__ = ["FORECAST_SUFFIXES", "ForecastRows", "check_forecast_suffix", "read_forecasts", "write_forecasts"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -28,7 +28,7 @@ Integers = NDArray[np.int64]
 COLUMNS = ("frame", "id", "sample", "step", "x", "y")
 """Columns of npz and Parquet; ``weight`` is optional."""
 WHOLE = COLUMNS[:4]
-SUFFIXES = (".ndjson", ".npz", ".parquet")
+FORECAST_SUFFIXES = (".ndjson", ".npz", ".parquet")
 
 
 class ForecastRows(NamedTuple):
@@ -268,5 +268,5 @@ def _checked(file: Path, columns: dict[str, Any]) -> ForecastRows:
 
 def check_forecast_suffix(file: Path) -> None:
     """Raise :class:`InputError` unless the suffix is one of files of forecasts."""
-    if file.suffix not in SUFFIXES:
-        raise InputError(f"{file}: the suffix {file.suffix!r} is not one of forecasts: {', '.join(SUFFIXES)}")
+    if file.suffix not in FORECAST_SUFFIXES:
+        raise InputError(f"{file}: the suffix {file.suffix!r} is not one of forecasts: {', '.join(FORECAST_SUFFIXES)}")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .simulated import Simulated
     from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
-    from .stored_forecasts import forecasts_of
+    from .stored_forecasts import forecast_file, forecasts_of
     from .tracker_plausibility import TrackerWarning
     from .training import (
         BEST,
@@ -64,7 +64,7 @@ __getattr__, __dir__ = lazy_exports(
         "predictor_spec": ["PredictorSpec"],
         "simulated": ["Simulated"],
         "social_ways": ["PRESETS", "STEADY", "SocialWays", "SocialWaysConfig"],
-        "stored_forecasts": ["forecasts_of"],
+        "stored_forecasts": ["forecast_file", "forecasts_of"],
         "training": [
             "BEST",
             "LAST",
@@ -124,6 +124,7 @@ __all__ = [
     "TrainingSchedule",
     "check_predictor",
     "degraded_windows",
+    "forecast_file",
     "forecasts_of",
     "leave_out",
     "load_checkpoint",
