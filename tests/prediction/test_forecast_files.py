@@ -108,8 +108,20 @@ def test_a_missing_file_and_two_recordings_are_refused(
         read_forecasts(tmp_path / "none.npz")
     other = tmp_path / "other.txt"
     other.write_bytes(walkers.read_bytes())
-    assert main(["predict", "--data", str(walkers), str(other), "--forecasts", "x.npz"]) != 0
-    assert "--forecasts requires one recording" in capsys.readouterr().err
+    both = ["predict", "--data", str(walkers), str(other), "--forecasts"]
+    assert main([*both, str(tmp_path / "x.npz")]) == 2
+    assert "there is no file" in (said := capsys.readouterr().err)
+    assert "x.walkers.npz" in said
+    folder = tmp_path / "theirs"
+    folder.mkdir()
+    assert main([*both, str(folder)]) == 2
+    assert "theirs has no file of forecasts of walkers.txt; it needs one of walkers.ndjson, .npz or .parquet" in (
+        capsys.readouterr().err
+    )
+    for name in ("walkers.npz", "walkers.ndjson"):
+        (folder / name).touch()
+    assert main([*both, str(folder)]) == 2
+    assert "theirs has 2 files of forecasts of walkers.txt" in capsys.readouterr().err
     (tmp_path / "again").mkdir()
     same = tmp_path / "again" / "walkers.txt"
     same.write_bytes(walkers.read_bytes())
@@ -127,12 +139,44 @@ def test_every_predictor_and_recording_has_its_file(
     asked = ["predict", "--data", str(walkers), str(other), "--predictor", "constant-velocity", "kalman", "--json"]
     assert main([*asked, "--write-forecasts", str(tmp_path / "f.npz")]) == 0
     results = {row["predictor"]: row["data"] for row in json.loads(capsys.readouterr().out)["results"]}
-    names = [f"f.{place}.{kind}.npz" for place in ("other", "walkers") for kind in ("constant-velocity", "kalman")]
+    names = [f"f.{kind}.{place}.npz" for kind in ("constant-velocity", "kalman") for place in ("other", "walkers")]
     assert sorted(path.name for path in tmp_path.glob("*.npz")) == names
-    file = tmp_path / "f.walkers.kalman.npz"
+    file = tmp_path / "f.kalman.walkers.npz"
     assert main(["predict", "--data", str(walkers), "--forecasts", str(file), "--json"]) == 0
     scored = json.loads(capsys.readouterr().out)["results"][1]["total"]
     np.testing.assert_allclose(scored["ade"], results["kalman"][str(walkers)]["ade"])
+
+
+@pytest.mark.parametrize("named", ["f.kalman.npz", "theirs"])
+def test_several_recordings_read_one_file_each(
+    named: str, walkers: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "other.txt"
+    other.write_bytes(walkers.read_bytes().replace(b"0.0", b"1.0"))
+    asked = ["predict", "--data", str(walkers), str(other), "--predictor", "constant-velocity", "kalman", "--json"]
+    assert main([*asked, "--write-forecasts", str(tmp_path / "f.npz")]) == 0
+    folder = tmp_path / "theirs"
+    folder.mkdir()
+    for place in ("other", "walkers"):
+        (folder / f"{place}.npz").write_bytes((tmp_path / f"f.kalman.{place}.npz").read_bytes())
+    capsys.readouterr()
+    assert main([*asked, "--forecasts", str(tmp_path / named)]) == 0
+    found = {row["predictor"]: row["data"] for row in json.loads(capsys.readouterr().out)["results"]}
+    assert found[named].keys() == {str(walkers), str(other)}
+    for file, score in found[named].items():
+        np.testing.assert_allclose(score["ade"], found["kalman"][file]["ade"], rtol=1e-9)
+    assert found[named][str(walkers)]["ade"] != found[named][str(other)]["ade"]
+
+
+def test_forecasts_of_other_recordings_and_a_folder_alone_are_refused(walkers: Path, tmp_path: Path) -> None:
+    past, future = load(walkers).windows()
+    for place in ("here", "there"):
+        write_forecasts(tmp_path / f"f.{place}.npz", past, future, SampledConstantVelocity().predict(past, 12, 6))
+    stored = forecasts_of(tmp_path / "f.npz", ["here.txt", "there.txt"])
+    with pytest.raises(InputError, match=r"no forecasts of the recording walkers.*, only of here\.txt, there\.txt"):
+        stored.predict(past, 12)
+    with pytest.raises(InputError, match="is a folder: the names of the recordings are required"):
+        forecasts_of(tmp_path)
 
 
 PEOPLE, SCENES = (1, 2, 3), ((0, 1, 0), (1, 2, 0), (2, 1, 30))

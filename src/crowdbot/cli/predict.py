@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -54,7 +53,8 @@ def _add_output(parser: CommandParser) -> None:
     )
     add(
         "--forecasts", nargs="+", default=[], type=Path, metavar="FILE",
-        help="forecasts made elsewhere, scored beside the predictors: TrajNet++ .ndjson, .npz or .parquet",
+        help="forecasts made elsewhere, scored beside the predictors: TrajNet++ .ndjson, .npz or .parquet, or a folder"
+        " with a file named like each recording",
     )  # fmt: skip
     add(
         "--write-forecasts",
@@ -145,12 +145,10 @@ def _with_windows(found: Sequence[Recording]) -> tuple[Recording, ...]:
 
 def _stored(options: argparse.Namespace, found: Sequence[Recording]) -> list[PredictorSpec]:
     """Return the forecasts of files as predictors."""
-    from crowdbot.core import InputError
     from crowdbot.prediction import PredictorSpec, forecasts_of
 
-    if options.forecasts and len(found) != 1:
-        raise InputError(f"--forecasts requires one recording, whose frames and ids they have, not {len(found)}")
-    return [PredictorSpec(forecasts_of(path)) for path in options.forecasts]
+    names = [recording.name for recording in found]
+    return [PredictorSpec(forecasts_of(path, names)) for path in options.forecasts]
 
 
 def _forecast_files(evaluation: PredictorEvaluation, file: Path) -> dict[Path, tuple[Recording, PredictorSpec]]:
@@ -161,18 +159,15 @@ def _forecast_files(evaluation: PredictorEvaluation, file: Path) -> dict[Path, t
     """
     from crowdbot.core import InputError
     from crowdbot.data import check_forecast_suffix
+    from crowdbot.prediction import forecast_file
 
     check_forecast_suffix(file)
-    several = len(evaluation.recordings) > 1, len(evaluation.specs) > 1
+    several = len(evaluation.specs) > 1, len(evaluation.recordings) > 1
     files: dict[Path, tuple[Recording, PredictorSpec]] = {}
     for recording in evaluation.recordings:
         for spec in evaluation.specs:
-            words = [
-                word for word, wanted in zip((Path(recording.name).stem, spec.name), several, strict=True) if wanted
-            ]
-            path = file.with_name(
-                ".".join([file.stem, *(re.sub(r"[^\w.+-]+", "-", word) for word in words)]) + file.suffix
-            )
+            names = zip((spec.name, Path(recording.name).stem), several, strict=True)
+            path = forecast_file(file, [name for name, wanted in names if wanted])
             if path in files:
                 raise InputError(f"--write-forecasts {file}: two recordings or predictors would write {path.name}")
             files[path] = recording, spec

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
     from .file_options import FILE_OPTIONS, FileOption, parse_columns, split_columns
     from .forecast import Forecast
-    from .forecast_files import check_forecast_suffix, read_forecasts, write_forecasts
+    from .forecast_files import FORECAST_SUFFIXES, check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
     from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
@@ -36,6 +36,7 @@ __getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "FILE_OPTIONS",
+    "FORECAST_SUFFIXES",
     "FORMATS",
     "MCAP_MAGIC",
     "PROTOCOLS",

@@ -23,7 +23,7 @@ from .windows import Windows
 COLUMNS = ("frame", "id", "sample", "step", "x", "y")
 """Columns of npz and Parquet; ``weight`` is optional."""
 WHOLE = COLUMNS[:4]
-SUFFIXES = (".ndjson", ".npz", ".parquet")
+FORECAST_SUFFIXES = (".ndjson", ".npz", ".parquet")
 
 
 class ForecastRows(NamedTuple):
@@ -263,5 +263,5 @@ def _checked(file: Path, columns: dict[str, Any]) -> ForecastRows:
 
 def check_forecast_suffix(file: Path) -> None:
     """Raise :class:`InputError` unless the suffix is one of files of forecasts."""
-    if file.suffix not in SUFFIXES:
-        raise InputError(f"{file}: the suffix {file.suffix!r} is not one of forecasts: {', '.join(SUFFIXES)}")
+    if file.suffix not in FORECAST_SUFFIXES:
+        raise InputError(f"{file}: the suffix {file.suffix!r} is not one of forecasts: {', '.join(FORECAST_SUFFIXES)}")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .simulated import Simulated
     from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
-    from .stored_forecasts import forecasts_of
+    from .stored_forecasts import forecast_file, forecasts_of
     from .tracker_plausibility import TrackerWarning
     from .training import (
         BEST,
@@ -84,6 +84,7 @@ __all__ = [
     "TrainingSchedule",
     "check_predictor",
     "degraded_windows",
+    "forecast_file",
     "forecasts_of",
     "leave_out",
     "load_checkpoint",
