@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories, fill_gaps, load, observed_velocity, steady_velocity
 from crowdbot.models import CurrentDirection
-from crowdbot.models.goals import LearnedDestinations
+from crowdbot.models.goals import EnvironmentLayout, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
 from crowdbot.models.goals.turn_histogram import BINS, TurnSamples, accumulate, median_turn
@@ -202,10 +202,6 @@ def slow_clock():
         (lambda: LearnedDestinations.learn(street(), width=-1.0), "width = -1.0 m must be finite"),
         (lambda: LearnedDestinations.learn(street(), reach=0.0), "reach = 0.0"),
         (
-            lambda: LearnedDestinations.learn(street()).resolve(windows(np.zeros((1, 8, 1, 2)), dt=0.1)),
-            "made has steps of 0.1 s, but the goal was learned with steps of 0.4 s",
-        ),
-        (
             lambda: LearnedDestinations.learn(street()).choices(windows(np.zeros((1, 8, 1, 2)), units="px")),
             "made is in px, the goal was learned in m",
         ),
@@ -215,3 +211,28 @@ def test_wrong_use(make, says):
     with pytest.raises(InputError, match=says) as told:
         make()
     assert "\n" not in str(told.value)
+
+
+def test_windows_of_another_time_step_are_interpolated():
+    goal = LearnedDestinations.learn(street())
+    time = np.arange(29.0)[:, None, None] * 0.1
+    fast = windows((np.array([[0.5, 1.0], [6.0, 0.2]]) + time * np.array([[1.3, 0.0], [-1.1, 0.1]]))[None], dt=0.1)
+    slow = windows(fast.position[:, ::4], dt=0.4)
+    assert np.allclose(goal.velocity(fast), goal.velocity(slow), atol=1e-9)
+    assert np.allclose(goal.resolve(fast), goal.resolve(slow), atol=1e-6)
+    for one, other in zip(*(vars(goal.choices(past)).values() for past in (fast, slow)), strict=True):
+        assert np.allclose(one, other, atol=1e-6)
+
+
+def test_people_observed_for_less_than_the_time_step_of_the_goal_have_a_velocity():
+    goal = LearnedDestinations.learn(street())
+    walk = np.arange(3.0)[:, None, None] * 0.1 * np.array([[1.3, 0.0]])
+    assert goal.velocity(windows(walk[None], dt=0.1))[0, 0] == pytest.approx([1.3, 0.0], abs=1e-9)
+    alone = windows(walk[None, -1:], dt=0.1)
+    assert goal.velocity(alone)[0, 0].tolist() == [0.0, 0.0]
+
+
+def test_a_goal_says_how_much_time_it_reads():
+    goal = LearnedDestinations.learn(street())
+    assert goal.history == pytest.approx(7 * 0.4)
+    assert EnvironmentLayout([(10.0, 0.0)]).history == 0.0

@@ -65,19 +65,80 @@ def test_people_seen_once_have_an_unknown_velocity(windows: Maker) -> None:
     assert covariance[0, 2, 0, 0, 0] > 0.9
 
 
-def test_the_tracker_adds_its_own_covariance() -> None:
-    noise = [[[0.04, 0.01], [0.01, 0.02]], [[0.5, 0.0], [0.0, 0.5]]]
-    plain, noisy = (Live(Kalman(), dt=0.4) for _ in range(2))
-    for row in range(5):
-        place = [[0.5 * row, 0.0], [4.0, 1.0]]
-        plain.update(["b", "a"], place)
-        noisy.update(["b", "a"], place, covariances=noise)
-    one, other = plain.predict(4).covariance, noisy.predict(4).covariance
-    assert one is not None
-    assert other is not None
-    order = [noise[["b", "a"].index(who)] for who in noisy.ids]
-    np.testing.assert_allclose(other - one, np.broadcast_to(order, one.shape), atol=1e-12)
-    np.testing.assert_array_equal(plain.predict(4).position, noisy.predict(4).position)
+NOISE = np.array([[[0.04, 0.01], [0.01, 0.02]], [[0.5, 0.0], [0.0, 0.3]]])
+
+
+def joint_filter(kalman: Kalman, track: np.ndarray, noise: np.ndarray, dt: float, steps: int) -> tuple:
+    """Return positions ``[T, 2]`` and covariances ``[T, 2, 2]`` of a textbook filter with the state x, y, vx, vy."""
+    drift = np.kron([[1.0, dt], [0.0, 1.0]], np.eye(2))
+    push = kalman.acceleration**2 * np.kron([[dt**3 / 3.0, dt**2 / 2.0], [dt**2 / 2.0, dt]], np.eye(2))
+    seen = np.eye(2, 4)
+    state = np.concatenate([track[0], [0.0, 0.0]])
+    spread = np.zeros((4, 4))
+    spread[:2, :2], spread[2:, 2:] = noise, kalman.speed**2 * np.eye(2)
+    for place in track[1:]:
+        state, spread = drift @ state, drift @ spread @ drift.T + push
+        gain = spread @ seen.T @ np.linalg.inv(seen @ spread @ seen.T + noise)
+        state, spread = state + gain @ (place - seen @ state), spread - gain @ seen @ spread
+    found = []
+    for _ in range(steps):
+        state, spread = drift @ state, drift @ spread @ drift.T + push
+        found.append((state[:2], spread[:2, :2]))
+    return tuple(np.array(part) for part in zip(*found, strict=True))
+
+
+def test_the_kalman_filter_trusts_the_covariances_of_the_tracker() -> None:
+    rng = stream(2, "tracker")
+    tracks = np.stack([[0.5, 0.0], [-0.3, 0.2]])[:, None] * np.arange(6.0)[:, None] + rng.normal(0.0, 0.2, (2, 6, 2))
+    live, plain = (Live(Kalman(), dt=0.4) for _ in range(2))
+    for row in range(6):
+        live.update(["b", "a"], tracks[:, row], covariances=NOISE)
+        plain.update(["b", "a"], tracks[:, row])
+    forecast, other = live.predict(4), plain.predict(4)
+    assert forecast.covariance is not None
+    for slot, who in enumerate(live.ids):
+        k = ["b", "a"].index(who)
+        place, spread = joint_filter(Kalman(), tracks[k], NOISE[k], 0.4, 4)
+        np.testing.assert_allclose(forecast.position[0, 0, :, slot], place, atol=1e-9)
+        np.testing.assert_allclose(forecast.covariance[0, :, slot], spread, atol=1e-9)
+    assert np.abs(forecast.position - other.position).max() > 0.05
+
+
+def test_frames_without_covariances_have_the_noise_of_the_filter() -> None:
+    mixed, plain = (Live(Kalman(measurement=0.2), dt=0.4) for _ in range(2))
+    for row in range(6):
+        place = [[0.5 * row + 0.1 * (row % 2), 0.0]]
+        mixed.update([1], place, covariances=[0.04 * np.eye(2)] if row % 2 else None)
+        plain.update([1], place)
+    for name in ("position", "covariance"):
+        np.testing.assert_allclose(getattr(mixed.predict(4), name), getattr(plain.predict(4), name), atol=1e-12)
+
+
+def test_interpolated_positions_have_the_covariance_of_the_mean() -> None:
+    live = Live(Kalman(), dt=0.4)
+    for time, variance in ((0.0, 0.1), (0.3, 0.3), (0.5, 0.5), (0.8, 0.2)):
+        live.update([1], [[time, 0.0]], time=time, covariances=[variance * np.eye(2)])
+    found = live.past().covariance
+    assert found is not None
+    np.testing.assert_allclose(found[0, :, 0, 0, 0], [0.1, 0.25 * 0.3 + 0.25 * 0.5, 0.2], atol=1e-12)
+
+
+def test_anchor_net_is_as_unsure_as_the_tracker() -> None:
+    sure, unsure, plain = (Live(AnchorNet("open"), dt=0.4) for _ in range(3))
+    wave = 0.08 * np.sin(2.0 * np.arange(8.0))
+    for row in range(8):
+        place = [[0.5 * row, wave[row]], [3.0, 3.0 - 0.4 * row]]
+        sure.update([1, 2], place, covariances=np.tile(1e-6 * np.eye(2), (2, 1, 1)))
+        unsure.update([1, 2], place, covariances=np.tile(0.04 * np.eye(2), (2, 1, 1)))
+        plain.update([1, 2], place)
+    one, other = sure.predict(12), unsure.predict(12)
+    assert one.covariance is not None
+    assert other.covariance is not None
+    assert np.all((other.covariance - one.covariance)[0, :, :, [0, 1], [0, 1]] > 0.04)
+    # to a sure tracker the wave is a turn, to an unsure one it is noise
+    aside = [np.abs(forecast.position[0, 0, -1, 0, 1]) for forecast in (one, other)]
+    assert aside[1] < 0.8 * aside[0]
+    assert plain.past().covariance is None
 
 
 def test_a_hidden_person_keeps_the_last_covariance_and_robots_with_plans_have_none() -> None:
@@ -92,14 +153,23 @@ def test_a_hidden_person_keeps_the_last_covariance_and_robots_with_plans_have_no
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [np.eye(2), [[[1.0, 2.0], [2.0, 1.0]]], [[[1.0, 0.5], [0.0, 1.0]]], [[[np.nan, 0.0], [0.0, 1.0]]], "wide"],
+    ("wrong", "says"),
+    [
+        (np.eye(2), r"covariances have shape \[2, 2\], they must be \[1, 2, 2\]"),
+        (
+            [[[1.0, 2.0], [2.0, 1.0]]],
+            r"of 'anna' is not positive semidefinite: \[\[1.0, 2.0\], \[2.0, 1.0\]\]; it must",
+        ),
+        ([[[1.0, 0.5], [0.0, 1.0]]], r"of 'anna' is not symmetric: \[\[1.0, 0.5\], \[0.0, 1.0\]\]; it must"),
+        ([[[np.nan, 0.0], [0.0, 1.0]]], r"of 'anna' is not finite: \[\[nan, 0.0\], \[0.0, 1.0\]\]; it must"),
+        ("wide", r"covariances must be numbers \[N, 2, 2\]"),
+    ],
     ids=["shape", "negative", "skew", "nan", "text"],
 )
-def test_impossible_covariances_are_refused_in_a_sentence(wrong: object) -> None:
+def test_impossible_covariances_are_refused_in_a_sentence(wrong: object, says: str) -> None:
     live = Live(Kalman(), dt=0.4)
-    with pytest.raises(InputError, match=r"^live: covariance"):
-        live.update([1], [[0.0, 0.0]], covariances=wrong)
+    with pytest.raises(InputError, match=rf"^live: (covariance )?{says}"):
+        live.update(["anna"], [[0.0, 0.0]], covariances=wrong)
     live.update([1], [[0.0, 0.0]])
     assert live.ids.tolist() == [1]
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, stream
-from crowdbot.data import Windows
-from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Live, Predictor
+from crowdbot.data import Trajectories, Windows
+from crowdbot.models.goals import LearnedDestinations
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Live, Predictor, Simulated
 
 Maker = Callable[..., Windows]
 SPEED = 1.3
@@ -151,3 +152,15 @@ def test_threads_share_a_stream() -> None:
         thread.join()
     assert found == [3] * 120
     assert live.latency >= 0.0
+
+
+def test_a_goal_learned_at_another_time_step_follows_a_fast_stream() -> None:
+    row = np.arange(20)
+    tracks = Trajectories(np.full(20, 7), row, 0.48 * row, np.zeros(20), row_rate=2.5)
+    goal = LearnedDestinations.learn(tracks)
+    live = Live(Simulated("orca", goal), dt=0.1)
+    assert live.observe == 29
+    walk(live, 10.0, 3.0)
+    forecast = live.predict(24)
+    moved = forecast.position[0, 0, -1, 0] - live.past().position[0, -1, 0]
+    np.testing.assert_allclose(moved, [2.4 * SPEED, 0.0], atol=0.05)

@@ -181,12 +181,13 @@ def test_the_last_message_of_a_stamp_counts() -> None:
     assert past.position[0, :, :, 0].tolist() == [[0.0, 5.5, 8.0]]
     assert past.radius is not None
     np.testing.assert_array_equal(past.radius, [[0.2, 0.4, np.nan]])
-    own = Live(Kalman(), dt=0.1)
-    own.update([1, 2, 3], [[0.0, 0.0], [5.5, 0.0], [8.0, 0.0]], time=1.0)
-    one, other = live.predict(1).covariance, own.predict(1).covariance
+    plain = Live(Kalman(), dt=0.1)
+    plain.update([1, 2, 3], [[0.0, 0.0], [5.5, 0.0], [8.0, 0.0]], time=1.0)
+    one, other = live.predict(1).covariance, plain.predict(1).covariance
     assert one is not None
     assert other is not None
-    np.testing.assert_allclose((one - other)[0, 0, :, 0, 0], [0.0, 1.0, 1.0])
+    own = Kalman().measurement ** 2
+    np.testing.assert_allclose((one - other)[0, 0, :, 0, 0], [0.0, 1.0 - own, 1.0 - own])
 
 
 # Units

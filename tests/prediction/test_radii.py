@@ -10,7 +10,7 @@ import pytest
 
 from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
-from crowdbot.prediction import AnchorNet, Kalman, Live
+from crowdbot.prediction import AnchorNet, ConstantVelocity, Kalman, Live, Simulated
 
 Maker = Callable[..., Windows]
 TIME = 0.4 * np.arange(-7.0, 1.0)
@@ -68,8 +68,8 @@ def test_live_knows_the_last_radius(windows: Maker) -> None:
 
 @pytest.mark.parametrize(
     ("radii", "words"),
-    [([0.3], r"radii have shape \[1\], they must be \[2\]"), ([0.3, 0.0], "radius 0.0 m must be above 0"),
-     ([0.3, np.inf], "radius inf m"), (["wide", 1.0], "radii must be numbers")],
+    [([0.3], r"radii have shape \[1\], they must be \[2\]"), ([0.3, 0.0], "radius 0.0 m of 'b' must be above 0"),
+     ([0.3, np.inf], "radius inf m of 'b'"), (["wide", 1.0], "radii must be numbers")],
 )  # fmt: skip
 def test_impossible_radii_are_refused(radii: list[object], words: str) -> None:
     with pytest.raises(InputError, match=words):
@@ -90,3 +90,56 @@ def test_each_person_has_own_probabilities(windows: Maker) -> None:
     assert some is not None
     np.testing.assert_allclose(some.sum(axis=1), 1.0)
     assert AnchorNet("open").predict(past, 12).person_weight is None
+
+
+def test_crowd_models_simulate_people_of_the_given_radii() -> None:
+    gaps = {}
+    for radius in (None, 0.2, 0.6):
+        live = Live(Simulated("orca"), dt=0.4)
+        for row in range(4):
+            place = [[0.5 * row - 4.0, 0.0], [4.0 - 0.5 * row, 0.1]]
+            live.update([1, 2], place, radii=None if radius is None else [radius, radius])
+        gaps[radius] = nearest(live.predict(12), 0, 1)
+    assert gaps[0.2] < gaps[None] < gaps[0.6]
+    assert gaps[0.6] > 1.1
+
+
+def test_a_calibrated_radius_starts_at_the_given_one(windows: Maker) -> None:
+    past = dataclasses.replace(meeting(windows, 0.3), radius=np.array([[0.4, np.nan]]))
+    crowd = Simulated("orca", cost="absolute", search="greedy", budget=1, free=("radius",))
+    _, fit = crowd.follow(past, 1)
+    assert fit.given[0, :, 0].tolist() == [0.4, 0.25]
+
+
+def test_the_existence_of_a_tracker_is_in_the_forecast() -> None:
+    live = Live(ConstantVelocity(), dt=0.4, coast=0.8)
+    live.update(["a", "b"], [[0.0, 0.0], [4.0, 0.0]], existence=[0.5, 0.9])
+    live.update(["a", "b"], [[0.4, 0.0], [4.0, 0.0]], existence=[0.8, np.nan])
+    existence = live.predict(2).existence
+    assert existence is not None
+    assert existence.tolist() == [[0.8, 1.0]]
+    live.update(["b"], [[4.0, 0.0]], existence=[0.7])
+    existence = live.predict(2).existence  # hidden for half of coast
+    assert existence is not None
+    np.testing.assert_allclose(existence, [[0.4, 0.7]])
+
+
+def test_the_last_frame_of_a_stamp_says_how_probable_a_person_is() -> None:
+    live = Live(ConstantVelocity(), dt=0.4)
+    live.update([1, 2], [[0.0, 0.0], [4.0, 0.0]], time=1.0, existence=[0.5, 0.6])
+    live.update([2, 3], [[4.0, 0.0], [8.0, 0.0]], time=1.0, existence=[0.7, 0.8])
+    existence = live.predict(1).existence
+    assert existence is not None
+    assert existence.tolist() == [[0.5, 0.7, 0.8]]
+
+
+@pytest.mark.parametrize(
+    ("existence", "words"),
+    [([0.3], r"existence have shape \[1\], they must be \[2\]"), ([0.3, 0.0], "existence 0.0 of 'b' must be above 0"),
+     ([1.2, 1.0], "existence 1.2 of 'a' must be above 0 and at most 1"), (["no", 1.0], "existence must be numbers")],
+)  # fmt: skip
+def test_impossible_probabilities_are_refused(existence: list[object], words: str) -> None:
+    live = Live(Kalman(), 0.4)
+    with pytest.raises(InputError, match=words):
+        live.update(["a", "b"], [[0.0, 0.0], [3.0, 0.0]], existence=existence)  # type: ignore[arg-type]
+    assert live.ids.tolist() == []

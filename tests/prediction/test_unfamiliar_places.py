@@ -77,7 +77,10 @@ def test_a_foreign_person_gets_the_filtered_line_and_the_anchors(windows: Maker)
     one, many = NET.predict(past, 12), NET.modes(past)
     numbers = NET._numbers(past)
     people, _, _ = agent_histories(past)
-    line = filtered_lines(people.past, people.seen, np.array([[1.0, 0.0]]), numbers["basis"])[0] @ numbers["basis"]
+    line = (
+        filtered_lines(people.past, people.seen, people.noise, np.array([[1.0, 0.0]]), numbers["basis"])[0]
+        @ numbers["basis"]
+    )
     base = ConstantVelocity().predict(past, 12).position[0, 0, :, 0]
     np.testing.assert_allclose(one.position[0, 0, :, 0], base + line.reshape(12, 2), atol=0.02)
     shapes = (numbers["centres"] @ numbers["basis"]).reshape(1, -1, 12, 2)
@@ -166,7 +169,7 @@ def test_one_filter_of_the_grid_is_the_kalman_predictor(windows: Maker) -> None:
     seen[::3, 2:5] = False
     seen[::5, :6] = False
     kalman = Kalman(0.3, 0.04, 0.9)
-    place, velocity, _ = filter_tracks(people.past, seen, 0.4, np.array([0.3]), np.array([0.04]), 0.9)
+    place, velocity, _ = filter_tracks(people.past, seen, people.noise, 0.4, np.array([0.3]), np.array([0.04]), 0.9)
     track = np.where(seen[..., None], people.past, 0.0).swapaxes(0, 1)
     motion, _, _ = kalman._run_filter(track, seen.T, 0.4)
     np.testing.assert_allclose(place, motion[0], atol=1e-12)
@@ -180,7 +183,7 @@ def test_filters_fitted_to_each_track_are_better_than_one_filter_for_all(windows
         people, _, _ = agent_histories(past)
         basis = np.eye(24)
         heading = heading_vectors(people.past)
-        found = filtered_lines(people.past, people.seen, heading, basis)[0].reshape(-1, 12, 2)
+        found = filtered_lines(people.past, people.seen, people.noise, heading, basis)[0].reshape(-1, 12, 2)
         step = people.past[:, -1] - people.past[:, -2]
         line = past.position[0, -1] + row * step + rotate(found, heading, back=True).swapaxes(0, 1)
         fixed = Kalman().predict(past, 12).position[0, 0]
@@ -196,12 +199,12 @@ def test_the_share_of_the_filtered_line_grows_with_straightness_and_noise(window
     np.testing.assert_allclose(single[0.5], 0.5 * single[0.0] + 0.5 * single[1.0], atol=1e-9)
     people, _, _ = agent_histories(past)
     heading = heading_vectors(people.past)
-    line, straight = filtered_lines(people.past, people.seen, heading, plain["basis"])
+    line, straight = filtered_lines(people.past, people.seen, people.noise, heading, plain["basis"])
     assert straight.mean() > 0.5
     np.testing.assert_allclose(single[1.0], single[0.0] + straight[:, None] * (line - single[0.0]), atol=1e-9)
     bend = 0.12 * np.arange(-7.0, 1.0)[:, None] ** 2 * np.array([0.0, 1.0])
-    assert filtered_lines(people.past + bend, people.seen, heading, plain["basis"])[1].max() < 0.01
+    assert filtered_lines(people.past + bend, people.seen, people.noise, heading, plain["basis"])[1].max() < 0.01
     smooth, _, _ = agent_histories(straight_walkers(windows, 0.001)[0])
-    assert filtered_lines(smooth.past, smooth.seen, heading, plain["basis"])[1].max() < 0.01
+    assert filtered_lines(smooth.past, smooth.seen, smooth.noise, heading, plain["basis"])[1].max() < 0.01
     del plain["line_share"]
     np.testing.assert_allclose(_bends(plain, past).single, single[0.0], atol=1e-9)

@@ -87,7 +87,7 @@ class ParameterSpace:
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         values = np.zeros((*observed.shape, len(self.table)))
         for column, row in enumerate(self.table):
-            value = {RADIUS.name: rollout.radius, PREFERRED_SPEED.name: observed}.get(row.name)
+            value = {RADIUS.name: rollout.radii(past), PREFERRED_SPEED.name: observed}.get(row.name)
             if value is None:
                 value = getattr(self.model, row.name)
                 if np.ndim(value) > 0:

@@ -25,7 +25,7 @@ class Rollout:
     Fields:
         model: crowd model; its parameters are scalars or ``[W, A]``.
         goal: goals of people, resolved from the data at the start of the simulation.
-        radius: scalar or ``[W, A]`` [m].
+        radius: [m], one number, where the windows have no radii, or ``[W, A]``, instead of those of the windows.
         preferred_speed: ``[W, A]`` [m/s]; None for the observed speed, the magnitude of the velocity of the goal.
         substep: maximum time step of the simulation [s]; a row of the recording has equal steps.
 
@@ -67,7 +67,7 @@ class Rollout:
         scene = Scene.of(
             place,
             velocity,
-            radius=self.radius,
+            radius=self.radii(past),
             goal=np.where(here[..., None], self.goal.resolve(known), place),
             active=here,
             external=past.robot,
@@ -76,6 +76,12 @@ class Rollout:
         )
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         return set_preferred_speed(scene, observed if self.preferred_speed is None else self.preferred_speed)
+
+    def radii(self, past: Windows) -> float | Floats:
+        """Return the radii [m] of people and robots; a single one counts where the windows have none."""
+        if past.radius is None or np.ndim(self.radius) > 0:
+            return self.radius
+        return np.where(np.isnan(past.radius), self.radius, past.radius)
 
     def predict_positions(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
         """Return the predicted positions of people present at the last row: ``[W, steps, A, 2]`` [m]."""

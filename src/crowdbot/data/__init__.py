@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .forecast_files import FORECAST_SUFFIXES, check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
     from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
-    from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
+    from .motion import fill_gaps, observed_velocity, resample_rows, slice_rows, steady_velocity
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.hdf5_arrays import read_hdf5_arrays
@@ -71,6 +71,7 @@ __all__ = [
     "read_forecasts",
     "read_hdf5_arrays",
     "read_homography",
+    "resample_rows",
     "save",
     "scenes_of_category",
     "slice_rows",

@@ -28,7 +28,7 @@ class Forecast:
         dt: time step [s].
         predictor: name of the predictor.
         covariance: ``[W, T, A, 2, 2]`` [m^2] of the positions around the forecast with K = 1, if the predictor has one.
-            It is the error of the motion model, without the measurement noise of a tracker.
+            It contains the noise of a tracker as far as the past has covariances of its positions.
         existence: ``[W, A]`` probability that a person is still there, for people hidden at the last row; None means 1.
         out_of_distribution: ``[W, A]`` between 0 and 1: how unlike the training data a person is. A learned predictor
             gives this share of its answer to a baseline.

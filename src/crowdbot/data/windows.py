@@ -30,6 +30,7 @@ class Windows:
         units: ``m``, or ``px`` for recordings in pixels: then every [m] above is pixels.
         plan: ``[W, S, A, 2]`` [m], planned positions of robots at the next S rows, NaN for everyone else; or None.
         radius: ``[W, A]`` [m] radii of people and robots, NaN where unknown; or None. Joint futures keep apart by them.
+        covariance: ``[W, T, A, 2, 2]`` [m^2] of the measured positions, NaN where unknown; or None. Filters read it.
 
     >>> from crowdbot.data import Trajectories
     >>> rows = range(20)
@@ -52,6 +53,7 @@ class Windows:
     units: str = "m"
     plan: NDArray[np.float64] | None = None
     radius: NDArray[np.float64] | None = None
+    covariance: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of windows."""
@@ -60,7 +62,8 @@ class Windows:
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Windows:
         """Return some of the windows."""
         arrays = {n: getattr(self, n)[chosen] for n in ("position", "present", "scored", "robot", "id", "frame")}
-        more = {name: getattr(self, name)[chosen] for name in ("plan", "radius") if getattr(self, name) is not None}
+        known = [name for name in ("plan", "radius", "covariance") if getattr(self, name) is not None]
+        more = {name: getattr(self, name)[chosen] for name in known}
         return dataclasses.replace(self, **arrays, **more)
 
     def with_plans(self, plans: Mapping[int, ArrayLike]) -> Windows:

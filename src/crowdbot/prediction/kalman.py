@@ -56,7 +56,8 @@ class _Filter(Predictor):
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        motion, _, spread = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
+        noise = None if past.covariance is None else _rows_first(past.covariance)
+        motion, _, spread = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt, noise)
         time = past.dt * np.arange(1, steps + 1)[:, None, None]
         terms = [value[:, None] * time**order / math.factorial(order) for order, value in enumerate(motion)]
         place = np.sum(terms[1:], axis=0) + terms[0]
@@ -66,15 +67,16 @@ class _Filter(Predictor):
     def _covariance(self, spread: list[list[Floats]], past: Windows, steps: int) -> Floats:
         """Return covariances ``[W, T, A, 2, 2]`` [m^2] of predicted positions; 0 for absent agents and known plans."""
         n = len(self._start)
-        drift, noise = _step(n, past.dt), self._push**2 * _noise(n, past.dt)
+        drift, noise = _step(n, past.dt), self._push**2 * _noise(n, past.dt, spread[0][0].shape[-1])
         variance = []
         for step in range(1, steps + 1):
             spread = _predict_covariance(drift, spread, noise)
             here = past.present[:, -1]
             if past.plan is not None:
                 here = here & np.isnan(past.plan_at(step)).any(axis=-1)
-            variance.append(np.where(here, spread[0][0], 0.0))
-        return np.asarray(np.stack(variance, axis=1)[..., None, None] * np.eye(2))
+            variance.append(np.where(here[..., None, None], spread[0][0], 0.0))
+        found = np.stack(variance, axis=1)
+        return np.asarray(found * np.eye(2) if found.shape[-1] == 1 else found)
 
     @classmethod
     def fit(cls, *pasts: Windows) -> Self:
@@ -108,34 +110,40 @@ class _Filter(Predictor):
         return _negative_log_likelihood(self, [_tracks(past) for past in pasts])
 
     def _run_filter(
-        self, position: Floats, present: NDArray[np.bool_], dt: float
+        self, position: Floats, present: NDArray[np.bool_], dt: float, covariance: Floats | None = None
     ) -> tuple[list[Floats], float, list[list[Floats]]]:
         """Return position and derivatives ``[..., 2]`` after the rows, the negative log-likelihood and the covariance.
 
-        The covariance is ``[n][n]`` of arrays ``[...]``, the same for x and y.
+        The covariance is ``[n][n]`` of arrays ``[..., 2, 2]``; without covariances ``[T, ..., 2, 2]`` of the measured
+        positions x and y have the same variances, in arrays ``[..., 1, 1]``.
         """
         n, shape = len(self._start), present.shape[1:]
-        drift, noise = _step(n, dt), self._push**2 * _noise(n, dt)
-        measured = self._start[0] ** 2
+        one = np.eye(1 if covariance is None else 2)
+        drift, noise = _step(n, dt), self._push**2 * _noise(n, dt, len(one))
+        measured = np.broadcast_to(self._start[0] ** 2 * one, (len(position), *shape, *one.shape))
+        if covariance is not None:
+            measured = np.where(np.isnan(covariance), measured, covariance)
         motion = [np.zeros((*shape, 2)) for _ in range(n)]
-        spread = [[np.full(shape, self._start[i] ** 2 if i == j else 0.0) for j in range(n)] for i in range(n)]
+        start = [np.broadcast_to(value**2 * one, (*shape, *one.shape)) for value in self._start]
+        spread = [[start[i] if i == j else 0.0 * start[i] for j in range(n)] for i in range(n)]
         started, negative_log_likelihood = np.zeros(shape, dtype=np.bool_), 0.0
-        for seen, here in zip(position, present, strict=True):
+        for seen, here, error in zip(position, present, measured, strict=True):
             motion = _propagate(drift, motion)
             later = _predict_covariance(drift, spread, noise)
-            spread = [[np.where(started, later[i][j], spread[i][j]) for j in range(n)] for i in range(n)]
+            running = started[..., None, None]
+            spread = [[np.where(running, later[i][j], spread[i][j]) for j in range(n)] for i in range(n)]
             update = started & here
-            expected = spread[0][0] + measured
+            expected = spread[0][0] + error
             wrong = np.where(update[..., None], seen - motion[0], 0.0)
-            length2 = wrong[..., 0] ** 2 + wrong[..., 1] ** 2
-            negative_log_likelihood += float(
-                np.sum(np.where(update, np.log(expected) + length2 / (2.0 * expected), 0.0))
-            )
-            gain = [np.where(update, spread[i][0] / expected, 0.0) for i in range(n)]
-            motion = [value + gain[i][..., None] * wrong for i, value in enumerate(motion)]
-            spread = [[spread[i][j] - gain[i] * spread[0][j] for j in range(n)] for i in range(n)]
+            inverse = _inverse(expected)
+            negative_log_likelihood += float(np.sum(np.where(update, _surprise(expected, wrong, inverse), 0.0)))
+            ratio = [_divide(spread[i][0], expected, inverse) for i in range(n)]
+            gain = [np.where(update[..., None, None], value, 0.0) for value in ratio]
+            motion = [value + _apply(gain[i], wrong) for i, value in enumerate(motion)]
+            spread = [[spread[i][j] - _multiply(gain[i], spread[0][j]) for j in range(n)] for i in range(n)]
             first = here & ~started
             motion[0] = np.where(first[..., None], seen, motion[0])
+            spread[0][0] = np.where(first[..., None, None], error, spread[0][0])
             started |= here
         return motion, negative_log_likelihood, spread
 
@@ -144,13 +152,14 @@ class _Filter(Predictor):
 class Kalman(_Filter):
     """Kalman filter with nearly constant velocity (white acceleration noise).
 
-    Position and velocity are filtered over the observed rows; the forecast has constant velocity. x and y are
-    independent. Missing rows are skipped. The velocity of people observed once is zero. Deterministic: K = 1. The
-    forecast has the covariance of the predicted positions.
+    Position and velocity are filtered over the observed rows; the forecast has constant velocity. Missing rows are
+    skipped. The velocity of people observed once is zero. Deterministic: K = 1. The forecast has the covariance of the
+    predicted positions. Where the windows have covariances of the measured positions, they replace ``measurement``;
+    without them, x and y are independent.
 
     Fields:
         acceleration: square root of the spectral density of the acceleration [m s^-1.5].
-        measurement: standard deviation of a measured coordinate [m].
+        measurement: standard deviation of a measured coordinate [m], where the windows have no covariance.
         speed: initial standard deviation of a velocity component [m/s].
 
     The defaults are the maximum-likelihood values for six recordings outside the five ETH/UCY test sets: the training
@@ -259,12 +268,11 @@ def _step(n: int, dt: float) -> Floats:
     return np.array([[dt ** (j - i) / math.factorial(j - i) if j >= i else 0.0 for j in range(n)] for i in range(n)])
 
 
-def _noise(n: int, dt: float) -> Floats:
-    """Return the process noise covariance ``[n, n]`` of one row for unit density."""
+def _noise(n: int, dt: float, size: int) -> Floats:
+    """Return the process noise covariance ``[n, n, size, size]`` of one row for unit density."""
     left = [n - 1 - i for i in range(n)]
-    return np.array(
-        [[dt ** (p + q + 1) / ((p + q + 1) * math.factorial(p) * math.factorial(q)) for q in left] for p in left]
-    )
+    density = [[dt ** (p + q + 1) / ((p + q + 1) * math.factorial(p) * math.factorial(q)) for q in left] for p in left]
+    return np.array(density)[:, :, None, None] * np.eye(size)
 
 
 def _propagate(drift: Floats, rows: list[Floats]) -> list[Floats]:
@@ -284,6 +292,39 @@ def _predict_covariance(drift: Floats, spread: list[list[Floats]], noise: Floats
     columns = [_propagate(drift, list(column)) for column in zip(*spread, strict=True)]
     rows = [_propagate(drift, list(row)) for row in zip(*columns, strict=True)]
     return [[value + noise[i, j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
+
+
+def _multiply(block: Floats, other: Floats) -> Floats:
+    """Return the product of matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``."""
+    return np.asarray(block * other if block.shape[-1] == 1 else block @ other)
+
+
+def _divide(block: Floats, divisor: Floats, inverse: Floats) -> Floats:
+    """Return a matrix times the inverse of another; numbers ``[..., 1, 1]`` are divided, which rounds once."""
+    return np.asarray(block / divisor if block.shape[-1] == 1 else block @ inverse)
+
+
+def _apply(block: Floats, vector: Floats) -> Floats:
+    """Return the product of matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``, and vectors ``[..., 2]``."""
+    return np.asarray(block[..., 0] * vector if block.shape[-1] == 1 else (block @ vector[..., None])[..., 0])
+
+
+def _inverse(block: Floats) -> Floats:
+    """Return the inverse of symmetric matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``."""
+    if block.shape[-1] == 1:
+        return np.asarray(1.0 / block)
+    a, b, d = block[..., 0, 0], block[..., 0, 1], block[..., 1, 1]
+    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-b, a], axis=-1)], axis=-2)
+    return np.asarray(adjugate / (a * d - b * b)[..., None, None])
+
+
+def _surprise(expected: Floats, wrong: Floats, inverse: Floats) -> Floats:
+    """Return the negative log-likelihood of innovations ``[..., 2]``, without ``log(2 pi)``."""
+    distance = 0.5 * np.sum(wrong * _apply(inverse, wrong), axis=-1)
+    if expected.shape[-1] == 1:
+        return np.asarray(np.log(expected[..., 0, 0]) + distance)
+    size = expected[..., 0, 0] * expected[..., 1, 1] - expected[..., 0, 1] * expected[..., 1, 0]
+    return np.asarray(0.5 * np.log(size) + distance)
 
 
 def _rows_first(values: NDArray) -> NDArray:  # type: ignore[type-arg]

@@ -140,7 +140,7 @@ class Live:
 
     def update(
         self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None,
-        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
+        covariances: ArrayLike | None = None, radii: ArrayLike | None = None, existence: ArrayLike | None = None,
     ) -> None:  # fmt: skip
         """Add a row: identities ``[N]`` of any hashable type, and positions ``[N, 2]`` [m].
 
@@ -155,15 +155,18 @@ class Live:
                 ``allowed_lateness`` is put at its time, as if it had come in order; an older one is dropped. Frames
                 with equal stamps, as of several cameras, are one frame of all their people; who is in both is where the
                 one that came last says.
-            covariances: ``[N, 2, 2]`` [m^2] of the positions. The last one of a person is added to the covariances of
-                the forecast, if the predictor has them; predictors do not read it.
-            radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of a learned
-                predictor keep apart by the sum of radii.
+            covariances: ``[N, 2, 2]`` [m^2] of the positions. Kalman filters and the filtered line of AnchorNet trust
+                positions accordingly, and covariances of forecasts contain them. In frames without them, the predictor
+                assumes a noise of its own.
+            radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of learned
+                predictors keep apart by the sum of radii, and crowd models simulate people of these sizes.
+            existence: ``[N]`` probability that there is a person, in the sense of a tracker, above 0 and at most 1; NaN
+                and None mean 1. It is in the forecast, and decays while a person is hidden.
 
         Raises:
             InputError: shapes do not match, a position is not finite, an identity is wrong or duplicate, the time stamp
-                is not a finite number, a covariance is not symmetric and positive semidefinite, or a radius is not
-                above 0. The frame then has no effect.
+                is not a finite number, a covariance is not symmetric and positive semidefinite, a radius is not
+                above 0, or an existence probability is not above 0 and at most 1. The frame then has no effect.
 
         >>> from crowdbot.prediction import ConstantVelocity
         >>> live = Live(ConstantVelocity(), dt=0.1)
@@ -172,7 +175,7 @@ class Live:
         >>> live.past().position[0, :, 0, 0].round(2).tolist()
         [0.0, 0.1, 0.2, 0.3]
         """
-        frame = TrackerFrame.of(ids, position, robots, time, covariances, radii)
+        frame = TrackerFrame.of(ids, position, robots, time, covariances, radii, existence)
         with self._reading:
             self._history.add(frame)
         self._warn()
@@ -205,11 +208,7 @@ class Live:
             self.latency = clock.perf_counter() - begin
             self._remark(memory)
         self._warn()
-        covariance = forecast.covariance
-        if covariance is not None:
-            moving = np.any(covariance, axis=(3, 4))[..., None, None]  # robots with a plan are where the plan says
-            covariance = np.where(moving, covariance + rows.covariance[None, None], 0.0)
-        return dataclasses.replace(forecast, existence=rows.existence[None], covariance=covariance)
+        return dataclasses.replace(forecast, existence=rows.existence[None])
 
     def _warn(self) -> None:
         """Warn the caller of a public method of what is new."""
@@ -254,6 +253,7 @@ class Live:
         past = Windows(
             rows.position[None], rows.present[None], nobody, rows.robot[None], rows.id[None], frame[None], self.dt,
             "live", "live stream", self.walls, radius=None if rows.radius is None else rows.radius[None],
+            covariance=None if rows.covariance is None else rows.covariance[None],
         )  # fmt: skip
         return (past.with_plans(known) if known else past), rows, count
 

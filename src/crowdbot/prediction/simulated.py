@@ -48,7 +48,7 @@ class Simulated(Predictor):
         budget: number of simulated candidate crowds per window.
         free: names of the calibrated parameters; empty means all.
         prior: population prior of the parameters.
-        radius: radius of people [m].
+        radius: radius of people [m], where the windows have none; a calibration of the radius starts there.
         substep: maximum time step of the simulation [s]; force models require 0.05 or less.
 
     Raises:
@@ -95,6 +95,11 @@ class Simulated(Predictor):
             radius=float(rollout.radius),
             substep=rollout.substep,
         )
+
+    @property
+    def history(self) -> float:  # type: ignore[override]
+        """Observed seconds that the goal reads; 0: it reads all rows."""
+        return cast(Goal, self.goal).history
 
     @property
     def rollout(self) -> Rollout:

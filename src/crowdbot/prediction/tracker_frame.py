@@ -27,6 +27,7 @@ class TrackerFrame:
         time: time stamp [s], or None.
         covariance: ``[N, 2, 2]`` [m^2] of the positions, or None.
         radius: ``[N]`` [m], NaN where unknown.
+        existence: ``[N]`` probability that there is a person, 1 where the tracker does not say.
     """
 
     labels: list[Hashable]
@@ -35,11 +36,12 @@ class TrackerFrame:
     time: float | None
     covariance: Floats | None
     radius: Floats
+    existence: Floats
 
     @classmethod
     def of(
         cls, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None,
-        covariances: ArrayLike | None = None, radii: ArrayLike | None = None,
+        covariances: ArrayLike | None = None, radii: ArrayLike | None = None, existence: ArrayLike | None = None,
     ) -> Self:  # fmt: skip
         """Return a frame of checked values, see :meth:`Live.update`.
 
@@ -60,7 +62,8 @@ class TrackerFrame:
             )
         return cls(
             labels, place, _checked_labels(robots, "robots"), _checked_stamp(time),
-            _checked_covariances(covariances, len(labels)), _checked_radii(radii, len(labels)),
+            _checked_covariances(covariances, labels), _checked_radii(radii, labels),
+            _checked_existence(existence, labels),
         )  # fmt: skip
 
 
@@ -140,7 +143,7 @@ def _checked_stamp(time: object) -> float | None:
     return float(time)
 
 
-def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | None:
+def _checked_covariances(covariances: ArrayLike | None, labels: list[Hashable]) -> Floats | None:
     """Return covariances ``[N, 2, 2]`` [m^2], or None.
 
     Raises:
@@ -148,6 +151,7 @@ def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | 
     """
     if covariances is None:
         return None
+    count = len(labels)
     try:
         spread = np.array(covariances, dtype=float)
     except (TypeError, ValueError):
@@ -155,32 +159,65 @@ def _checked_covariances(covariances: ArrayLike | None, count: int) -> Floats | 
     if count == 0 and spread.size == 0:
         return np.zeros((0, 2, 2))
     if spread.shape != (count, 2, 2):
-        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2]")
+        raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2] [m^2]")
     size = np.abs(spread).max(axis=(1, 2))
-    wrong = ~np.isfinite(size) | (np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size)
-    smallest = np.linalg.eigvalsh(np.where(wrong[:, None, None], 0.0, spread))[:, 0]
-    wrong |= smallest < -1e-6 * np.where(np.isfinite(size), size, 0.0)
+    infinite = ~np.isfinite(size)
+    skew = np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size
+    smallest = np.linalg.eigvalsh(np.where(infinite[:, None, None], 0.0, spread))[:, 0]
+    negative = smallest < -1e-6 * np.where(infinite, 0.0, size)
+    wrong = infinite | skew | negative
     if wrong.any():
-        bad = spread[int(np.argmax(wrong))].tolist()
-        raise InputError(f"live: covariance {bad} is not finite, symmetric and positive semidefinite")
-    return spread
+        bad = int(np.argmax(wrong))
+        why = "not finite" if infinite[bad] else "not symmetric" if skew[bad] else "not positive semidefinite"
+        raise InputError(
+            f"live: covariance of {labels[bad]!r} is {why}: {spread[bad].tolist()}; it must be finite, symmetric and"
+            " positive semidefinite [m^2]"
+        )
+    return np.asarray(0.5 * (spread + np.swapaxes(spread, 1, 2)))
 
 
-def _checked_radii(radii: ArrayLike | None, count: int) -> Floats:
+def _checked_radii(radii: ArrayLike | None, labels: list[Hashable]) -> Floats:
     """Return radii ``[N]`` [m], NaN where unknown.
 
     Raises:
         InputError: the shape is wrong, or a radius is not above 0 and finite.
     """
-    if radii is None:
-        return np.full(count, np.nan)
+    found = _numbers(radii, labels, "radii", "radius [m]", np.nan)
+    wrong = ~np.isnan(found) & ~((found > 0.0) & (found < np.inf))
+    if wrong.any():
+        bad = int(np.argmax(wrong))
+        raise InputError(
+            f"live: radius {found[bad]} m of {labels[bad]!r} must be above 0 and finite, or NaN if it is unknown"
+        )
+    return found
+
+
+def _checked_existence(existence: ArrayLike | None, labels: list[Hashable]) -> Floats:
+    """Return probabilities ``[N]``, 1 where unknown.
+
+    Raises:
+        InputError: the shape is wrong, or a probability is not above 0 and at most 1.
+    """
+    found = _numbers(existence, labels, "existence", "probability", 1.0)
+    found = np.where(np.isnan(found), 1.0, found)
+    wrong = ~((found > 0.0) & (found <= 1.0))
+    if wrong.any():
+        bad = int(np.argmax(wrong))
+        raise InputError(
+            f"live: existence {found[bad]} of {labels[bad]!r} must be above 0 and at most 1; leave people who do not"
+            " exist out of the frame"
+        )
+    return found
+
+
+def _numbers(values: ArrayLike | None, labels: list[Hashable], name: str, what: str, unknown: float) -> Floats:
+    """Return one number for each identity, ``unknown`` if there are none."""
+    if values is None:
+        return np.full(len(labels), unknown)
     try:
-        found = np.array(radii, dtype=float)
+        found = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise InputError("live: radii must be numbers [N]") from None
-    if found.shape != (count,):
-        raise InputError(f"live: radii have shape {list(found.shape)}, they must be [{count}]")
-    bad = found[~np.isnan(found) & ~((found > 0.0) & (found < np.inf))]
-    if len(bad):
-        raise InputError(f"live: radius {bad[0]} m must be above 0 and finite, or NaN if it is unknown")
+        raise InputError(f"live: {name} must be numbers [N], the {what} of each identity") from None
+    if found.shape != (len(labels),):
+        raise InputError(f"live: {name} have shape {list(found.shape)}, they must be [{len(labels)}]")
     return found

@@ -32,6 +32,7 @@ class _Row(NamedTuple):
     place: Floats
     robots: frozenset[int]
     covariance: Floats | None
+    existence: Floats
 
 
 class TrackedRows(NamedTuple):
@@ -42,8 +43,9 @@ class TrackedRows(NamedTuple):
         present: ``[T, A]``.
         robot: ``[A]``.
         id: ``[A]``, sorted.
-        existence: ``[A]`` probability that an agent is still there: 1 if it is in the last row.
-        covariance: ``[A, 2, 2]`` [m^2] of the last observed position of each agent; 0 where the tracker gave none.
+        existence: ``[A]`` probability that an agent is there: the last one of the tracker, which decays while the agent
+            is hidden.
+        covariance: ``[T, A, 2, 2]`` [m^2] of the positions, NaN where the tracker gave none; None if there are none.
         radius: ``[A]`` [m] last known radius of each agent, NaN where unknown; None if all are.
     """
 
@@ -52,7 +54,7 @@ class TrackedRows(NamedTuple):
     robot: Bools
     id: Ints
     existence: Floats
-    covariance: Floats
+    covariance: Floats | None
     radius: Floats | None
 
 
@@ -96,7 +98,7 @@ class TrackerHistory:
         order = np.argsort(who)
         machines = frozenset(self._number(label) for label in frame.robots)
         spread = None if frame.covariance is None else frame.covariance[order]
-        row = _Row(stamp, who[order], frame.position[order], machines, spread)
+        row = _Row(stamp, who[order], frame.position[order], machines, spread, frame.existence[order])
         known = ~np.isnan(frame.radius)
         for number, size in zip(who[known].tolist(), frame.radius[known].tolist(), strict=True):
             if stamp >= self._radii.get(number, (-np.inf, 0.0))[0]:
@@ -158,26 +160,30 @@ class TrackerHistory:
         track = self._tracks(id)
         times = self._times()
         position, present = np.zeros((len(times), len(id), 2)), np.zeros((len(times), len(id)), dtype=np.bool_)
-        existence = np.ones(len(id))
+        known = any(row.covariance is not None for row in self._rows)
+        covariance = np.full((len(times), len(id), 2, 2), np.nan) if known else None
+        existence = self._last_existence(id)
         for slot, number in enumerate(id):
-            seen, place = track[int(number)]
-            position[:, slot], present[:, slot] = self._at(times, seen, place)
+            seen, place, spread = track[int(number)]
+            position[:, slot], present[:, slot], own = self._at(times, seen, place, spread)
+            if covariance is not None:
+                covariance[:, slot] = own
             hidden = times[-1] - seen[-1]
             if hidden > 1e-9:
                 position[-1, slot], present[-1, slot] = _coast(seen, place, hidden), True
-                existence[slot] = 0.5 ** (2.0 * hidden / self.coast)
+                existence[slot] *= 0.5 ** (2.0 * hidden / self.coast)
+                if covariance is not None:
+                    covariance[-1, slot] = _coasted_covariance(seen, spread, hidden)
         robots: frozenset[int] = frozenset().union(*(row.robots for row in self._rows))
-        return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence, self._last_covariances(id),
+        return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence, covariance,
                            self._last_radii(id))  # fmt: skip
 
-    def _last_covariances(self, id: Ints) -> Floats:
-        """Return covariances ``[A, 2, 2]`` of the last observed positions."""
-        found = np.zeros((len(id), 2, 2))
-        if all(row.covariance is None for row in self._rows):
-            return found
+    def _last_existence(self, id: Ints) -> Floats:
+        """Return the existence probabilities ``[A]`` in the last frames of agents."""
+        found = np.ones(len(id))
         for row in self._rows:  # later rows overwrite earlier ones
             slot = np.flatnonzero(np.isin(id, row.who))
-            found[slot] = 0.0 if row.covariance is None else row.covariance[np.searchsorted(row.who, id[slot])]
+            found[slot] = row.existence[np.searchsorted(row.who, id[slot])]
         return found
 
     def _last_radii(self, id: Ints) -> Floats | None:
@@ -222,19 +228,20 @@ class TrackerHistory:
         count = min(self.observe, max(count, min(2, len(self._rows))))
         return now - self.dt * np.arange(count - 1, -1, -1.0)
 
-    def _tracks(self, id: Ints) -> dict[int, tuple[Floats, Floats]]:
-        """Return times ``[N]`` and positions ``[N, 2]`` of agents by number, since their last jump."""
+    def _tracks(self, id: Ints) -> dict[int, tuple[Floats, Floats, Floats]]:
+        """Return times ``[N]``, positions ``[N, 2]`` and covariances ``[N, 2, 2]`` of agents, since their last jump."""
         if not len(id):
             return {}
         who = np.concatenate([row.who for row in self._rows])
         order = np.argsort(who, kind="stable")
         time = np.repeat([row.time for row in self._rows], [len(row.who) for row in self._rows])[order]
         place = np.concatenate([row.place for row in self._rows])[order]
+        spread = np.concatenate([_covariances(row) for row in self._rows])[order]
         who = who[order]
         first, last = (np.searchsorted(who, id, side=side) for side in ("left", "right"))
         if np.isfinite(self.plausibility.max_speed):
             self._cut_at_jumps(id, first, last, who, time, place)
-        return {int(n): (time[a:b], place[a:b]) for n, a, b in zip(id, first, last, strict=True)}
+        return {int(n): (time[a:b], place[a:b], spread[a:b]) for n, a, b in zip(id, first, last, strict=True)}
 
     def _cut_at_jumps(self, id: Ints, first: Ints, last: Ints, who: Ints, time: Floats, place: Floats) -> None:
         """Let the tracks ``first[A]`` to ``last[A]``, in observations sorted by person, begin after their last jump."""
@@ -250,8 +257,8 @@ class TrackerHistory:
                 self.plausibility.report_jump(self._labels[int(number)], float(length[step]), float(gap[step]))
             first[slot] = own[-1]
 
-    def _at(self, times: Floats, seen: Floats, place: Floats) -> tuple[Floats, Bools]:
-        """Return positions ``[T, 2]`` at times ``[T]``, and whether they are known."""
+    def _at(self, times: Floats, seen: Floats, place: Floats, spread: Floats) -> tuple[Floats, Bools, Floats]:
+        """Return positions ``[T, 2]`` at times ``[T]``, whether they are known, and their covariances ``[T, 2, 2]``."""
         after = np.minimum(np.searchsorted(seen, times - 1e-6 * self.dt), len(seen) - 1)
         exact = np.abs(seen[after] - times) <= 1e-6 * self.dt
         before = np.maximum(after - 1, 0)
@@ -261,10 +268,13 @@ class TrackerHistory:
         between = place[before] + share * (place[after] - place[before])
         found = np.where(exact[:, None], place[after], between)
         known = exact | inside
+        start, end = (np.square(part)[..., None] for part in (1.0 - share, share))
+        noise = np.where(exact[:, None, None], spread[after], start * spread[before] + end * spread[after])
         if self._stamped and len(seen) > 1 and len(times) > 1 and not known[:-1].any():  # observed for less than dt
             found[-2] = found[-1] - self.dt * _velocity(seen, place)
             known[-2] = bool(exact[-1])
-        return np.where(known[:, None], found, 0.0), known
+            noise[-2] = _coasted_covariance(seen, spread, -self.dt)
+        return np.where(known[:, None], found, 0.0), known, np.where(known[:, None, None], noise, np.nan)
 
 
 def _merged(row: _Row, other: _Row) -> _Row:
@@ -273,18 +283,36 @@ def _merged(row: _Row, other: _Row) -> _Row:
     number, at = np.unique(who, return_index=True)  # the first occurrence
     spread = None
     if row.covariance is not None or other.covariance is not None:
-        both = [np.zeros((len(one.who), 2, 2)) if one.covariance is None else one.covariance for one in (other, row)]
-        spread = np.concatenate(both)[at]
-    return _Row(row.time, number, np.concatenate([other.place, row.place])[at], row.robots | other.robots, spread)
+        spread = np.concatenate([_covariances(other), _covariances(row)])[at]
+    place, existence = (np.concatenate(both)[at] for both in ((other.place, row.place), (other.existence,
+                                                                                         row.existence)))  # fmt: skip
+    return _Row(row.time, number, place, row.robots | other.robots, spread, existence)
+
+
+def _covariances(row: _Row) -> Floats:
+    """Return the covariances ``[N, 2, 2]`` of a row, NaN where the tracker gave none."""
+    return np.full((len(row.who), 2, 2), np.nan) if row.covariance is None else row.covariance
+
+
+def _velocity_base(seen: Floats) -> tuple[int, float]:
+    """Return the observation from which the velocity of a track is measured, and the time since then [s]."""
+    first = min(int(np.searchsorted(seen, seen[-1] - VELOCITY_TIME - 1e-9)), max(0, len(seen) - 2))
+    return first, float(seen[-1] - seen[first])
 
 
 def _velocity(seen: Floats, place: Floats) -> Floats:
     """Return the mean velocity ``[2]`` [m/s] of the last 0.8 s of a track; 0 for a single observation."""
-    first = min(int(np.searchsorted(seen, seen[-1] - VELOCITY_TIME - 1e-9)), max(0, len(seen) - 2))
-    time = float(seen[-1] - seen[first])
+    first, time = _velocity_base(seen)
     return np.asarray((place[-1] - place[first]) / time if time > 0.0 else np.zeros(2))
 
 
 def _coast(seen: Floats, place: Floats, hidden: float) -> Floats:
     """Return the position ``[2]`` [m] of an agent some time after the last observation."""
     return np.asarray(place[-1] + hidden * _velocity(seen, place))
+
+
+def _coasted_covariance(seen: Floats, spread: Floats, ahead: float) -> Floats:
+    """Return the covariance ``[2, 2]`` [m^2] of a position that :func:`_velocity` extrapolates by ``ahead`` [s]."""
+    first, time = _velocity_base(seen)
+    ratio = ahead / time if time > 0.0 else 0.0
+    return np.asarray((1.0 + ratio) ** 2 * spread[-1] + ratio**2 * spread[first])

@@ -148,6 +148,11 @@ class EnvironmentLayout(Goal):
         prior = 1.0 + np.bincount(nearest, minlength=len(centre))
         return cls(layout.routes.exits, solid, **{"prior": prior, "pace": pace, **values})
 
+    @property
+    def history(self) -> float:
+        """Observed time that the goal reads [s]; 0: all rows."""
+        return 0.0 if self.pace is None else self.pace.history
+
     def velocity(self, past: Windows) -> Floats:
         """Return the velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
         return steady_velocity(past) if self.pace is None else self.pace.velocity(past)

@@ -68,6 +68,11 @@ class Goal(abc.ABC):
     learns: ClassVar[bool] = False
     """Whether the goal is specific to a place: created with :meth:`learn` or with values, not by name."""
 
+    @property
+    def history(self) -> float:
+        """Observed time that the goal reads [s]; 0: all rows, whatever their time step."""
+        return 0.0
+
     @abc.abstractmethod
     def resolve(self, past: Windows) -> Floats:
         """Return the most probable goal of each person ``[W, A, 2]`` [m]; 0 for people absent at the last row."""

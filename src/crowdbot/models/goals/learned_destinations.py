@@ -57,7 +57,7 @@ class LearnedDestinations(Goal):
         horizon: distance of the goals as time at the learned velocity [s].
 
     Raises:
-        InputError: a value is not allowed; on use, windows have a different time step or are in pixels.
+        InputError: a value is not allowed; on use, windows are in pixels.
 
     Source: based on Bennewitz et al. (2005), who cluster whole tracks.
     """
@@ -114,6 +114,11 @@ class LearnedDestinations(Goal):
             *(np.ascontiguousarray(np.concatenate(column)[::every]) for column in zip(*parts, strict=True))
         )
         return cls(exits, samples, pace, **values)
+
+    @property
+    def history(self) -> float:
+        """Observed time that the goal reads [s]."""
+        return self.pace.history
 
     def velocity(self, past: Windows) -> Floats:
         """Return the learned velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""

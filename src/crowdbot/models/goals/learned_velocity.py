@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, Windows, fill_gaps, slice_rows, steady_velocity
+from crowdbot.data import Trajectories, Windows, fill_gaps, resample_rows, slice_rows, steady_velocity
 from crowdbot.typing import Floats
 
 RIDGE = 0.01
@@ -30,11 +30,16 @@ class LearnedVelocity:
 
     Fields:
         weight: ``[N, N]``: the end of row n - 1 contains the weights of the last n displacements, oldest first.
-        dt: time step of the recordings [s]; windows must have the same time step.
+        dt: time step of the recordings [s].
     """
 
     weight: Floats
     dt: float
+
+    @property
+    def history(self) -> float:
+        """Observed time that the weights read [s]."""
+        return len(self.weight) * self.dt
 
     @classmethod
     def learn(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
@@ -64,18 +69,17 @@ class LearnedVelocity:
     def velocity(self, past: Windows) -> Floats:
         """Return ``[W, A, 2]`` [m/s]; 0 for people observed only at the last row or absent there.
 
+        Windows with another time step are interpolated at the time step of the recordings.
+
         Raises:
-            InputError: the windows are in pixels, or have a different time step.
+            InputError: the windows are in pixels.
         """
         if past.units != "m":
             raise InputError(
                 f"goals: {past.source} is in {past.units}, the goal was learned in m; convert it to metres"
             )
         if not abs(past.dt - self.dt) <= 0.01 * self.dt:
-            raise InputError(
-                f"goals: {past.source} has steps of {past.dt:.4g} s, but the goal was learned with steps of"
-                f" {self.dt:.4g} s; resample one of them"
-            )
+            past = resample_rows(past, self.dt)
         most = len(self.weight)
         known = slice_rows(fill_gaps(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
         steady = steady_velocity(known)

@@ -51,6 +51,8 @@ class AgentHistories(NamedTuple):
     """``[N, 8, 2]`` [m] positions; missing rows are interpolated or extrapolated."""
     seen: Bools
     """``[N, 8]``."""
+    noise: Floats
+    """``[N, 8]`` [m^2] variance of a measured coordinate, the mean of both; NaN where the tracker does not say."""
     near: Floats
     """``[N, 12, 2]`` [m] positions of neighbors, nearest first; 0 if there is none."""
     pace: Floats
@@ -65,8 +67,8 @@ class AgentHistories(NamedTuple):
     def at(self, rows: NDArray[np.int64] | slice) -> AgentHistories:
         """Return some of the people."""
         return AgentHistories(
-            self.past[rows], self.seen[rows], self.near[rows], self.pace[rows], self.later[rows], self.known[rows],
-            self.there[rows],
+            self.past[rows], self.seen[rows], self.noise[rows], self.near[rows], self.pace[rows], self.later[rows],
+            self.known[rows], self.there[rows],
         )  # fmt: skip
 
     def within(self, reach: float) -> AgentHistories:
@@ -175,7 +177,7 @@ def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], N
 
     Other time steps are interpolated. Neighbors are the nearest agents that were observed at two rows or more.
     """
-    position, seen = _at_steps(past)
+    position, seen, noise = _at_steps(past)
     window, slot = np.nonzero(past.present[:, -1])
     now = position[window, -1, slot]
     own = seen[window, :, slot]
@@ -196,8 +198,8 @@ def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], N
         later = np.where(known[..., None, None], planned - now[:, None, None], later)
     zero = there[..., None]
     people = AgentHistories(
-        track, own, np.where(zero, place, 0.0), np.where(zero, pace, 0.0), np.where(zero[..., None], later, 0.0),
-        known & there, there,
+        track, own, noise[window, :, slot], np.where(zero, place, 0.0), np.where(zero, pace, 0.0),
+        np.where(zero[..., None], later, 0.0), known & there, there,
     )  # fmt: skip
     return people, window, slot
 
@@ -211,14 +213,21 @@ def planned_positions(past: Windows, step: int) -> Floats:
     return one if share < 1e-6 else one + share * (past.plan_at(low + 1) - one)
 
 
-def _at_steps(past: Windows) -> tuple[Floats, Bools]:
-    """Return positions ``[W, 8, A, 2]`` [m] at steps of 0.4 s, and the mask ``[W, 8, A]`` of observed ones."""
+def _at_steps(past: Windows) -> tuple[Floats, Bools, Floats]:
+    """Return positions ``[W, 8, A, 2]`` [m] at steps of 0.4 s, the mask ``[W, 8, A]`` of observed ones, and variances.
+
+    The variances ``[W, 8, A]`` [m^2] are those of a measured coordinate, NaN where they are unknown.
+    """
     W, T, A, _ = past.position.shape
     position, seen = np.zeros((W, ROWS, A, 2)), np.zeros((W, ROWS, A), dtype=np.bool_)
+    noise = np.full((W, ROWS, A), np.nan)
+    own = None if past.covariance is None else 0.5 * (past.covariance[..., 0, 0] + past.covariance[..., 1, 1])
     if abs(past.dt - STEP) < 1e-6:
         kept = min(T, ROWS)
         position[:, ROWS - kept :], seen[:, ROWS - kept :] = past.position[:, T - kept :], past.present[:, T - kept :]
-        return position, seen
+        if own is not None:
+            noise[:, ROWS - kept :] = own[:, T - kept :]
+        return position, seen, noise
     known = fill_gaps(past)
     for back in range(ROWS):
         row = T - 1 - back * STEP / past.dt
@@ -231,8 +240,10 @@ def _at_steps(past: Windows) -> tuple[Floats, Bools]:
         here = known.present[:, low] & known.present[:, high]
         position[:, -1 - back] = np.where(here[..., None], one + share * (other - one), 0.0)
         seen[:, -1 - back] = here
+        if own is not None:
+            noise[:, -1 - back] = (1.0 - share) ** 2 * own[:, low] + share**2 * own[:, high]
     _extend_short_tracks(known, position, seen)
-    return position, seen
+    return position, seen, noise
 
 
 def _extend_short_tracks(known: Windows, position: Floats, seen: Bools) -> None:

@@ -4,6 +4,7 @@ The last displacement, the base of the network, is inaccurate in measured tracks
 :class:`~crowdbot.prediction.Kalman` has fixed noise; here the noise is fitted to each track: a grid of filters runs
 over it, and their lines are averaged by likelihood (multiple-model estimation, Magill 1965). The likelihood also says
 how probable it is that the person walks straight and the track is noisy. There a line is better than the network.
+Where the tracker gives covariances, they replace the noise of the measurements on the grid.
 """
 
 from __future__ import annotations
@@ -35,13 +36,14 @@ FilteredTracks = tuple[Floats, Floats, Floats]
 
 @kernel
 def filter_tracks(
-    past: Floats, seen: Bools, dt: float, acceleration: Floats, measurement: Floats, speed: float
+    past: Floats, seen: Bools, given: Floats, dt: float, acceleration: Floats, measurement: Floats, speed: float
 ) -> FilteredTracks:  # pragma: no cover - compiled
     """Return positions ``[N, 2]`` [m] at the last row, velocities ``[N, 2]`` [m/s], and how straight and noisy ``[N]``.
 
     Args:
         past: ``[N, T, 2]`` [m] tracks.
         seen: ``[N, T]`` mask of the observed rows.
+        given: ``[N, T]`` [m^2] variance of a measured coordinate, NaN where ``measurement`` counts.
         dt: time step [s].
         acceleration, measurement: noise on the grid, see :class:`~crowdbot.prediction.Kalman`.
         speed: initial standard deviation of a velocity component [m/s].
@@ -52,9 +54,15 @@ def filter_tracks(
     state, likelihood = np.empty((G, 4)), np.empty(G)
     for n in range(N):
         largest = -np.inf
+        known, rows = 0.0, 0  # mean standard deviation of the tracker
+        for t in range(T):
+            if seen[n, t] and not np.isnan(given[n, t]):
+                known += math.sqrt(given[n, t])
+                rows += 1
+        known = known / rows if rows else 0.0
         for g in range(G):
             push = acceleration[g // len(measurement)] ** 2
-            noise = measurement[g % len(measurement)] ** 2
+            assumed = measurement[g % len(measurement)] ** 2
             x = y = u = v = a = b = c = total = 0.0
             started = False
             for t in range(T):
@@ -66,6 +74,7 @@ def filter_tracks(
                     c += push * dt
                 if not seen[n, t]:
                     continue
+                noise = assumed if np.isnan(given[n, t]) else given[n, t]
                 if not started:
                     x, y, a, b, c, started = past[n, t, 0], past[n, t, 1], noise, 0.0, speed**2, True
                     continue
@@ -88,7 +97,8 @@ def filter_tracks(
             likelihood[g] = math.exp(likelihood[g] - largest)
             whole += likelihood[g]
         for g in range(G):
-            if acceleration[g // len(measurement)] < STRAIGHT and measurement[g % len(measurement)] > NOISY:
+            deviation = known if rows else measurement[g % len(measurement)]
+            if acceleration[g // len(measurement)] < STRAIGHT and deviation > NOISY:
                 straight[n] += likelihood[g] / whole
             for k in range(2):
                 place[n, k] += likelihood[g] / whole * state[g, k]
@@ -96,23 +106,26 @@ def filter_tracks(
     return place, velocity, straight
 
 
-def filtered_lines(past: Floats, seen: Bools, heading: Floats, basis: Floats) -> tuple[Floats, Floats]:
+def filtered_lines(past: Floats, seen: Bools, noise: Floats, heading: Floats, basis: Floats) -> tuple[Floats, Floats]:
     """Return coefficients ``[N, D]`` of filtered lines in the frames of people, and how straight and noisy ``[N]``.
 
     Args:
         past: ``[N, 8, 2]`` [m] tracks relative to their last position.
         seen: ``[N, 8]`` mask of the observed rows.
+        noise: ``[N, 8]`` [m^2] variance of a measured coordinate, NaN where the noise is fitted to the track.
         heading: ``[N, 2]`` directions of the frames.
         basis: ``[D, 24]`` residuals of the coefficients, orthonormal.
 
     >>> straight = np.linspace([-2.8, 0.0], [0.0, 0.0], 8)[None]
-    >>> line, noisy = filtered_lines(straight, np.ones((1, 8), bool), np.array([[1.0, 0.0]]), np.eye(24)[:6])
+    >>> unknown = np.full((1, 8), np.nan)
+    >>> line, noisy = filtered_lines(straight, np.isnan(unknown), unknown, np.array([[1.0, 0.0]]), np.eye(24)[:6])
     >>> bool(np.allclose(line, 0.0, atol=1e-3)), bool(noisy[0] < 0.01)
     (True, True)
     """
     start, velocity, straight = filter_tracks(
-        np.ascontiguousarray(past), np.ascontiguousarray(seen), STEP, ACCELERATION, MEASUREMENT, Kalman().speed
-    )
+        np.ascontiguousarray(past), np.ascontiguousarray(seen), np.ascontiguousarray(noise), STEP, ACCELERATION,
+        MEASUREMENT, Kalman().speed,
+    )  # fmt: skip
     ahead = np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None]
     step = past[:, -1] - past[:, -2]
     away = start[:, None] + (STEP * velocity - step)[:, None] * ahead

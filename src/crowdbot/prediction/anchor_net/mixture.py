@@ -53,8 +53,9 @@ def future_covariances(
 def total_covariances(past: Windows, mixture: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
     """Return covariances ``[W, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
 
-    They are the weighted sum of those of the mixture ``[N, T, 2, 2]`` and of the Kalman filter. People observed once
-    have that of the filter, whose velocity is unknown then.
+    They are the weighted sum of those of the mixture ``[N, T, 2, 2]`` and of the Kalman filter, and that of the last
+    position if the tracker gives it, since the futures start there. People observed once have that of the filter, whose
+    velocity is unknown then.
     """
     W, A = past.present.shape[0], past.present.shape[2]
     filtered = Kalman().predict(past, mixture.shape[1]).covariance
@@ -62,7 +63,10 @@ def total_covariances(past: Windows, mixture: Floats, window: NDArray[np.int64],
     own = np.zeros((W, mixture.shape[1], A, 2, 2))
     own[window, :, slot] = mixture
     once = (past.present.sum(axis=1) == 1)[:, None, :, None, None]
-    found = np.where(once, filtered, WIDENED * own + FILTERED * filtered)
+    found = WIDENED * own + FILTERED * filtered
+    if past.covariance is not None:
+        found += np.where(past.present[:, -1, :, None, None], np.nan_to_num(past.covariance[:, -1]), 0.0)[:, None]
+    found = np.where(once, filtered, found)
     if past.plan is not None:
         for step in range(mixture.shape[1]):
             known = ~np.isnan(past.plan_at(step + 1)).any(axis=-1)

@@ -124,6 +124,7 @@ class AnchorNet(Predictor):
             windows have no radii; 0 disables joint futures.
 
     The forecast has the covariance of the mixture of futures around the single trajectory, widened for other places.
+    Where the windows have covariances of the measured positions, the filters and this covariance use them.
 
     Forecasts are equivariant to translations and rotations, except for people who never moved. Other time steps up to
     0.7 s are interpolated; with longer ones, or in pixels, a baseline is used, with a warning. Beyond 4.8 s the
@@ -292,7 +293,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     walked = (people.seen.sum(axis=1) > 1)[:, None]
     single = out[:, K * D + K : K * D + K + D] * numbers["spread"]
     if "line_share" in numbers:
-        line, straight = filtered_lines(people.past, people.seen, heading, numbers["basis"])
+        line, straight = filtered_lines(people.past, people.seen, people.noise, heading, numbers["basis"])
         single = line + own * (1.0 - numbers["line_share"] * straight[:, None]) * (single - line)
     return _Bends(
         np.where(walked[..., None], mode[row, order], 0.0),

@@ -211,7 +211,7 @@ def augment_people(
     now = past[:, -1:]
     zero = there[..., None]
     people = AgentHistories(
-        past - now, seen, np.where(zero, near - now, 0.0), np.where(zero, pace, 0.0),
+        past - now, seen, plain.noise, np.where(zero, near - now, 0.0), np.where(zero, pace, 0.0),
         np.where(zero[..., None], later * factor[:, None, None] - now[:, None], 0.0), knows & there, there,
     )  # fmt: skip
     return people, ahead, now
