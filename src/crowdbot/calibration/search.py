@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .search_state import SearchState
+from .time_limit import TimeLimit
 
 __all__ = ["Floats", "Function", "Integers", "Search", "SearchResult", "check_box"]
 
@@ -73,6 +74,7 @@ class Search(ABC):
         rngs: Sequence[np.random.Generator],
         budget: int,
         start: Floats,
+        limit: TimeLimit | None = None,
     ) -> SearchResult:
         """Return the best candidate of every problem among at most ``budget`` evaluations.
 
@@ -84,6 +86,7 @@ class Search(ABC):
             budget: maximum number of whole-crowd candidates evaluated in each problem.
             start: ``[S, W, N, D]``, S >= 1, evaluated first, even outside the box; candidates derived from them lie in
                 the box.
+            limit: time at which the search stops; the starts are always evaluated.
 
         Raises:
             InputError: the box is empty or not finite, the budget is below 1, or shapes do not fit.
@@ -91,7 +94,7 @@ class Search(ABC):
         low, high, start = (np.asarray(values, dtype=float) for values in (low, high, start))
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
-        state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
+        state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience, limit)
         if state.remaining:
             cost = state.evaluate(start)
             population, cost = state.prune(start[: len(cost)], cost)

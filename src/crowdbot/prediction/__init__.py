@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .learned_predictor import LearnedPredictor
     from .learners import WEIGHTS_FIELDS, make_learner
     from .live import Live
+    from .live_report import LiveReport
     from .predictor import Predictor, window_streams
     from .predictor_spec import PredictorSpec
     from .simulated import Simulated
@@ -60,6 +61,7 @@ __getattr__, __dir__ = lazy_exports(
         "learned_predictor": ["LearnedPredictor"],
         "learners": ["WEIGHTS_FIELDS", "make_learner"],
         "live": ["Live"],
+        "live_report": ["LiveReport"],
         "predictor": ["Predictor", "window_streams"],
         "predictor_spec": ["PredictorSpec"],
         "simulated": ["Simulated"],
@@ -108,6 +110,7 @@ __all__ = [
     "LearnedPredictor",
     "LeastSquares",
     "Live",
+    "LiveReport",
     "LogRow",
     "Modes",
     "Predictor",
