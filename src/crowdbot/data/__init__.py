@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.hdf5_arrays import read_hdf5_arrays
+    from .readers.ros.episode import PEOPLE_TYPES
+    from .readers.ros.frames import Frames, frame_name, stamp_of
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
     from .recording import Recording
@@ -48,6 +50,8 @@ __getattr__, __dir__ = lazy_exports(
         "trajnet_scenes": ["TRAJNET_CATEGORIES", "primary_windows", "scenes_of_category"],
         "protocols": ["PROTOCOLS", "NoWindowError"],
         "readers.hdf5_arrays": ["read_hdf5_arrays"],
+        "readers.ros.episode": ["PEOPLE_TYPES"],
+        "readers.ros.frames": ["Frames", "frame_name", "stamp_of"],
         "readers.time_base": ["RowRateError"],
         "readers.ucy": ["UCY_TO_METRES"],
         "recording": ["Recording"],
@@ -63,6 +67,7 @@ __all__ = [
     "FILE_OPTIONS",
     "FORMATS",
     "MCAP_MAGIC",
+    "PEOPLE_TYPES",
     "PROTOCOLS",
     "TIME_BASES",
     "TRAJNET_CATEGORIES",
@@ -71,6 +76,7 @@ __all__ = [
     "DegradedTracks",
     "FileOption",
     "Forecast",
+    "Frames",
     "McapError",
     "McapOpcode",
     "McapReader",
@@ -86,6 +92,7 @@ __all__ = [
     "example_windows",
     "fill_gaps",
     "folder_files",
+    "frame_name",
     "has_summary",
     "load",
     "observed_velocity",
@@ -100,6 +107,7 @@ __all__ = [
     "scenes_of_category",
     "slice_rows",
     "split_columns",
+    "stamp_of",
     "steady_velocity",
     "walkable_rings",
     "write_forecasts",

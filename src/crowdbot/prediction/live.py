@@ -21,6 +21,7 @@ from .live_report import LiveReport, parse_seconds
 from .predictor import Predictor
 from .tracker_frame import TrackerFrame
 from .tracker_history import TrackedRows, TrackerHistory
+from .tracker_messages import TrackerMessages
 from .tracker_plausibility import TrackerPlausibility, TrackerWarning
 
 __all__ = ["Live"]
@@ -59,6 +60,10 @@ class Live:
             :attr:`drop_count`.
         max_speed: largest plausible speed of people and robots [m/s]. Whoever is faster between two frames, over more
             than 0.5 m, is a new track from there on; infinity: tracks are never cut, and speeds are not judged.
+        frame: name of the fixed coordinate frame of messages, see :meth:`update_from`; None: the first fixed frame
+            above that of the first people.
+        robot: name of the coordinate frame of the robot, such as ``base_link``, that is added to the people of each
+            message as a robot; None: messages bring no robot.
         clock: returns the time [s] that latencies and the budget are measured with.
 
     Raises:
@@ -88,7 +93,8 @@ class Live:
     def __init__(
         self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
         seed: int = 0, coast: float = 1.0, budget: float | str | None = None, allowed_lateness: float | str = 0.2,
-        max_speed: float = 12.0, clock: Callable[[], float] = clocks.perf_counter,
+        max_speed: float = 12.0, frame: str | None = None, robot: str | None = None,
+        clock: Callable[[], float] = clocks.perf_counter,
     ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
@@ -126,6 +132,7 @@ class Live:
         self._seed = seed
         self._plausibility = TrackerPlausibility(max_speed)
         self._history = TrackerHistory(dt, self.observe, coast, lateness, self._plausibility)
+        self._messages = TrackerMessages(frame, robot)
         self._memory: Any = None
         self._reading, self._predicting = threading.RLock(), threading.Lock()
 
@@ -162,9 +169,9 @@ class Live:
                 ``allowed_lateness`` is put at its time, as if it had come in order; an older one is dropped. Frames
                 with equal stamps, as of several cameras, are one frame of all their people; who is in both is where the
                 one that came last says.
-            covariances: ``[N, 2, 2]`` [m^2] of the positions. Kalman filters and the filtered line of AnchorNet trust
-                positions accordingly, and covariances of forecasts contain them. In frames without them, the predictor
-                assumes a noise of its own.
+            covariances: ``[N, 2, 2]`` [m^2] of the positions, NaN where unknown. Kalman filters and the filtered line
+                of AnchorNet trust positions accordingly, and covariances of forecasts contain them. Where they are
+                unknown, the predictor assumes a noise of its own.
             radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of learned
                 predictors keep apart by the sum of radii, and crowd models simulate people of these sizes.
             existence: ``[N]`` probability that there is a person, in the sense of a tracker, above 0 and at most 1; NaN
@@ -185,6 +192,41 @@ class Live:
         frame = TrackerFrame.of(ids, position, robots, time, covariances, radii, existence)
         with self._reading:
             self._history.add(frame)
+        self._warn()
+
+    def update_from(self, message: Any, topic: str = "") -> None:
+        """Add a message of ROS 1 or 2: people, odometry or transforms, of rosbags, rclpy or rospy.
+
+        People come as ``people_msgs/People`` or ``PositionMeasurementArray``, ``TrackedPersons`` of pedsim_msgs and
+        spencer_tracking_msgs (with covariances), ``pedsim_msgs/AgentStates``, or ``hunav_msgs/Agents``. The tag
+        ``radius`` and a reliability above 0 of ``people_msgs/Person`` are radius and existence probability. People in a
+        frame that moves, such as ``base_link``, are brought to the fixed frame by ``nav_msgs/Odometry``, ``/tf`` and
+        ``/tf_static``, interpolated at the stamp of the people; they wait until a transform as new as they are comes.
+
+        Args:
+            message: the message, with attributes named as its fields.
+            topic: its topic; names that end in ``tf_static`` are static transforms.
+
+        Raises:
+            InputError: the type is unknown, the message names no frame, no transform joins the frame of the people with
+                the fixed frame or there is none at their stamp, too many messages wait, or as :meth:`update`.
+
+        >>> from crowdbot.messages import Messages
+        >>> from crowdbot.prediction import ConstantVelocity
+        >>> make, live = Messages(), Live(ConstantVelocity(), dt=0.4, robot="robot/base_link")
+        >>> for second, x in enumerate((0.0, 1.0)):
+        ...     stamp = second * 1_000_000_000
+        ...     person = make.make("people_msgs/msg/Person", name="7", position=make.point(3.0, 0.0),
+        ...         velocity=make.point(0.0, 0.0), reliability=0.9, tagnames=["radius"], tags=["0.3"])
+        ...     live.update_from(make.odometry(stamp, "robot", x, 0.0, 0.0, [1.0, 0.0, 0.0], frame="odom"))
+        ...     live.update_from(make.make("people_msgs/msg/People", header=make.header(stamp, "robot/base_link"),
+        ...         people=[person]))
+        >>> live.ids.tolist(), live.past().position[0, -1].round(2).tolist()
+        ([7, 'robot/base_link'], [[4.0, 0.0], [1.0, 0.0]])
+        """
+        with self._reading:
+            for frame in self._messages.add(message, topic):
+                self._history.add(frame)
         self._warn()
 
     def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
