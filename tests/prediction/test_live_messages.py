@@ -206,3 +206,14 @@ def test_old_transforms_are_forgotten() -> None:
     assert all(len(edge.stamps) < 600 for edge in live._messages._frames.odometry.values())
     live.update_from(people(0.02 * 2999, BASE, p1=(1.0, 0.0)))
     np.testing.assert_allclose(live.past().position[0, -1, 0], [30.99, 0.0])
+
+
+def test_a_message_of_nobody_hides_the_people() -> None:
+    live = Live(ConstantVelocity(), dt=0.4, coast=1.0)
+    live.update_from(people(0.0, "map", p1=(0.0, 0.0)))
+    live.update_from(people(0.4, "map", p1=(0.4, 0.0)))
+    live.update_from(people(0.8, "map"))
+    np.testing.assert_allclose(live.past().position[0, -1, 0], [0.8, 0.0])
+    existence = live.predict(1).existence
+    assert existence is not None
+    np.testing.assert_allclose(existence, [[0.8 * 0.5**0.8]])

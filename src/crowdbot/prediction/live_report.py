@@ -63,12 +63,10 @@ def parse_seconds(value: float | str, name: str) -> float:
     """
     if not isinstance(value, str):
         return float(value)
-    match = re.fullmatch(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*([a-z]+)\s*", value)
-    try:
-        assert match is not None
-        return float(match[1]) * UNITS[match[2]]
-    except (AssertionError, KeyError, ValueError):
+    match = re.fullmatch(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z]+)\s*", value)
+    if match is None or match[2] not in UNITS:
         raise InputError(
             f"live: {name} = {value!r} is no duration; give seconds as a number, or a text with a unit"
             f" ({', '.join(UNITS)}), such as '40 ms'"
-        ) from None
+        )
+    return float(match[1]) * UNITS[match[2]]
