@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, stream
-from crowdbot.data import Forecast, Trajectories, Windows
+from crowdbot.data import Forecast, Trajectories, Windows, resample_rows, slice_rows
 from crowdbot.metrics import ellipse_coverage
 from crowdbot.prediction import AnchorNet, ConstantVelocity, Kalman, Live
 from crowdbot.prediction.anchor_net.mixture import FILTERED, WIDENED
@@ -121,6 +121,42 @@ def test_interpolated_positions_have_the_covariance_of_the_mean() -> None:
     found = live.past().covariance
     assert found is not None
     np.testing.assert_allclose(found[0, :, 0, 0, 0], [0.1, 0.25 * 0.3 + 0.25 * 0.5, 0.2], atol=1e-12)
+
+
+def test_covariances_of_uneven_noise_improve_the_forecast() -> None:
+    rng = stream(8, "uneven")
+    errors = {True: [], False: []}
+    for _ in range(30):
+        velocity = rng.normal(0.0, 0.8, 2)
+        deviation = rng.choice([0.02, 0.4], 8)
+        track = 0.4 * np.arange(8.0)[:, None] * velocity + deviation[:, None] * rng.standard_normal((8, 2))
+        for told, found in errors.items():
+            live = Live(Kalman(), dt=0.4, max_speed=np.inf)
+            for place, size in zip(track, deviation, strict=True):
+                live.update([1], [place], covariances=[size**2 * np.eye(2)] if told else None)
+            found.append(np.linalg.norm(live.predict(12).position[0, 0, -1, 0] - 0.4 * 19 * velocity))
+    assert np.mean(errors[True]) < 0.6 * np.mean(errors[False])
+
+
+def test_anchor_net_reads_covariances_at_any_time_step() -> None:
+    forecasts = []
+    for dt in (0.4, 0.1):
+        live = Live(AnchorNet("open"), dt=dt)
+        for row in range(round(2.8 / dt) + 1):
+            step = dt * row / 0.4
+            noise = (0.02 + 0.01 * (round(step) % 2)) * np.eye(2)
+            live.update([1], [[0.5 * step, 0.05 * np.sin(2.0 * step)]], covariances=[noise])
+        forecasts.append(live.predict(round(4.8 / dt)).position[0, 0, :, 0][round(0.4 / dt) - 1 :: round(0.4 / dt)])
+    np.testing.assert_allclose(*forecasts, atol=0.02)
+
+
+def test_parts_of_windows_keep_their_covariances(windows: Maker) -> None:
+    past = windows(np.zeros((3, 4, 2, 2)))
+    noise = np.multiply.outer(np.arange(24.0).reshape(3, 4, 2), np.eye(2))
+    past = dataclasses.replace(past, covariance=noise)
+    np.testing.assert_array_equal(past[1:].covariance, noise[1:])
+    np.testing.assert_array_equal(slice_rows(past, 1, 3).covariance, noise[:, 1:3])
+    assert resample_rows(past, 0.2).covariance is None
 
 
 def test_anchor_net_is_as_unsure_as_the_tracker() -> None:

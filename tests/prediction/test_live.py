@@ -87,7 +87,7 @@ def test_the_prediction_answers_for_the_plan_of_the_robot() -> None:
 class Counter(ConstantVelocity):
     """Remembers how often it has predicted."""
 
-    def follow(self, past, steps, samples=1, rng=None, memory=None):  # type: ignore[no-untyped-def]
+    def follow(self, past, steps, samples=1, rng=None, memory=None, limit=None):  # type: ignore[no-untyped-def]
         return self.predict(past, steps, samples, rng), (memory or 0) + 1
 
 

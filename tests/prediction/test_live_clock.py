@@ -151,7 +151,7 @@ def test_threads_share_a_stream() -> None:
     for thread in threads:
         thread.join()
     assert found == [3] * 120
-    assert live.latency >= 0.0
+    assert live.report.latency >= 0.0
 
 
 def test_a_goal_learned_at_another_time_step_follows_a_fast_stream() -> None:

@@ -2,7 +2,7 @@
 
 Elsewhere: wide places and far neighbors in test_unfamiliar_places.py; clocks, jitter, hidden people and identities of
 any type in test_live_clock.py; collisions between rows in test_swept_futures.py; covariances in test_covariances.py and
-test_kalman.py; late calibrations in test_live_deadline.py.
+test_kalman.py; late calibrations in test_live_budget.py.
 """
 
 from __future__ import annotations

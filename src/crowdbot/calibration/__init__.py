@@ -22,6 +22,7 @@ from .resimulation import ResimulatedTracks, Resimulation
 from .rollout import Rollout
 from .scheme_parts import goal_class, goal_for, resolve_cost, resolve_goal, resolve_model, resolve_search
 from .search import Search, SearchResult
+from .time_limit import TimeLimit
 from .weighted_sum import WeightedSum
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "Rollout",
     "Search",
     "SearchResult",
+    "TimeLimit",
     "WeightedSum",
     "check_cost",
     "futures",

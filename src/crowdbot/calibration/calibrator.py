@@ -24,6 +24,7 @@ from .resimulation import Resimulation
 from .rollout import Rollout
 from .scheme_parts import resolve_cost, resolve_goal, resolve_model, resolve_search
 from .search import Search, SearchResult
+from .time_limit import TimeLimit
 
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
@@ -113,6 +114,7 @@ class Calibrator:
         seed: int = 0,
         progress: Progress | None = None,
         start: Fit | None = None,
+        limit: TimeLimit | None = None,
     ) -> Fit:
         """Fit the parameters to the observed rows.
 
@@ -122,6 +124,7 @@ class Calibrator:
             seed: seed of the search.
             progress: called with the completed share, 0 to 1.
             start: an earlier fit, for example of the previous frame; its values are evaluated early.
+            limit: time at which the searches stop, whatever ``budget`` is.
 
         Raises:
             InputError: there are too few rows, or nobody can be compared.
@@ -133,10 +136,10 @@ class Calibrator:
                 "fit each alone, or pass shared=True"
             )
         if self.shared:
-            fit = self._fit_all(pasts, stream(seed, "calibrate"), progress)
+            fit = self._fit_all(pasts, stream(seed, "calibrate"), progress, limit)
         else:
             rngs = [stream(seed, "calibrate", w) for w in range(len(pasts[0]))]
-            fit = self.fit_each(pasts[0], rngs, progress, start)
+            fit = self.fit_each(pasts[0], rngs, progress, start, limit)
         if fit.persons == 0:
             where = f"{fit.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
             raise InputError(
@@ -151,10 +154,12 @@ class Calibrator:
         rngs: Sequence[np.random.Generator],
         progress: Progress | None = None,
         start: Fit | None = None,
+        limit: TimeLimit | None = None,
     ) -> Fit:
         """Fit individual parameters, window by window; ``rngs`` has one generator for each window.
 
-        Windows in which nobody can be compared keep the initial values and have the cost NaN.
+        With a time limit, groups of windows that are searched together have equal times. Windows in which nobody can
+        be compared keep the initial values and have the cost NaN.
         """
         space, begin = self.space, time.perf_counter()
         given = space.initial_values(past, self.rollout)
@@ -166,7 +171,10 @@ class Calibrator:
             part = slice(first, first + size)
             task = _Task(self, past[part], given[part], _part_of(progress, first, len(past), self.budget))
             search = cast(Search, self.search)
-            found.append(search.minimize(task, space.low, space.high, list(rngs[part]), self.budget, starts[:, part]))
+            own = None if limit is None else limit.share(-(-(len(past) - first) // size))
+            found.append(
+                search.minimize(task, space.low, space.high, list(rngs[part]), self.budget, starts[:, part], own)
+            )
             counted[part] = task.counted
         return self._fit(found, given, past, counted, begin)
 
@@ -180,7 +188,9 @@ class Calibrator:
         each = np.asarray(values, dtype=np.float64)[:, None, None]
         return task(each, np.arange(len(past)))
 
-    def _fit_all(self, pasts: list[Windows], rng: np.random.Generator, progress: Progress | None) -> Fit:
+    def _fit_all(
+        self, pasts: list[Windows], rng: np.random.Generator, progress: Progress | None, limit: TimeLimit | None
+    ) -> Fit:
         space, begin = self.space, time.perf_counter()
         windows = sum(len(past) for past in pasts)
         parts: list[_Task] = []
@@ -194,7 +204,7 @@ class Calibrator:
         task = _SharedTask(parts, _part_of(progress, 0, 1, self.budget))
         given = parts[0].given[:1, :1] if parts and parts[0].given.size else np.zeros((1, 1, len(space.names)))
         search = cast(Search, self.search)
-        found = search.minimize(task, space.low, space.high, [rng], self.budget, given[None])
+        found = search.minimize(task, space.low, space.high, [rng], self.budget, given[None], limit)
         counted = [part.counted.ravel() for part in parts]
         nobody = np.zeros((0,), dtype=np.bool_)
         fit = self._fit([found], given, None, np.concatenate(counted or [nobody])[None], begin)

@@ -17,6 +17,7 @@ from crowdbot.core import InputError
 from crowdbot.typing import Floats, Ints
 
 from .search_state import SearchState
+from .time_limit import TimeLimit
 
 Function = Callable[[Floats, Ints], Floats]
 """From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to the cost of each person,
@@ -69,6 +70,7 @@ class Search(ABC):
         rngs: Sequence[np.random.Generator],
         budget: int,
         start: Floats,
+        limit: TimeLimit | None = None,
     ) -> SearchResult:
         """Return the best candidate of every problem among at most ``budget`` evaluations.
 
@@ -80,6 +82,7 @@ class Search(ABC):
             budget: maximum number of whole-crowd candidates evaluated in each problem.
             start: ``[S, W, N, D]``, S >= 1, evaluated first, even outside the box; candidates derived from them lie in
                 the box.
+            limit: time at which the search stops; the starts are always evaluated.
 
         Raises:
             InputError: the box is empty or not finite, the budget is below 1, or shapes do not fit.
@@ -87,7 +90,7 @@ class Search(ABC):
         low, high, start = (np.asarray(values, dtype=float) for values in (low, high, start))
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
-        state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
+        state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience, limit)
         if state.remaining:
             cost = state.evaluate(start)
             population, cost = state.prune(start[: len(cost)], cost)

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.typing import Floats, Ints
 
+from .time_limit import TimeLimit
+
 
 class SearchState:
     """State of one run of a search: evaluates whole-crowd candidates of W problems and keeps the best of each.
@@ -33,8 +35,12 @@ class SearchState:
         first: Floats,
         tolerance: float,
         patience: int,
+        limit: TimeLimit | None = None,
     ) -> None:
         W, N, _ = first.shape
+        self.limit = limit
+        self._affordable = budget
+        self._pace = 0.0  # seconds for each candidate
         self.function, self.rngs, self.budget = function, rngs, budget
         self.low, self.high, self.span = low, high, high - low
         self.tolerance, self.patience = tolerance, patience
@@ -49,13 +55,17 @@ class SearchState:
 
     @property
     def remaining(self) -> int:
-        """Remaining evaluations of each unfinished problem; 0 if all are finished."""
-        return self.budget - self._spent if len(self.live) else 0
+        """Remaining evaluations of each unfinished problem; 0 if all are finished or the time is over.
+
+        With a time limit, it is an estimate by the speed so far, which changes after evaluations only.
+        """
+        return min(self.budget - self._spent, self._affordable) if len(self.live) else 0
 
     def evaluate(self, candidates: Floats) -> Floats:
         """Return the cost of each person, ``[P, L, N]``, in candidates ``[P, L, N, D]``.
 
-        Candidates beyond the budget are dropped.
+        Candidates beyond the budget are dropped. Those for which there is no time are not evaluated; their cost is
+        infinite.
 
         The cost of people who do not count is 0, and they keep the parameters of the first start; a cost that is not
         finite is infinite.
@@ -63,7 +73,23 @@ class SearchState:
         Raises:
             InputError: the function returns another shape.
         """
-        candidates = candidates[: self.remaining]
+        candidates = candidates[: self.budget - self._spent]
+        if self.limit is None:
+            return self._evaluate(candidates)
+        parts, first = [], 0
+        while first < len(candidates):
+            size = len(candidates) if self._spent == 0 else min(len(candidates) - first, (self._affordable + 1) // 2)
+            if size == 0:
+                parts.append(np.full((len(candidates) - first, *candidates.shape[1:3]), np.inf))
+                break
+            begin = self.limit.clock()
+            parts.append(self._evaluate(candidates[first : first + size]))
+            first += size
+            self._pace = max(1e-9, self.limit.clock() - begin) / size
+            self._affordable = min(self.budget, int(self.limit.remaining / self._pace))
+        return np.concatenate(parts)
+
+    def _evaluate(self, candidates: Floats) -> Floats:
         P, L, N, _ = candidates.shape
         counts = self.counts
         if not counts.all():
@@ -124,8 +150,8 @@ class SearchState:
 
     @property
     def progress(self) -> float:
-        """Share of the budget that is spent, 0 to 1."""
-        return self._spent / self.budget
+        """Share of the budget, or of the time, that is spent, 0 to 1."""
+        return self._spent / min(self.budget, self._spent + self._affordable)
 
     def incumbent(self) -> Floats:
         """Return the best whole-crowd candidates so far, ``[1, L, N, D]``, moved into the box."""

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.hdf5_arrays import read_hdf5_arrays
+    from .readers.ros.episode import PEOPLE_TYPES
+    from .readers.ros.frames import Frames, frame_name, stamp_of
     from .readers.time_base import RowRateError
     from .readers.ucy import UCY_TO_METRES
     from .recording import Recording
@@ -39,6 +41,7 @@ __all__ = [
     "FORECAST_SUFFIXES",
     "FORMATS",
     "MCAP_MAGIC",
+    "PEOPLE_TYPES",
     "PROTOCOLS",
     "TIME_BASES",
     "TRAJNET_CATEGORIES",
@@ -47,6 +50,7 @@ __all__ = [
     "DegradedTracks",
     "FileOption",
     "Forecast",
+    "Frames",
     "McapError",
     "McapOpcode",
     "McapReader",
@@ -62,6 +66,7 @@ __all__ = [
     "example_windows",
     "fill_gaps",
     "folder_files",
+    "frame_name",
     "has_summary",
     "load",
     "observed_velocity",
@@ -76,6 +81,7 @@ __all__ = [
     "scenes_of_category",
     "slice_rows",
     "split_columns",
+    "stamp_of",
     "steady_velocity",
     "walkable_rings",
     "write_forecasts",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .learned_predictor import LearnedPredictor
     from .learners import WEIGHTS_FIELDS, make_learner
     from .live import Live
+    from .live_report import LiveReport
     from .predictor import Predictor, window_streams
     from .predictor_spec import PredictorSpec
     from .simulated import Simulated
@@ -68,6 +69,7 @@ __all__ = [
     "LearnedPredictor",
     "LeastSquares",
     "Live",
+    "LiveReport",
     "LogRow",
     "Modes",
     "Predictor",

@@ -5,29 +5,33 @@ from __future__ import annotations
 import dataclasses
 import math
 import threading
-import time as clock
+import time as clocks
 import warnings
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.calibration import Fit
+from crowdbot.calibration import Fit, TimeLimit
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 
+from .live_report import LiveReport, parse_seconds
 from .predictor import Predictor
 from .tracker_frame import TrackerFrame
 from .tracker_history import TrackedRows, TrackerHistory
+from .tracker_messages import TrackerMessages
 from .tracker_plausibility import TrackerPlausibility, TrackerWarning
 
 ROWS = 8
 """Default number of rows of predictors without a history in seconds."""
-FIRST_BUDGET = 20
-"""Evaluations in the first frame with a deadline."""
-SAFETY = 0.8
-"""Share of the deadline that is planned."""
+SAFETY = 0.85
+"""Share of the budget that is planned."""
+FIRST_SHARE = 0.5
+"""Share of the planned time for the calibration in the first frame, when the time after it is unknown."""
+FORGET = 0.9
+"""Factor by which the largest time after the calibration shrinks from frame to frame."""
 
 
 class Live:
@@ -46,16 +50,22 @@ class Live:
         seed: random seed.
         coast: how long a hidden person is predicted, at constant velocity [s]. The existence probability in the
             forecast halves every ``coast / 2``; 0: people who are not in the last row are not predicted.
-        deadline: time for a prediction [s]; None: no limit. A calibrated crowd evaluates as many candidates as fit, by
-            the speed of earlier frames (20 in the first one); :attr:`left_out` tells what did not fit.
+        budget: time for a prediction, in seconds or as a text such as ``"40 ms"``; None: no limit. The calibration of a
+            crowd stops in time, and :attr:`report` says what it reached. Its start values are always evaluated.
             Forecasts then depend on the speed of the computer.
-        allowed_lateness: how much older than the newest a frame with a time stamp may be [s]. Up to it, frames may come
-            in any order; older ones are dropped and counted in :attr:`drop_count`.
+        allowed_lateness: how much older than the newest a frame with a time stamp may be, in seconds or as a text such
+            as ``"0.3 s"``. Up to it, frames may come in any order; older ones are dropped and counted in
+            :attr:`drop_count`.
         max_speed: largest plausible speed of people and robots [m/s]. Whoever is faster between two frames, over more
             than 0.5 m, is a new track from there on; infinity: tracks are never cut, and speeds are not judged.
+        frame: name of the fixed coordinate frame of messages, see :meth:`update_from`; None: the first fixed frame
+            above that of the first people.
+        robot: name of the coordinate frame of the robot, such as ``base_link``, that is added to the people of each
+            message as a robot; None: messages bring no robot.
+        clock: returns the time [s] that latencies and the budget are measured with.
 
     Raises:
-        InputError: ``dt``, ``deadline`` or ``max_speed`` is not above 0, ``observe`` is below 1, ``coast`` or
+        InputError: ``dt``, ``budget`` or ``max_speed`` is not above 0, ``observe`` is below 1, ``coast`` or
             ``allowed_lateness`` is negative, a ring of walls is not ``[N, 2]``, or the predictor requires the future.
 
     Warns:
@@ -80,8 +90,9 @@ class Live:
 
     def __init__(
         self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
-        seed: int = 0, coast: float = 1.0, deadline: float | None = None, allowed_lateness: float = 0.2,
-        max_speed: float = 12.0,
+        seed: int = 0, coast: float = 1.0, budget: float | str | None = None, allowed_lateness: float | str = 0.2,
+        max_speed: float = 12.0, frame: str | None = None, robot: str | None = None,
+        clock: Callable[[], float] = clocks.perf_counter,
     ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
@@ -89,10 +100,12 @@ class Live:
             raise InputError(f"live: observe = {observe} rows must be at least 1")
         if not 0.0 <= coast < np.inf:
             raise InputError(f"live: coast = {coast} s must be finite and at least 0")
-        if deadline is not None and not deadline > 0.0:
-            raise InputError(f"live: deadline = {deadline} s must be above 0")
-        if not 0.0 <= allowed_lateness < np.inf:
-            raise InputError(f"live: allowed_lateness = {allowed_lateness} s must be finite and at least 0")
+        time = math.inf if budget is None else parse_seconds(budget, "budget")
+        if not time > 0.0:
+            raise InputError(f"live: budget = {time:g} s must be above 0; None for no limit")
+        lateness = parse_seconds(allowed_lateness, "allowed_lateness")
+        if not 0.0 <= lateness < np.inf:
+            raise InputError(f"live: allowed_lateness = {lateness:g} s must be finite and at least 0")
         if not max_speed > 0.0:
             raise InputError(f"live: max_speed = {max_speed} m/s must be above 0; infinity for no limit")
         if not isinstance(predictor, Predictor):
@@ -108,17 +121,16 @@ class Live:
         self.observe = max(ROWS, math.ceil(predictor.history / dt - 1e-9) + 1) if observe is None else observe
         self.walls = tuple(_checked_ring(ring) for ring in walls)
         self.coast = coast
-        self.latency = math.nan
-        """Duration of the last call of :meth:`predict` [s]; NaN before the first."""
-        self.deadline = deadline
-        self.evaluations = 0
-        """Candidate crowds that the last call of :meth:`predict` evaluated; 0 without calibration."""
-        self.left_out = ""
-        """What did not fit into the deadline of the last prediction, in a sentence; empty if everything did."""
-        self._rate = math.nan  # evaluations per second
+        self.budget = time
+        self.report = LiveReport(budget=time)
+        """What the last call of :meth:`predict` took, and what a calibration reached in this time."""
+        self._clock = clock
+        self._searched = math.nan  # last reading of the clock by a search
+        self._after = math.nan  # time after the search [s]
         self._seed = seed
         self._plausibility = TrackerPlausibility(max_speed)
-        self._history = TrackerHistory(dt, self.observe, coast, allowed_lateness, self._plausibility)
+        self._history = TrackerHistory(dt, self.observe, coast, lateness, self._plausibility)
+        self._messages = TrackerMessages(frame, robot)
         self._memory: Any = None
         self._reading, self._predicting = threading.RLock(), threading.Lock()
 
@@ -155,9 +167,9 @@ class Live:
                 ``allowed_lateness`` is put at its time, as if it had come in order; an older one is dropped. Frames
                 with equal stamps, as of several cameras, are one frame of all their people; who is in both is where the
                 one that came last says.
-            covariances: ``[N, 2, 2]`` [m^2] of the positions. Kalman filters and the filtered line of AnchorNet trust
-                positions accordingly, and covariances of forecasts contain them. In frames without them, the predictor
-                assumes a noise of its own.
+            covariances: ``[N, 2, 2]`` [m^2] of the positions, NaN where unknown. Kalman filters and the filtered line
+                of AnchorNet trust positions accordingly, and covariances of forecasts contain them. Where they are
+                unknown, the predictor assumes a noise of its own.
             radii: ``[N]`` [m] of the bodies, NaN where unknown; the last known one counts. Futures of learned
                 predictors keep apart by the sum of radii, and crowd models simulate people of these sizes.
             existence: ``[N]`` probability that there is a person, in the sense of a tracker, above 0 and at most 1; NaN
@@ -180,6 +192,41 @@ class Live:
             self._history.add(frame)
         self._warn()
 
+    def update_from(self, message: Any, topic: str = "") -> None:
+        """Add a message of ROS 1 or 2: people, odometry or transforms, of rosbags, rclpy or rospy.
+
+        People come as ``people_msgs/People`` or ``PositionMeasurementArray``, ``TrackedPersons`` of pedsim_msgs and
+        spencer_tracking_msgs (with covariances), ``pedsim_msgs/AgentStates``, or ``hunav_msgs/Agents``. The tag
+        ``radius`` and a reliability above 0 of ``people_msgs/Person`` are radius and existence probability. People in a
+        frame that moves, such as ``base_link``, are brought to the fixed frame by ``nav_msgs/Odometry``, ``/tf`` and
+        ``/tf_static``, interpolated at the stamp of the people; they wait until a transform as new as they are comes.
+
+        Args:
+            message: the message, with attributes named as its fields.
+            topic: its topic; names that end in ``tf_static`` are static transforms.
+
+        Raises:
+            InputError: the type is unknown, the message names no frame, no transform joins the frame of the people with
+                the fixed frame or there is none at their stamp, too many messages wait, or as :meth:`update`.
+
+        >>> from crowdbot.messages import Messages
+        >>> from crowdbot.prediction import ConstantVelocity
+        >>> make, live = Messages(), Live(ConstantVelocity(), dt=0.4, robot="robot/base_link")
+        >>> for second, x in enumerate((0.0, 1.0)):
+        ...     stamp = second * 1_000_000_000
+        ...     person = make.make("people_msgs/msg/Person", name="7", position=make.point(3.0, 0.0),
+        ...         velocity=make.point(0.0, 0.0), reliability=0.9, tagnames=["radius"], tags=["0.3"])
+        ...     live.update_from(make.odometry(stamp, "robot", x, 0.0, 0.0, [1.0, 0.0, 0.0], frame="odom"))
+        ...     live.update_from(make.make("people_msgs/msg/People", header=make.header(stamp, "robot/base_link"),
+        ...         people=[person]))
+        >>> live.ids.tolist(), live.past().position[0, -1].round(2).tolist()
+        ([7, 'robot/base_link'], [[4.0, 0.0], [1.0, 0.0]])
+        """
+        with self._reading:
+            for frame in self._messages.add(message, topic):
+                self._history.add(frame)
+        self._warn()
+
     def past(self, plans: Mapping[Any, ArrayLike] | None = None) -> Windows:
         """Return the stored rows as one window of all predicted agents."""
         past, _, _ = self._past(plans)
@@ -199,14 +246,14 @@ class Live:
             InputError: no row yet, or a plan for an identity that is not predicted.
         """
         with self._predicting:
-            begin = clock.perf_counter()
+            begin = self._clock()
             past, rows, count = self._past(plans, required=True)
             rng = stream(self._seed, "live", count)
-            forecast, memory = self._predictor_in_time().follow(past, steps, samples, rng, self._memory)
+            limit = self._limit(begin)
+            forecast, memory = self.predictor.follow(past, steps, samples, rng, self._memory, limit)
             if not plans:
                 self._memory = memory
-            self.latency = clock.perf_counter() - begin
-            self._remark(memory)
+            self._report(memory, begin)
         self._warn()
         return dataclasses.replace(forecast, existence=rows.existence[None])
 
@@ -217,28 +264,30 @@ class Live:
         for sentence in reports:
             warnings.warn(sentence, TrackerWarning, stacklevel=3)
 
-    def _predictor_in_time(self) -> Predictor:
-        """Return the predictor, with a budget of evaluations that fits into the deadline."""
-        budget = getattr(self.predictor, "budget", None)
-        if self.deadline is None or budget is None or getattr(self.predictor, "calibrator", None) is None:
-            return self.predictor
-        fits = FIRST_BUDGET if math.isnan(self._rate) else int(SAFETY * self._rate * self.deadline)
-        return dataclasses.replace(self.predictor, budget=max(1, min(budget, fits)))  # type: ignore[call-arg]
+    def _limit(self, begin: float) -> TimeLimit | None:
+        """Return when a search must stop, so that the prediction after it is ready in time."""
+        self._searched = math.nan
+        if self.budget == math.inf:
+            return None
+        planned = SAFETY * self.budget
+        own = FIRST_SHARE * planned if math.isnan(self._after) else planned - self._after
+        return TimeLimit(begin + own, self._read_clock)
 
-    def _remark(self, memory: Any) -> None:
-        """Set what the last prediction evaluated, and what it left out."""
-        self.evaluations, self.left_out = 0, ""
+    def _read_clock(self) -> float:
+        self._searched = self._clock()
+        return self._searched
+
+    def _report(self, memory: Any, begin: float) -> None:
+        """Set the report, and what is known of the time after a search."""
+        end = self._clock()
+        if not math.isnan(self._searched):
+            after = end - self._searched
+            self._after = after if math.isnan(self._after) else max(after, FORGET * self._after)
+        evaluations, wanted, cost = 0, 0, math.nan
         if isinstance(memory, Fit):
-            self.evaluations = int(memory.evaluations.sum())
-            new = self.evaluations / max(self.latency, 1e-9)
-            self._rate = new if math.isnan(self._rate) else 0.5 * (self._rate + new)
-        if self.deadline is None:
-            return
-        late = f"the prediction took {self.latency:.3g} s, more than {self.deadline:g} s"
-        budget = getattr(self.predictor, "budget", 0)
-        few = f"{self.evaluations} of {budget} evaluations fitted into {self.deadline:g} s"
-        parts = [late] * (self.latency > self.deadline) + [few] * (0 < self.evaluations < budget)
-        self.left_out = "; ".join(parts)
+            evaluations, cost = int(memory.evaluations.sum()), float(memory.cost.sum())
+            wanted = int(getattr(self.predictor, "budget", evaluations))
+        self.report = LiveReport(end - begin, self.budget, evaluations, wanted, cost)
 
     def _past(self, plans: Mapping[Any, ArrayLike] | None, required: bool = False) -> tuple[Windows, TrackedRows, int]:
         """Return the window, its rows and the number of rows so far."""

@@ -5,13 +5,16 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, kebab_case, stream
 from crowdbot.data import Forecast, Windows
+
+if TYPE_CHECKING:
+    from crowdbot.calibration import TimeLimit
 
 
 @dataclass(frozen=True)
@@ -65,13 +68,16 @@ class Predictor(ABC):
         samples: int = 1,
         rng: np.random.Generator | None = None,
         memory: Any = None,
+        limit: TimeLimit | None = None,
     ) -> tuple[Forecast, Any]:
         """Return the forecast and a memory for the next frame of the same people.
 
         Args:
             past, steps, samples, rng: arguments of :meth:`predict`.
             memory: memory returned for the previous frame, or None.
+            limit: time at which a predictor that searches stops; others ignore it.
         """
+        del limit
         return self.predict(past, steps, samples, rng), memory
 
     def note(self, past: Windows) -> str:

@@ -16,6 +16,7 @@ from crowdbot.calibration import (
     PopulationPrior,
     Rollout,
     Search,
+    TimeLimit,
     futures,
     resolve_cost,
     resolve_goal,
@@ -128,14 +129,15 @@ class Simulated(Predictor):
         samples: int = 1,
         rng: np.random.Generator | None = None,
         memory: Any = None,
+        limit: TimeLimit | None = None,
     ) -> tuple[Forecast, Any]:
-        """Return the forecast and its fit; the search starts from the previous fit, if given."""
+        """Return the forecast and its fit; the search starts from the previous fit, if given, and stops in time."""
         self.check(past, steps, samples)
         rngs = window_streams(rng, len(past))
         calibrator = self.calibrator
         if calibrator is None or past.position.shape[1] < 2:
             return self._forecast(self.rollout, past, steps, samples, rngs), memory
-        fit = calibrator.fit_each(past, rngs, start=memory)
+        fit = calibrator.fit_each(past, rngs, start=memory, limit=limit)
         return self._forecast(fit.rollout, past, steps, samples, rngs), fit
 
     def _forecast(

@@ -25,7 +25,7 @@ class TrackerFrame:
         position: ``[N, 2]`` [m].
         robots: identities of robots.
         time: time stamp [s], or None.
-        covariance: ``[N, 2, 2]`` [m^2] of the positions, or None.
+        covariance: ``[N, 2, 2]`` [m^2] of the positions, NaN where unknown, or None.
         radius: ``[N]`` [m], NaN where unknown.
         existence: ``[N]`` probability that there is a person, 1 where the tracker does not say.
     """
@@ -160,10 +160,12 @@ def _checked_covariances(covariances: ArrayLike | None, labels: list[Hashable]) 
         return np.zeros((0, 2, 2))
     if spread.shape != (count, 2, 2):
         raise InputError(f"live: covariances have shape {list(spread.shape)}, they must be [{count}, 2, 2] [m^2]")
-    size = np.abs(spread).max(axis=(1, 2))
+    unknown = np.isnan(spread).all(axis=(1, 2))
+    known = np.where(unknown[:, None, None], 0.0, spread)
+    size = np.abs(known).max(axis=(1, 2))
     infinite = ~np.isfinite(size)
-    skew = np.abs(spread[:, 0, 1] - spread[:, 1, 0]) > 1e-6 * size
-    smallest = np.linalg.eigvalsh(np.where(infinite[:, None, None], 0.0, spread))[:, 0]
+    skew = np.abs(known[:, 0, 1] - known[:, 1, 0]) > 1e-6 * size
+    smallest = np.linalg.eigvalsh(np.where(infinite[:, None, None], 0.0, known))[:, 0]
     negative = smallest < -1e-6 * np.where(infinite, 0.0, size)
     wrong = infinite | skew | negative
     if wrong.any():
@@ -171,7 +173,7 @@ def _checked_covariances(covariances: ArrayLike | None, labels: list[Hashable]) 
         why = "not finite" if infinite[bad] else "not symmetric" if skew[bad] else "not positive semidefinite"
         raise InputError(
             f"live: covariance of {labels[bad]!r} is {why}: {spread[bad].tolist()}; it must be finite, symmetric and"
-            " positive semidefinite [m^2]"
+            " positive semidefinite [m^2], or all NaN if it is unknown"
         )
     return np.asarray(0.5 * (spread + np.swapaxes(spread, 1, 2)))
 

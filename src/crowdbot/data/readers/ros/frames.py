@@ -25,7 +25,10 @@ def frame_name(name: str) -> str:
 
 def stamp_of(header: Any) -> int:
     """Return the stamp of a header of ROS 2 or ROS 1 [ns]."""
-    return int(header.stamp.sec) * SECOND + int(header.stamp.nanosec)
+    stamp = header.stamp
+    if hasattr(stamp, "nanosec"):
+        return int(stamp.sec) * SECOND + int(stamp.nanosec)
+    return int(stamp.secs) * SECOND + int(stamp.nsecs)  # of rospy
 
 
 @dataclass
@@ -37,6 +40,22 @@ class _Edge:
     static: bool
     stamps: list[int] = field(default_factory=list)
     poses: list[tuple[float, ...]] = field(default_factory=list)
+
+    def add(self, stamp: int, pose: tuple[float, ...]) -> None:
+        """Add a pose; a static frame keeps the last one only."""
+        if self.static:
+            self.stamps.clear()
+            self.poses.clear()
+        self.stamps.append(stamp)
+        self.poses.append(pose)
+        self.__dict__.pop("table", None)
+
+    def forget(self, stamp: int) -> None:
+        """Drop poses before a stamp, but never the last two."""
+        if self.stamps[0] < stamp and len(self.stamps) > 2:
+            kept = [k for k, own in enumerate(self.stamps) if own >= stamp or k >= len(self.stamps) - 2]
+            self.stamps, self.poses = [self.stamps[k] for k in kept], [self.poses[k] for k in kept]
+            self.__dict__.pop("table", None)
 
     @functools.cached_property
     def table(self) -> tuple[NDArray[np.int64], Floats]:
@@ -80,8 +99,7 @@ class Frames:
             edge = self.edges.setdefault(child, _Edge(parent, topic, static))
             if edge.parent == parent:
                 place, turn = row.transform.translation, row.transform.rotation
-                edge.stamps.append(stamp_of(row.header))
-                edge.poses.append((place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+                edge.add(stamp_of(row.header), (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
 
     def add_odometry(self, topic: str, message: Any) -> None:
         """Add a message of type Odometry; the first topic of a child counts."""
@@ -89,8 +107,21 @@ class Frames:
         edge = self.odometry.setdefault(child, _Edge(parent, topic, False))
         if edge.topic == topic and edge.parent == parent:
             place, turn = message.pose.pose.position, message.pose.pose.orientation
-            edge.stamps.append(stamp_of(message.header))
-            edge.poses.append((place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+            edge.add(stamp_of(message.header), (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+
+    def forget(self, stamp: int) -> None:
+        """Drop the poses before a stamp [ns] in a stream of messages."""
+        for edge in (*self.edges.values(), *self.odometry.values()):
+            edge.forget(stamp)
+
+    def may_come(self, frame: str, target: str, stamp: int) -> bool:
+        """Whether the placement of joined frames is known at a stamp [ns], or may be after more messages."""
+        edges = [edge for part in self._paths(frame, target) for name in part if (edge := self._edge(name)) is not None]
+        moving = [edge.table[0] for edge in edges if not edge.static]
+        if any(times[0] > stamp for times in moving):
+            return False
+        known = not np.isnan(self.placement(frame, target, np.array([stamp], dtype=np.int64)).turn).any()
+        return known or any(times[-1] < stamp for times in moving)
 
     def above(self, frame: str) -> list[str]:
         """Return a frame and those above it, up to the root."""
