@@ -8,9 +8,9 @@ regions hit the floor, against published means. ``falls``: the same after a beam
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import math
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -234,8 +234,15 @@ def films(folder: Path, kinds: Sequence[str] = (), name: str = "woman-72") -> No
 
 
 if __name__ == "__main__":
-    what = sys.argv[1] if len(sys.argv) > 1 else "leans"
-    if what == "films":
-        films(Path(sys.argv[2]), sys.argv[3:])
+    TABLES = {"leans": leans, "pulls": pulls, "hits": hits, "falls": falls, "row": row}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", nargs="?", default="leans", choices=(*TABLES, "films"), help="default: leans")
+    parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help="folder of the films")
+    parser.add_argument("kinds", nargs="*", metavar="KIND", help="kinds of falls (default: all)")
+    options = parser.parse_args()
+    if options.what != "films":
+        TABLES[options.what]()
+    elif options.folder is None:
+        parser.error("films needs a FOLDER")
     else:
-        {"leans": leans, "pulls": pulls, "hits": hits, "falls": falls, "row": row}[what]()
+        films(options.folder, options.kinds)

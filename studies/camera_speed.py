@@ -7,6 +7,7 @@ other work; the processor time counts all threads.
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 import time
 
@@ -21,6 +22,7 @@ PEOPLE, IMAGES, ROUNDS = 30, 10, 4
 
 def main() -> None:
     """Print the times of an image, on one thread and on all."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     rng = np.random.default_rng(0)
     place = [[0.0, 0.0], *([2.0 + rng.uniform(0.0, 10.0), rng.uniform(-4.0, 4.0)] for _ in range(PEOPLE))]
     scene = Scene.of(

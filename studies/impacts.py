@@ -7,9 +7,9 @@ The two-body model is that of ISO/TS 15066 at the speed of the body, not of a sw
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import math
-import sys
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -134,7 +134,12 @@ def meetings(rows: list[Meeting]) -> None:
 
 def main() -> None:
     """Print the tables."""
-    chosen = sys.argv[1:] or ["regions", "robots", "people"]
+    tables = ["regions", "robots", "people"]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "tables", nargs="*", choices=tables, metavar="TABLE", help=f"{', '.join(tables)} (default: all)"
+    )
+    chosen = parser.parse_args().tables or tables
     print(f"{'impact':44} {'region':10} {'surface':>10} {'peak':>8} {'formula':>8} {'ratio':>5} engine")
     if "regions" in chosen:
         regions()

@@ -1,10 +1,11 @@
 """Write docs/results/measured.md: ``python studies/measured.py SHARED > docs/results/measured.md``.
 
-SHARED holds ``data/`` (recordings, see CONTRIBUTING.md) and ``reference/`` (steps of other engines).
+SHARED holds ``data/`` (recordings, see tests/RECORDINGS.md) and ``reference/`` (steps of other engines).
 """
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 import json
 import re
@@ -343,4 +344,6 @@ def _lines(head: list[str], rows: list[list[str]]) -> list[str]:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("shared", type=Path, metavar="SHARED", help="folder with data/ and reference/")
+    main(parser.parse_args().shared)

@@ -5,6 +5,7 @@ python studies/schemes.py SHARED docs/results        SHARED holds data/; about h
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import sys
 from collections.abc import Sequence
@@ -48,7 +49,11 @@ crowdbot predict --data bo-360-090-090.txt --step 0.2 --observe 5 --predict 5 --
 
 
 def main() -> None:
-    shared, docs = Path(sys.argv[1]) / "data", Path(sys.argv[2])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("shared", type=Path, metavar="SHARED", help="folder with data/")
+    parser.add_argument("docs", type=Path, metavar="DOCS", help="folder of the page, for example docs/results")
+    options = parser.parse_args()
+    shared, docs = options.shared / "data", options.docs
     folder = docs / "calibrated-crowds"
     folder.mkdir(parents=True, exist_ok=True)
     parts = [TEXT.format(budget=BUDGET), _report(shared, folder), _learned(shared, folder)]

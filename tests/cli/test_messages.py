@@ -30,6 +30,22 @@ def test_unknown_options_have_a_suggestion_on_one_line(capsys, words, sentence):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
+        (["run", "frontal", "--seed", "abc"], "argument --seed: 'abc' must be a whole number\n"),
+        (["run", "frontal", "--pace", "fast"], "argument --pace: 'fast' must be a number\n"),
+        (["new", "senser", "a.py"], "argument KIND: 'senser' must be model, predictor, sensor, "),
+        (["new", "senser", "a.py"], ", schema, did you mean 'sensor'?\n"),
+    ],
+)
+def test_the_parser_names_the_value_and_what_is_allowed(capsys, words, sentence):
+    with pytest.raises(SystemExit) as end:
+        main(words)
+    assert end.value.code == 2
+    assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
         (["run", "frontal", "--pace", "0"], "--pace 0 must be above 0"),
         (["run", "frontl"], "did you mean 'frontal'?; it is neither a file nor a built-in name; crowdbot list trials"),
         (["run", "{}/a.csv/b"], "there is no trial file"),
@@ -48,7 +64,10 @@ def test_units_that_make_people_too_slow_cause_a_warning(tmp_path, capsys):
     assert main(["predict", "--data", str(tmp_path / "a.csv"), "--fps", "2.5"]) == 0
     assert "impossible" not in capsys.readouterr().err
     assert main(["predict", "--data", str(tmp_path / "a.csv"), "--fps", "2.5", "--units", "cm"]) == 0
-    assert "the median speed 0.013 m/s is impossible for people, check fps and units" in capsys.readouterr().err
+    assert (
+        "the median speed 0.013 m/s is impossible for people: check the frame rate (fps) and the units"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_folder_without_a_robot_is_named(tmp_path, capsys):

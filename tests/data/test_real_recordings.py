@@ -153,7 +153,7 @@ def test_juelich_units_rates_and_walls(recordings):
     assert hermes.time[-1] == pytest.approx(70.9, abs=0.05)
     given = load(recordings / "hermes/Corridor-1D/uo-080-240-240.txt", fps=25.0, units="m")
     assert given.dt == 0.04
-    assert "m/s is impossible for people, check fps and units" in given.note
+    assert "m/s is impossible for people: check the frame rate (fps) and the units" in given.note
     assert given.x[0] == pytest.approx(100.0 * hermes.x[0])
     assert [len(ring) for ring in load(recordings / "juelich/single_file/00_01a.h5").walls] == [4, 4, 4]
     simulated = load(recordings / "juelich/jupedsim_simulated/trajectories.sqlite").walls[0]

@@ -164,7 +164,7 @@ def test_a_table_with_every_tenth_frame(tmp_path):
 def test_speeds_that_are_impossible_for_people_are_noted(tmp_path, metres, fps, warned):
     path = tmp_path / "rows.csv"
     path.write_text("id,frame,x,y\n" + "".join(f"1,{k},{metres * k},0\n" for k in range(5)))
-    assert ("is impossible for people, check fps and units" in load(path, fps=fps).note) is warned
+    assert ("is impossible for people: check the frame rate (fps) and the units" in load(path, fps=fps).note) is warned
 
 
 def test_a_row_rate_is_refused_by_speed_alone(tmp_path):

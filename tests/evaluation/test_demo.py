@@ -3,12 +3,15 @@
 import json
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 
 from crowdbot.cli import main
 from crowdbot.evaluation import run_demo
 from crowdbot.recording import replay
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +48,23 @@ def test_four_predictors_are_scored_on_the_same_people(done):
 def test_the_commands_of_the_page_reproduce_its_table(done, capsys):
     made = done[0]
     page = made.report_file.read_text(encoding="utf-8")
-    lines = re.findall(r"crowdbot predict [^#\n]*", page.replace("&#x27;", "'"))
+    lines = re.findall(r"^crowdbot predict .*$", page.replace("&#x27;", "'"), re.MULTILINE)
     assert len(lines) == 4
     for line, score in zip(lines, made.scores, strict=True):
         assert main([*line.split()[1:], "--json"]) == 0
         total = json.loads(capsys.readouterr().out)["results"][0]["total"]
         assert (total["ade"], total["fde"], total["persons"]) == pytest.approx((score.ade, score.fde, score.persons))
+
+
+def test_the_readme_has_the_table_of_the_demo(done):
+    shown = {}
+    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
+        name, *cells = re.split(r"\s{2,}", line.strip())
+        if name in {score.predictor for score in done[0].scores}:
+            shown[name] = cells[:-1]
+    *_, milliseconds = done[0].scores[0].columns
+    assert milliseconds == "ms/window"  # the only column that depends on the machine
+    assert shown == {score.predictor: [*score.cells()[:-1]] for score in done[0].scores}
 
 
 def test_the_page_asks_nothing_from_outside(done):

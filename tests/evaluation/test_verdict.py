@@ -44,8 +44,8 @@ def test_the_sentence_has_persons_walls_and_arrivals_with_exact_intervals() -> N
     found = judge_cell(cell(outcomes, ["person"] * 3 + ["wall", "object"]))
     assert found.sentence == (
         "In 200 runs of hall with orca on qolo the robot touched a person in 3 (0.31 to 4.3 %), touched a wall or an"
-        " object in 2 (0.12 to 3.6 %) and failed to arrive in 7 (1.4 to 7.1 %: 5 contact, 2 timeout); not shown safe:"
-        " no requirement on contacts with persons is given."
+        " object in 2 (0.12 to 3.6 %) and failed to arrive in 7 (1.4 to 7.1 %: 5 contacts, 2 timeouts); not shown safe:"
+        " no requirement on the rate of contacts with persons is given, such as collision-rate<0.05@95%."
     )
     assert found.limit == (
         "200 runs can show at most this: without any contact, the rate of contacts is at most 1.5 % with 95 %"
@@ -61,7 +61,7 @@ def test_the_sentence_has_persons_walls_and_arrivals_with_exact_intervals() -> N
         (["person-collision-rate<0.05@95%"], True, "shown safe as required by person-collision-rate<0.05@95% (person"),
         (["collision-rate<0.01@95%"], False, "not shown safe: the requirement collision-rate<0.01@95% does not hold"),
         (["collision-rate<0.05"], False, "collision-rate<0.05 has no confidence, such as collision-rate<0.05@95%"),
-        (["success-rate>0.9@95%"], False, "no requirement on contacts with persons is given"),
+        (["success-rate>0.9@95%"], False, "no requirement on the rate of contacts with persons is given, such as"),
         (["collision-rate<0.05@95%", "success-rate>1"], False, "the requirement success-rate>1 does not hold"),
     ],
 )

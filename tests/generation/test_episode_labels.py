@@ -64,9 +64,11 @@ def test_robots_without_such_sensors_are_refused(tmp_path: Path) -> None:
     (tmp_path / "lab.xml").write_text(plain, encoding="utf-8")
     assert main(["run", str(tmp_path / "lab.xml"), "--out", str(tmp_path / "run"), "--json"]) == 0
     (found,) = (tmp_path / "run").rglob("*.mcap")
-    with pytest.raises(InputError, match=r"its robots have no colour camera that measured anything"):
-        export_labels(found, tmp_path / "coco", "coco")
-    with pytest.raises(InputError, match=r"no colour camera or 3-D laser scanner that measured anything"):
+    steps: list[float] = []
+    with pytest.raises(InputError, match=r"its robots have no colour camera; such labels need one"):
+        export_labels(found, tmp_path / "coco", "coco", progress=steps.append)
+    assert steps == []  # nothing has run
+    with pytest.raises(InputError, match=r"no colour camera or 3-D laser scanner; such labels need one"):
         export_labels(found, tmp_path / "kitti", "kitti")
     with pytest.raises(InputError, match=r"there is no format 'voc' of labels; choose coco or kitti"):
         export_labels(found, tmp_path / "voc", "voc")

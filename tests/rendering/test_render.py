@@ -241,7 +241,10 @@ WRONG = {
     "no world": (["--world", "physic"], r"--world physic must be planar or physics, did you mean 'physics'\?"),
     "both": (["--at", "0.4", "--to", "0.6"], r"--at is for an image and --to for a video"),
     "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps requires a video"),
-    "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),
+    "ending": (
+        ["--out", "a.tiff"],
+        r"a.tiff must end in .png, .jpg, .webp for an image, or in .mp4, .gif, .webp for a video with --to T",
+    ),
     "world": (
         ["--world", "physics", "--set", "world=planar"],
         r"--world physics and --set world=planar conflict",

@@ -12,6 +12,18 @@ from drives import main, write_drives_page
 ROBOTS = Path(crowdbot.__file__).parent / "assets" / "robots"
 
 
+STUDIES = Path(__file__).parents[2] / "studies"
+SCRIPTS = sorted(file.name for file in STUDIES.glob("*.py") if "__main__" in file.read_text(encoding="utf-8"))
+
+
+def test_every_script_reads_its_arguments_with_a_help():
+    assert len(SCRIPTS) > 20
+    for name in SCRIPTS:
+        source = (STUDIES / name).read_text(encoding="utf-8")
+        assert "ArgumentParser(" in source, f"studies/{name} has no --help"
+        assert "sys.argv[" not in source, f"studies/{name} reads its arguments past its parser"
+
+
 def test_a_page_has_its_tables_and_plots(tmp_path):
     report = measure_drives(["differential"], quick=True)
     files = write_drives_page(report, tmp_path / "drives.md", "python studies/drives.py --quick")

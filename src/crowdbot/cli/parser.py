@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import textwrap
 from collections.abc import Sequence
@@ -107,7 +108,7 @@ class CommandParser(argparse.ArgumentParser):
         """Print the usage and the message, and exit with status 2."""
         if message.startswith("the following arguments are required"):  # an option has taken them as its values
             message += "; arguments come before options that take several values"
-        super().error(message)
+        super().error(_in_words(message))
 
     def format_usage(self) -> str:
         """Return the line of usage: arguments and required options, then ``[options]`` for the others."""
@@ -140,3 +141,17 @@ class CommandParser(argparse.ArgumentParser):
             formatter.end_section()
         formatter.add_text(self.epilog)
         return f"{self.format_usage()}\n{formatter.format_help()}"
+
+
+def _in_words(message: str) -> str:
+    """Return a message of argparse in the words of the other errors: the value, and what is allowed."""
+    from crowdbot.core import did_you_mean
+
+    choice = re.search(r"invalid choice: '(?P<value>[^']*)' \(choose from (?P<known>.*)\)$", message)
+    if choice:
+        known = re.findall(r"[^\s,']+", choice["known"])
+        words = f"{choice['value']!r} must be {', '.join(known)}{did_you_mean(choice['value'], known)}"
+        return message[: choice.start()] + words
+    for kind, words in (("int", "a whole number"), ("float", "a number")):
+        message = re.sub(rf"invalid {kind} value: (.*)$", rf"\1 must be {words}", message)
+    return message

@@ -64,11 +64,12 @@ def judge_cell(cell: CellResult, requirements: Sequence[Requirement] = ()) -> Sa
     >>> metrics = {"success": 1.0, "person_collision": 0.0, "wall_collision": 0.0}
     >>> runs = tuple(RunRow(k, "success", "", metrics) for k in range(100))
     >>> verdict = judge_cell(CellResult("hall", "orca", "qolo", "", {"people": 8}, runs))
-    >>> print(verdict.sentence.replace(" (", "\\n("))
+    >>> print(verdict.sentence.replace(" (", "\\n(").replace("such as ", "such as\\n"))
     In 100 runs of hall with orca on qolo the robot touched a person in 0
     (0 to 3.6 %), touched a wall or an object in 0
     (0 to 3.6 %) and failed to arrive in 0
-    (0 to 3.6 %); not shown safe: no requirement on contacts with persons is given.
+    (0 to 3.6 %); not shown safe: no requirement on the rate of contacts with persons is given, such as
+    collision-rate<0.05@95%.
     """
     walls = _either(cell.values("wall_collision"), cell.values("object_collision"))
     person, obstacle = _share(cell.values("person_collision")), _share(walls)
@@ -123,7 +124,9 @@ def _counts(cell: CellResult, person: Estimate, obstacle: Estimate, missed: Esti
     invalid = len(cell.runs) - len(cell.valid)
     left_out = f" ({invalid} more were impossible and do not count)" if invalid else ""
     outcomes = Counter(row.outcome for row in cell.valid if row.metrics.get("success") != 1.0)
-    kinds = ", ".join(f"{count} {OUTCOMES.get(name, name)}" for name, count in outcomes.most_common())
+    kinds = ", ".join(
+        f"{count} {OUTCOMES.get(name, name)}{'s' * (count != 1)}" for name, count in outcomes.most_common()
+    )
     touched = (
         f"touched a person in {_percent(person)}, touched a wall or an object in {_percent(obstacle)}"
         if person.runs
@@ -168,7 +171,7 @@ def _missing_proof(cell: CellResult, requirements: Sequence[Requirement]) -> str
             return f"the requirement {requirement.text} does not hold ({verdict.sentence})"
     bounds = [one for one in requirements if _is_on_persons(one)]
     if not bounds:
-        return "no requirement on contacts with persons is given"
+        return "no requirement on the rate of contacts with persons is given, such as collision-rate<0.05@95%"
     if all(one.confidence is None for one in bounds):
         return f"the requirement {bounds[0].text} has no confidence, such as {bounds[0].text}@95%"
     return ""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, explain_write_errors
 from crowdbot.recording import open_rerun, read_episode
+from crowdbot.sensors import RGBCamera, Sensor
 from crowdbot.simulation import Simulation, SimulationRun
 
 from .formats.coco import join_annotations, write_images
@@ -19,7 +20,9 @@ from .formats.kitti import write_kitti
 from .plan import with_masks
 from .sample_log import SampleLog, Table
 
-LABEL_FORMATS = ("coco", "kitti")
+LABELLED = {"coco": "colour camera", "kitti": "colour camera or 3-D laser scanner"}
+"""Sensors that labels of a format need."""
+LABEL_FORMATS = tuple(LABELLED)
 
 
 class LabelFiles(NamedTuple):
@@ -64,15 +67,14 @@ def export_labels(
         raise InputError(f"there is no format {kind!r} of labels; choose {' or '.join(LABEL_FORMATS)}")
     if target.exists() and not (force and target.is_dir()):
         raise InputError(f"{target} already exists; give a new folder, or --force to replace it")
-    tables = _labelled(Path(episode), folder, trust, progress)
+    tables = _labelled(Path(episode), kind, folder, trust, progress)
     draft = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with explain_write_errors(target):
             draft.mkdir(parents=True)
             files = _written(tables, draft, kind, Path(episode).name)
             if not files:
-                what = "colour camera" if kind == "coco" else "colour camera or 3-D laser scanner"
-                raise InputError(f"{episode}: its robots have no {what} that measured anything")
+                raise InputError(f"{episode}: its robots have no {LABELLED[kind]} that measured anything")
             if target.exists():
                 shutil.rmtree(target)
             draft.replace(target)
@@ -83,12 +85,18 @@ def export_labels(
 
 
 def _labelled(
-    episode: Path, folder: Path | None, trust: bool, progress: Callable[[float], object] | None
+    episode: Path, kind: str, folder: Path | None, trust: bool, progress: Callable[[float], object] | None
 ) -> Mapping[str, Table]:
-    """Return the tables of all sensors of an episode."""
+    """Return the tables of all sensors of an episode.
+
+    Raises:
+        InputError: no robot has a sensor that such labels need; nothing runs then.
+    """
     steps = read_episode(episode).steps
     with open_rerun(episode, folder=folder, trust=trust) as rerun:
         trial = dataclasses.replace(rerun.trial, robots=tuple(with_masks(robot) for robot in rerun.trial.robots))
+        if not any(_has_labels(mount.sensor, kind) for robot in trial.robots for mount in robot.sensors):
+            raise InputError(f"{episode}: its robots have no {LABELLED[kind]}; such labels need one")
         simulation = Simulation(trial, rerun.seed)
         rerun.prepare(simulation)
         columns = {robot.robot.name: robot.agent for robot in simulation.robots}
@@ -100,6 +108,11 @@ def _labelled(
             if progress is not None:
                 progress(simulation.tick / max(1, steps))
         return log.tables()
+
+
+def _has_labels(sensor: Sensor, kind: str) -> bool:
+    """Whether a sensor can give labels: only colour cameras give images, and any sensor in space can give points."""
+    return isinstance(sensor, RGBCamera) or (kind == "kitti" and sensor.spatial)
 
 
 def _written(tables: Mapping[str, Table], folder: Path, kind: str, name: str) -> list[Path]:

@@ -42,8 +42,9 @@ class ImageWriter:
         known = FILMS if film else IMAGES
         self.folder = path.suffix == "" or path.is_dir()
         if not self.folder and path.suffix.lower() not in known:
+            video = "" if film else f", or in {', '.join(FILMS)} for a video with --to T"
             raise InputError(
-                f"{path} must end in {', '.join(known)} for {'a video' if film else 'an image'}, or be a folder"
+                f"{path} must end in {', '.join(known)} for {'a video' if film else 'an image'}{video}, or be a folder"
             )
         if not self.folder and path.parent.exists() and not path.parent.is_dir():
             raise InputError(f"{path.parent} is a file; use another path for {path.name}")

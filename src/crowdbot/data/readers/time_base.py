@@ -66,6 +66,6 @@ def row_rate_of(
         note = f"no frame rate in the file: {step} frames are interpreted as 0.4 s, as in ETH/UCY; fps overrides this"
         return CONVENTIONAL_FPS[step] / step, note
     raise DataError(
-        f"{name} has no frame rate, and a step of {step} frames is not a convention of the field;"
+        f"{name} has no frame rate, and rows {step} frame{'s' * (step != 1)} apart are not a convention of the field;"
         f" give fps, the frames per second (rows of a track are then {step} / fps seconds apart)"
     )

@@ -128,11 +128,11 @@ def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:
     values = " ".join(f"{name.replace('_', '-')}={value!r}" for name, (value, _) in fit.table().items())
     return {
         f"crowdbot run {TRIAL} --seed {episode.seed} --out {out}": "the trial",
-        f"crowdbot replay {file}": "repeats the trial and compares all bytes",
-        f"{scored} constant-velocity": "a row of the prediction table",
-        f"{scored} constant-acceleration": "another row",
-        f"{scored} kalman": "another row",
-        f"{scored} simulated --model orca --set {values}": "the calibrated crowd",
+        f"crowdbot replay {file}": "the trial again, compared byte by byte",
+        f"{scored} constant-velocity": "constant-velocity in the prediction table",
+        f"{scored} constant-acceleration": "constant-acceleration in the prediction table",
+        f"{scored} kalman": "kalman in the prediction table",
+        f"{scored} simulated --model orca --set {values}": "simulated in the prediction table: the calibrated crowd",
         f"crowdbot demo --seed {episode.seed} --out {out}": "this page",
     }
 

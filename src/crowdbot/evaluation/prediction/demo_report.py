@@ -56,7 +56,7 @@ def write_demo_report(
         episode: the recorded trial.
         past, future: windows of its people at the prediction times, ``[W, T, A, ...]``.
         predicted: one entry for each predictor, over the same windows.
-        commands: commands that reproduce each part.
+        commands: commands that reproduce each part, with a description of the part.
         seen: description of the input of the predictors.
     """
     page = Template(_asset("page.html")).substitute(
@@ -71,7 +71,7 @@ def write_demo_report(
         horizon_words=f"Mean distance to the true position over the horizon, over the same {predicted[0].score.persons}"
         " person-windows.",
         navigation=_navigation_table(episode),
-        commands=html.escape("\n".join(f"{command:<72}  # {what}" for what, command in commands.items())),
+        commands=html.escape("\n".join(f"# {what}\n{command}" for command, what in commands.items())),
         environment=html.escape(_environment(episode)),
         data=_data(episode, past, future, predicted),
     )
