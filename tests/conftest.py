@@ -31,7 +31,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import missing_packages
-from gate_guard import LIVE_FIXTURES, GateGuard
+from gate_guard import GateGuard
 
 settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("hunt", deadline=None)
@@ -183,12 +183,6 @@ def reference() -> Path:
 def pytest_configure(config: pytest.Config) -> None:
     """Watch the tests of the gate, the doctests of the package among them."""
     config.pluginmanager.register(GateGuard())
-
-
-def pytest_itemcollected(item: pytest.Item) -> None:
-    """Give the marker ``live`` to a test that asks for another program."""
-    if not LIVE_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
-        item.add_marker("live")
 
 
 def pytest_collection_finish() -> None:

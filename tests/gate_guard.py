@@ -6,7 +6,9 @@ waits for, such as a command of crowdbot, is allowed if the test says so with th
 
 from __future__ import annotations
 
+import functools
 import multiprocessing.util
+import re
 import socket
 import sys
 import threading
@@ -28,6 +30,12 @@ INNER = ("uname -p", "fc-list", "import mujoco.egl", "import compile_kernels", s
 OUTSIDE = ("live", "sweep", "soak")
 LIVE_FIXTURES = {"browser", "chromium", "domain", "modules", "ros1", "roslaunch", "rviz"}
 """Fixtures that make a test a live one: another program, or packages of the npm registry."""
+LIVE_WORDS = re.compile(rf"mark\.live\b|\bdef \w+\([^)]*\b(?:page|{'|'.join(sorted(LIVE_FIXTURES))})\b")
+"""What stands in a file with live tests: the marker, or a function with one of these fixtures or with the one ``page``,
+which asks for the browser."""
+
+GROUP = re.compile(r"^pytestmark = .*\bxdist_group\(['\"](\w+)['\"]\)", re.MULTILINE)
+"""Line of a test file that makes it one of a group."""
 
 
 class GateGuard:
@@ -43,6 +51,31 @@ class GateGuard:
         self._fixtures: dict[object, tuple[list[str], list[str]]] = {}
         sys.addaudithook(self._audit)  # stays to the end of the process
         self._sleep, self._spawn = time.sleep, multiprocessing.util.spawnv_passfds
+
+    def pytest_itemcollected(self, item: pytest.Item) -> None:
+        """Mark a test that asks for another program as ``live``; refuse markers that the text of a file hides."""
+        if not LIVE_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
+            item.add_marker("live")
+        if item.get_closest_marker("live") and not may_hold_live_tests(item.path):
+            where = f"{item.path.name} has neither @pytest.mark.live nor one of {', '.join(sorted(LIVE_FIXTURES))}"
+            raise pytest.UsageError(f"make live would miss {item.nodeid}: {where}; add the marker in this file")
+        group = item.get_closest_marker("xdist_group")
+        if group and group.args != (group_of(item.path),):
+            raise pytest.UsageError(f"the group of {item.nodeid} has no effect: give it to the file, as pytestmark")
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_xdist_make_scheduler(self, config: pytest.Config, log: object) -> object | None:
+        """Send whole files to the workers, and those with the same marker ``xdist_group`` to one of them."""
+        if config.getoption("dist") != "loadfile":
+            return None
+        from xdist.scheduler import LoadFileScheduling
+
+        class GroupScheduling(LoadFileScheduling):
+            def _split_scope(self, nodeid: str) -> str:
+                file = super()._split_scope(nodeid)
+                return group_of(config.rootpath / file) or file
+
+        return GroupScheduling(config, log)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
@@ -118,6 +151,23 @@ class GateGuard:
     def _watched_spawn(self, path: bytes, words: list[str], kept: list[int]) -> int:
         self._program.append("a process of multiprocessing")
         return self._spawn(path, words, kept)
+
+
+@functools.cache
+def may_hold_live_tests(path: Path) -> bool:
+    """Whether ``make live`` collects a test file: all files with live tests, and a few without."""
+    return LIVE_WORDS.search(path.read_text(encoding="utf-8")) is not None
+
+
+@functools.cache
+def group_of(path: Path) -> str | None:
+    """Return the name of the marker ``xdist_group`` of a test file, or None without one.
+
+    The process that distributes the tests collects none, so it reads the name in the text. pytest-xdist 3.8 itself
+    cannot tell it the group of a test with pytest 9.2.
+    """
+    found = GROUP.search(path.read_text(encoding="utf-8")) if path.suffix == ".py" and path.is_file() else None
+    return found and found[1]
 
 
 def fixtures_of(item: pytest.Item) -> list[object]:

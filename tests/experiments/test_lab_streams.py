@@ -38,6 +38,8 @@ from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder
 from crowdbot.trials import parse_trial
 
+pytestmark = pytest.mark.xdist_group("lsl")
+
 MEETING = """<trial name="meeting" duration="1.5" step="0.05">
   <stage/>
   <end collision="false"/>
@@ -77,7 +79,6 @@ def everything(inlet):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
     trial = parse_trial(MEETING)
     with StreamOutlets("test-poses") as outlets:
@@ -110,7 +111,6 @@ def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_a_session_sends_its_answers_and_keeps_both_clocks(tmp_path):
     with StreamOutlets("test-session") as outlets:
         inlet = inlet_of("crowdbot-events")
@@ -158,7 +158,6 @@ def sender(name, kind="EEG", labels=("a", "b"), form=pylsl.cf_double64):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_a_stream_is_recorded_with_both_clocks_and_its_offset(tmp_path):
     behind = 1000.0  # the sender stamps with a clock of its own
     outlet = sender("signal, left")
@@ -183,7 +182,6 @@ def test_a_stream_is_recorded_with_both_clocks_and_its_offset(tmp_path):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_a_second_part_does_not_replace_the_first(tmp_path):
     outlet = sender("pulse", labels=("rate",), form=pylsl.cf_int32)
     for value in (61, 62):
@@ -200,7 +198,6 @@ def test_a_second_part_does_not_replace_the_first(tmp_path):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_missing_streams_and_texts_are_refused(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="no stream with the name 'nobody'"):
         StreamRecorder(tmp_path, ["nobody"], wait=0.2)
@@ -294,7 +291,6 @@ def test_a_gaze_that_is_no_direction_is_refused(gaze):
 
 
 @pytest.mark.live
-@pytest.mark.xdist_group("lsl")
 def test_the_command_sends_and_records_and_a_withdrawal_deletes_the_streams(tmp_path, capsys):
     outlet = sender("pulse", labels=("rate",))
     words = ["experiment", "run", "robot-speed", "--participant", "1", "--out", str(tmp_path), "--rehearse"]

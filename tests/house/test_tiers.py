@@ -92,6 +92,72 @@ def test_a_test_that_depends_on_the_machine_fails_with_the_marker_that_it_lacks(
     assert "9 failed, 6 passed" in done.stdout
 
 
+GROUPS = """
+import os, pytest
+@pytest.fixture(scope="module")
+def process(): return os.getpid()
+@pytest.mark.parametrize("k", range(8))
+def test_process(k, process, request):
+    with open(request.fspath.dirpath("processes"), "a") as file: print(request.fspath.purebasename, process, file=file)
+"""
+
+
+@pytest.mark.program
+def test_the_live_tests_of_a_file_run_in_one_process_and_so_do_those_of_a_group(tmp_path):
+    (tmp_path / "conftest.py").write_text(CONFTEST)
+    for name in ("alone", "first", "second"):
+        mark = "import pytest\npytestmark = [pytest.mark.xdist_group('pair')]\n" if name != "alone" else ""
+        (tmp_path / f"test_{name}.py").write_text(mark + GROUPS)
+    words = ["-q", "-p", "no:cacheprovider", "-p", "no:randomly", "-n", "2", "--dist", "loadfile", str(tmp_path)]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *words],
+        cwd=tmp_path, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "tests"), "PATH": ""},
+    )  # fmt: skip
+    assert "24 passed" in done.stdout, done.stdout + done.stderr
+    lines = set((tmp_path / "processes").read_text().splitlines())
+    assert len(lines) == 3
+    processes = dict(line.split() for line in lines)
+    assert processes["test_first"] == processes["test_second"] != processes["test_alone"]
+
+
+HIDDEN = {
+    "from marks import real\n@real\ndef test_x(): pass\n":
+        "make live would miss test_hidden.py::test_x: test_hidden.py has neither @pytest.mark.live nor one of browser",
+    "import pytest\n@pytest.mark.xdist_group('pair')\ndef test_x(): pass\n":
+        "the group of test_hidden.py::test_x has no effect: give it to the file, as pytestmark",
+}  # fmt: skip
+
+
+@pytest.mark.program
+@pytest.mark.parametrize("text", HIDDEN)
+def test_a_marker_that_is_not_seen_in_the_text_of_a_file_stops_the_run(tmp_path, text):
+    (tmp_path / "conftest.py").write_text(CONFTEST)
+    (tmp_path / "marks.py").write_text("import pytest\nreal = pytest.mark.live\n")
+    (tmp_path / "test_hidden.py").write_text(text)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--collect-only", str(tmp_path)]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "tests"), "PATH": ""}
+    )
+    assert done.returncode == pytest.ExitCode.USAGE_ERROR
+    assert HIDDEN[text] in done.stderr
+
+
+def test_make_live_collects_the_files_that_may_hold_live_tests(monkeypatch, tmp_path):
+    monkeypatch.setattr(live, "ROOT", tmp_path)
+    texts = {
+        "test_marked.py": "@pytest.mark.live\ndef test_x(): pass",
+        "web/test_page.py": "def test_x(tmp_path,\n           page): pass",
+        "web/test_text.py": "def test_x():\n    assert 'page' in 'browser page'",
+    }
+    for name, text in texts.items():
+        (tmp_path / "tests" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "tests" / name).write_text(text)
+    assert live.live_files(["tests"]) == ["tests/test_marked.py", "tests/web/test_page.py"]
+    assert live.live_files(["tests/web", "tests/test_marked.py::test_x"]) == [
+        "tests/web/test_page.py", "tests/test_marked.py::test_x",
+    ]  # fmt: skip
+
+
 @pytest.fixture
 def runs(monkeypatch, tmp_path):
     """The words of the runs of pytest; ``failed`` fail together, ``alone`` also when they are repeated."""
@@ -107,7 +173,7 @@ def runs(monkeypatch, tmp_path):
         for module in (live, failed_tests):
             monkeypatch.setattr(module, "REPORT", tmp_path / "live.json")
         monkeypatch.setattr(live, "commit", lambda: "abc")
-        monkeypatch.setattr(sys, "argv", ["live.py", "tests/web"])
+        monkeypatch.setattr(sys, "argv", ["live.py", "tests/web/test_vr_page.py"])
         return live.main()
 
     return start, seen
@@ -120,7 +186,7 @@ def test_a_live_test_counts_as_failed_if_it_fails_twice(runs, capsys, failed, al
     start, seen = runs
     assert start(failed, alone) == status
     assert [words[0] for words in seen] == ["live"] + ["repeat"] * len(failed)
-    assert seen[0][-1] == "tests/web"
+    assert seen[0][-1] == "tests/web/test_vr_page.py"
     report = json.loads(live.REPORT.read_text())
     assert report["repeats"] == [{"test": name, "passed": name not in alone} for name in failed]
     assert report["commit"] == "abc"
