@@ -50,10 +50,9 @@ from crowdbot.prediction.anchor_net.training_data import (
 )
 from crowdbot.prediction.pretrained_weights import ALL, FOLDS, OPEN, STEP, is_held_out
 from crowdbot.prediction.training.loop import TrainingSchedule, train
-from crowdbot.prediction.training.robot_encounters import robot_encounters
 from crowdbot.prediction.training.samples import Samples, recordings_with_windows, split_in_time
-from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
+from training_crowds import robot_encounters, simulated_crowds
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])

@@ -27,7 +27,7 @@ from crowdbot.data import Windows, load
 from crowdbot.prediction import AnchorNet, Kalman
 from crowdbot.prediction.anchor_net.plan_reaction import PlanReaction
 from crowdbot.prediction.anchor_net.reaction_fit import ReactionSamples, fit_reaction
-from crowdbot.prediction.training.robot_encounters import people_encounters, robot_encounters
+from training_crowds import people_encounters, robot_encounters
 
 ROOM = 0.3
 """Distance to the surface of a robot that people keep [m]."""

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from crowdbot.benchmark import EngineSizes, measure_engines
-from crowdbot.benchmark.engines.other_peers import JuPedSimPeer
-from crowdbot.benchmark.engines.paired_steps import kernel_threads, time_steps
-from crowdbot.benchmark.engines.rvo2_peer import Rvo2Peer
+from crowdbot.benchmark.engines.peers import JuPedSimPeer, Rvo2Peer
+from crowdbot.benchmark.engines.report import kernel_threads, time_steps
 from crowdbot.benchmark.speed.workloads import crowd
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra

@@ -12,11 +12,9 @@ import numpy as np
 import pytest
 
 from crowdbot.benchmark import BenchmarkSizes, measure_environments
-from crowdbot.benchmark.environments.builtin_rates import planar_trials
-from crowdbot.benchmark.environments.calls import count_calls
 from crowdbot.benchmark.environments.crossing import advance_work, crossing_trial, reset_work
-from crowdbot.benchmark.environments.ir_sim_peer import IrSimPeer
-from crowdbot.benchmark.environments.navground_peer import NavgroundPeer
+from crowdbot.benchmark.environments.peers import IrSimPeer, NavgroundPeer
+from crowdbot.benchmark.environments.report import count_calls, planar_trials
 from crowdbot.benchmark.environments.work_rate import TimedWork, rates
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra

@@ -23,8 +23,7 @@ from partner_runs import OdometryMemory, recording_of, time_until_still
 
 from crowdbot.bridges import BridgeClock, open_transport, run_bridge
 from crowdbot.bridges.naoqi import NaoqiBridge
-from crowdbot.bridges.naoqi.memory_keys import memory_values
-from crowdbot.bridges.naoqi.odometry_follower import OdometryFollower
+from crowdbot.bridges.naoqi.bridge import OdometryFollower, memory_values
 from crowdbot.bridges.naoqi.robot_link import RewriteCycle
 from crowdbot.core import InputError
 from crowdbot.messages import Messages

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from crowdbot.bridges import Inbox, RobotInterface, fields_of, plain_fields
-from crowdbot.bridges.rosbridge.cbor import encode_cbor
-from crowdbot.bridges.rosbridge.encoding import OutgoingMessage, read_png
+from crowdbot.bridges.rosbridge.encoding import OutgoingMessage, encode_cbor, read_png
 from crowdbot.bridges.rosbridge.frames import MOST_TEXT, FrameReader
 from crowdbot.bridges.rosbridge.graph import RosGraph
 from crowdbot.bridges.rosbridge.rosapi import ROSAPI, type_details

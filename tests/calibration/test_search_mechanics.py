@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.calibration import Annealing, Genetic, Geometric, RandomSearch, Search
-from crowdbot.calibration.breeding import breed, keep_fittest
+from crowdbot.calibration.genetic import breed, keep_fittest
 from crowdbot.calibration.search_state import SearchState
 from crowdbot.core import stream
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from crowdbot.cli import main
 from crowdbot.core import DataError, InputError, Walls
 from crowdbot.evaluation import SCAN_SCORES, SOGMP, find_ogm_split, log_readings, read_ogm, score_scans
-from crowdbot.evaluation.recorded_scans.npy_file import read_npy_row
+from crowdbot.evaluation.recorded_scans.ogm_files import read_npy_row
 from crowdbot.perception import LastScan, LidarClusters, MovedScan, TrackedScene
 from crowdbot.trials import parse_trial
 

@@ -19,7 +19,7 @@ from test_person_detector import FOLDER, write_network
 from visualization_msgs.msg import ImageMarker
 
 from crowdbot.bridges.ros2 import Ros2Node
-from crowdbot.bridges.ros2.participant import Participant
+from crowdbot.bridges.ros2.node import Participant
 from crowdbot.trials import load_trial
 
 sys.path[:0] = [str(FOLDER), str(ROOT / "tests" / "bridges")]

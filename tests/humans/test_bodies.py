@@ -21,7 +21,7 @@ from crowdbot.humans import (
     posing_and_skinning,
 )
 from crowdbot.humans.asset import LEVELS, shapes
-from crowdbot.humans.skin import skin_vertices
+from crowdbot.humans.people import skin_vertices
 
 
 def test_there_are_forty_adults_four_children_and_a_mannequin():

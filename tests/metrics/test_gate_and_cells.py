@@ -10,7 +10,7 @@ from robot_logs import agents_of, log_of_paths, random_log, walk
 
 from crowdbot.metrics import RobotLog, gate_metrics, log_metrics
 from crowdbot.metrics.social.gate_flow import count_crossings, find_gate
-from crowdbot.metrics.social.voronoi_density import voronoi_density
+from crowdbot.metrics.social.surroundings import voronoi_density
 
 DISC = math.pi * 2.5**2
 DOOR = np.array([[3.0, 0.8, 3.0, 9.0], [3.0, -1.2, 3.0, -9.0]])

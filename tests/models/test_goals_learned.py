@@ -15,8 +15,8 @@ from crowdbot.data import Trajectories, fill_gaps, load, observed_velocity, stea
 from crowdbot.models import CurrentDirection
 from crowdbot.models.goals import EnvironmentLayout, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
+from crowdbot.models.goals.learned_destinations import BINS, TurnSamples, accumulate, median_turn
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
-from crowdbot.models.goals.turn_histogram import BINS, TurnSamples, accumulate, median_turn
 
 
 def eastwards(x, y, speed=1.3):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
 
 Maker = Callable[..., Windows]
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "studies"))  # simulated training data: training_crowds.py
 
 
 @pytest.fixture(scope="session")

@@ -16,8 +16,8 @@ from crowdbot.data import Trajectories, Windows
 from crowdbot.evaluation import score_predictor
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES, agent_histories
-from crowdbot.prediction.anchor_net.layers import attend, dense
-from crowdbot.prediction.anchor_net.network_shapes import NEEDED
+from crowdbot.prediction.anchor_net.forward_pass import attend, dense
+from crowdbot.prediction.anchor_net.own_weights import NEEDED
 from crowdbot.prediction.joint_kernels import assign_futures, first_crossing, separate_paths
 from crowdbot.prediction.pretrained_weights import FOLDS, load_pretrained
 

@@ -15,7 +15,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.prediction.anchor_net.agent_frame import AGENT_FEATURES, NEAR, NEIGHBOR_FEATURES, PREDICTED_ROWS
 from crowdbot.prediction.anchor_net.forward_pass import network_output
-from crowdbot.prediction.anchor_net.network_shapes import NEEDED
+from crowdbot.prediction.anchor_net.own_weights import NEEDED
 from crowdbot.prediction.anchor_net.training import (
     PRESETS,
     AnchorNetTraining,
@@ -35,10 +35,9 @@ from crowdbot.prediction.anchor_net.training_data import (
     training_set_of,
 )
 from crowdbot.prediction.training.loop import TrainingSchedule, train
-from crowdbot.prediction.training.robot_encounters import robot_encounters
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.simulated_crowds import simulated_crowds
 from crowdbot.prediction.training.torch_backend import torch_threads
+from training_crowds import robot_encounters, simulated_crowds
 
 TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
 

@@ -14,7 +14,7 @@ from crowdbot.data import Forecast, Trajectories, Windows, resample_rows, slice_
 from crowdbot.metrics import ellipse_coverage
 from crowdbot.prediction import AnchorNet, ConstantVelocity, Kalman, Live
 from crowdbot.prediction.anchor_net.mixture import FILTERED, WIDENED
-from crowdbot.prediction.weight_files import find_weights
+from crowdbot.prediction.pretrained_weights import find_weights
 
 Maker = Callable[..., Windows]
 

@@ -8,7 +8,7 @@ import pytest
 from crowdbot.core import CrowdbotError, DataError, InputError
 from crowdbot.data import Trajectories
 from crowdbot.prediction import AnchorNet, load_checkpoint, save_checkpoint
-from crowdbot.prediction.anchor_net.network_shapes import NEEDED, wrong_array
+from crowdbot.prediction.anchor_net.own_weights import NEEDED, wrong_array
 from crowdbot.prediction.pretrained_weights import load_pretrained
 
 CHECKPOINT = Path(__file__).parent / "data" / "first-version" / "anchor-net" / "best.npz"

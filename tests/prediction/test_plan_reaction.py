@@ -17,7 +17,7 @@ from crowdbot.prediction import AnchorNet, ConstantVelocity
 from crowdbot.prediction.anchor_net.own_weights import load_reaction
 from crowdbot.prediction.anchor_net.plan_reaction import PlanReaction
 from crowdbot.prediction.anchor_net.reaction_fit import ReactionSamples, fit_reaction
-from crowdbot.prediction.training.robot_encounters import REACTING_MODELS, people_encounters, robot_encounters
+from training_crowds import REACTING_MODELS, people_encounters, robot_encounters
 
 Maker = Callable[..., Windows]
 TIME = 0.4 * np.arange(-7.0, 1.0)

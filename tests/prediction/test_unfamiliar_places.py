@@ -17,7 +17,7 @@ from crowdbot.prediction.anchor_net.filtered_line import filter_tracks, filtered
 from crowdbot.prediction.anchor_net.out_of_distribution import out_of_distribution as score_of
 from crowdbot.prediction.anchor_net.predictor import _bends
 from crowdbot.prediction.pretrained_weights import load_pretrained
-from crowdbot.prediction.training.simulated_crowds import CROWD_LAYOUTS, CROWD_MODELS, simulated_crowds
+from training_crowds import CROWD_LAYOUTS, CROWD_MODELS, simulated_crowds
 
 Maker = Callable[..., Windows]
 NET = AnchorNet("open")

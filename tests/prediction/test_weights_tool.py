@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from crowdbot.prediction.anchor_net.network_shapes import wrong_array
+from crowdbot.prediction.anchor_net.own_weights import wrong_array
 from crowdbot.prediction.pretrained_weights import read_weights
 
 TOOL = Path(__file__).parents[2] / "studies" / "train_anchor_net.py"

@@ -406,7 +406,7 @@ def test_files_outside_and_inside_meet_in_a_folder_for_the_time(tmp_path: Path) 
 def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> None:
     from shutil import copytree
 
-    from crowdbot.trials.robots.robot_types import _assets
+    from crowdbot.trials.robot import _assets
 
     copytree(_assets("turtlebot2"), tmp_path / "mine")
     (tmp_path / "mine" / "more.py").write_text("")

@@ -300,7 +300,7 @@ def test_without_mujoco_the_physics_world_is_refused_in_one_sentence(
 def test_a_robot_of_a_folder_beside_the_trial(tmp_path: Path) -> None:
     from shutil import copytree
 
-    from crowdbot.trials.robots.robot_types import _assets
+    from crowdbot.trials.robot import _assets
 
     home = tmp_path
     copytree(_assets("turtlebot2"), home / "mine")

@@ -12,8 +12,7 @@ from crowdbot.core import InputError, TrialError
 from crowdbot.navigation import Straight
 from crowdbot.sensors import IMU, GroundTruthPeople, Lidar2D
 from crowdbot.trials import Mount, RobotGoal, RobotSpec, check_trial, is_code, parse_trial
-from crowdbot.trials.robot import _merge_sensors
-from crowdbot.trials.robots.robot_types import _assets
+from crowdbot.trials.robot import _assets, _merge_sensors
 from crowdbot.world import DifferentialDrive
 
 

@@ -14,9 +14,9 @@ from crowdbot.validation.components import ASSIGNED_EXITS, COUNTER_FLOW, PREMOVE
 from crowdbot.validation.corridor import corridor_crowd
 from crowdbot.validation.crowd_motion import one_start, simulate_periodic
 from crowdbot.validation.rimea import CORNER, CORRIDOR_TIME
+from crowdbot.validation.run import ResultFile
 from crowdbot.validation.scenario import CrowdTracks
 from crowdbot.validation.statistics import bin_values, pool_bins
-from crowdbot.validation.store import ResultFile
 from crowdbot.validation.time_steps import TIME_STEPS
 
 
@@ -85,7 +85,7 @@ def test_more_starts_are_added_to_the_stored_ones(tmp_path, monkeypatch):
         return [{"out": 20, "seconds": 20.0 + n, "outside": 0.0, "overlap": 0.0} for n in numbers]
 
     monkeypatch.setattr("crowdbot.validation.run.STUDIES", ())
-    monkeypatch.setattr("crowdbot.validation.store.code_digest", lambda modules: "code")
+    monkeypatch.setattr("crowdbot.validation.run.code_digest", lambda modules: "code")
     alone = CORRIDOR_TIME._replace(run=run, judge=lambda result: CORNER.judge({**result, "out": 20}))
     monkeypatch.setattr("crowdbot.validation.run.CHECKS", (CORNER._replace(run=run), alone))
     assert validate({"orca": ORCA()}, tmp_path, starts=3).outcomes["orca"]["rimea-6"].starts == 3

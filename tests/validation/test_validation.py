@@ -22,6 +22,7 @@ from crowdbot.validation.layouts import corridor_walls, inside_solids
 from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
 from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
+from crowdbot.validation.run import ResultFile
 from crowdbot.validation.scenario import (
     RADIUS,
     STEP,
@@ -32,7 +33,6 @@ from crowdbot.validation.scenario import (
     starts,
 )
 from crowdbot.validation.single_file import SINGLE_FILE, _overtakings
-from crowdbot.validation.store import ResultFile
 from samples import sizes
 
 

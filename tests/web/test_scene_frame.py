@@ -12,7 +12,7 @@ from crowdbot.simulation import AddElementOrder, AddPersonOrder, Simulation
 from crowdbot.trials import load_trial, parse_trial
 from crowdbot.web import StateFrame
 from crowdbot.web.scene import LAYERS, WalkingBodies, scene_description, scene_frame, scene_resource
-from crowdbot.web.scene.bone_packing import pack_bones
+from crowdbot.web.scene.frame import pack_bones
 from crowdbot.web.scene.quaternions import quaternions
 from crowdbot.world import simulated_body, worlds_of
 

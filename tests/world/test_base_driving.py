@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from base_texts import base_file
 
-from crowdbot.benchmark.drives import measure_drives
+from crowdbot.benchmark import measure_drives
 from crowdbot.core import RobotError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import PhysicsStage, PhysicsWorld, PlanarWorld, Robot, import_robot

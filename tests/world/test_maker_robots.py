@@ -8,8 +8,8 @@ import pytest
 from maker_texts import MAKERS, write_maker
 from physics_worlds import alone
 
-from crowdbot.benchmark.drives import measure_drives
-from crowdbot.benchmark.drives.maker_robots import maker_robot
+from crowdbot.benchmark import measure_drives
+from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Element, Twist
 from crowdbot.world import import_robot
 from crowdbot.world.urdf import mjcf

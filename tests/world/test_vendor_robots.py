@@ -8,8 +8,8 @@ import pytest
 from physics_worlds import alone
 from vendor_texts import VENDORS, write_vendor
 
-from crowdbot.benchmark.drives import measure_drives
-from crowdbot.benchmark.drives.maker_robots import maker_robot
+from crowdbot.benchmark import measure_drives
+from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Twist
 from crowdbot.world import import_robot
 from crowdbot.world.physics.robots.castor_springs import rests_on_castors

@@ -1,21 +1,18 @@
 """Calibration: fit the parameters of crowd models to recorded people; a scheme is model x cost x search x goal."""
 
-from .absolute import Absolute
 from .annealing import Annealing
 from .calibrator import Calibrator
 from .cma_es import CMAES
 from .contract import check_cost
 from .cooling import Cooling, Geometric
-from .cost import Cost
+from .cost import Absolute, Cost, InterPedestrian, Progressive, WeightedSum
 from .fit import Fit
 from .fit_prediction import futures
 from .genetic import Genetic
 from .greedy import Greedy
 from .identifiability import ParameterProfile, plot_profiles, profile_parameters
-from .inter_pedestrian import InterPedestrian
 from .parameter_space import ParameterSpace
 from .population_prior import PopulationPrior
-from .progressive import Progressive
 from .random_search import RandomSearch
 from .recording_calibration import CalibrationChunk, RecordingCalibration
 from .resimulation import ResimulatedTracks, Resimulation
@@ -23,7 +20,6 @@ from .rollout import Rollout
 from .scheme_parts import goal_class, goal_for, resolve_cost, resolve_goal, resolve_model, resolve_search
 from .search import Search, SearchResult
 from .time_limit import TimeLimit
-from .weighted_sum import WeightedSum
 
 __all__ = [
     "CMAES",

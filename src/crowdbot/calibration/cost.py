@@ -1,16 +1,18 @@
-"""Cost: contract of the dissimilarity between a simulated and a recorded crowd."""
+"""Cost: contract of the dissimilarity between a simulated and a recorded crowd, and the built-in costs."""
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import reduce
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Paper
-from crowdbot.typing import Floats
+from crowdbot.core import InputError, Paper, kernel, prange
+from crowdbot.typing import Bools, Floats
 
 from .resimulation import ResimulatedTracks
 
@@ -43,3 +45,115 @@ def mean_over_rows(distance: Floats, counted: NDArray[np.bool_]) -> Floats:
     count = counted.sum(axis=1)
     total = np.where(counted, distance, 0.0).sum(axis=2)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+@dataclass(frozen=True)
+class Absolute(Cost):
+    """Mean distance [m] between simulated and recorded positions, simulated from the first row over all rows.
+
+    People count if they are observed at the first row and at another row.
+
+    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
+    """
+
+    def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
+        """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
+        past = tracks.past
+        away = tracks.once - past.position[:, 1:]
+        counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
+        return mean_over_rows(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2), counted)
+
+
+@dataclass(frozen=True)
+class Progressive(Cost):
+    """Mean distance [m] between simulated and recorded positions one row ahead of every observed row.
+
+    A simulation of one row starts at each row from the second on, where the velocity is known from the previous row.
+    People count if they are observed at such a row and at the next one, so at least three rows are needed.
+
+    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
+    """
+
+    def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
+        """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
+        past = tracks.past
+        away = tracks.stepwise - past.position[:, 2:]
+        counted = past.present[:, 2:] & past.present[:, 1:-1] & ~past.robot[:, None]
+        return mean_over_rows(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2), counted)
+
+
+@kernel(parallel=True)
+def _differ(simulated: Floats, recorded: Floats, counted: Bools, total: Floats) -> None:
+    """Sum the differences between simulated and recorded distances of each person to all others, over all rows."""
+    P, W, T, A = simulated.shape[:4]
+    for pw in prange(P * W):
+        p, w = pw // W, pw % W
+        for t in range(T):
+            for a in range(A):
+                if not counted[w, t, a]:
+                    continue
+                for b in range(a):
+                    if not counted[w, t, b]:
+                        continue
+                    dx = simulated[p, w, t, a, 0] - simulated[p, w, t, b, 0]
+                    dy = simulated[p, w, t, a, 1] - simulated[p, w, t, b, 1]
+                    ex = recorded[w, t, a, 0] - recorded[w, t, b, 0]
+                    ey = recorded[w, t, a, 1] - recorded[w, t, b, 1]
+                    gap = abs(np.sqrt(dx * dx + dy * dy) - np.sqrt(ex * ex + ey * ey))
+                    total[p, w, a] += gap
+                    total[p, w, b] += gap
+
+
+@dataclass(frozen=True)
+class InterPedestrian(Cost):
+    """Mean difference [m] between simulated and recorded distances of each person to all others, over all rows.
+
+    The simulation starts at the first row. A pair counts at the rows where both are observed, if both are present at
+    the first row. People without a pair do not count.
+
+    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
+    """
+
+    def measure(self, tracks: ResimulatedTracks) -> Floats:
+        """Return the mean difference of every candidate and person, see :meth:`Cost.measure`."""
+        past, simulated = tracks.past, np.ascontiguousarray(tracks.once)
+        counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
+        others = np.where(counted, counted.sum(axis=2, keepdims=True) - 1, 0).sum(axis=1)
+        total = np.zeros((*simulated.shape[:2], simulated.shape[3]))
+        _differ(simulated, np.ascontiguousarray(past.position[:, 1:]), counted, total)
+        return np.where(others > 0, total / np.maximum(others, 1), np.nan)
+
+
+@dataclass(frozen=True)
+class WeightedSum(Cost):
+    """Weighted sum of several costs; people count if they count in all of them.
+
+    Fields:
+        parts: the costs.
+        weights: one weight per cost, at least 0 and not all 0.
+
+    Raises:
+        InputError: there is no cost, or the weights do not fit.
+
+    >>> from crowdbot.calibration import Absolute, InterPedestrian
+    >>> WeightedSum((Absolute(), InterPedestrian()), (1.0, 0.5)).weights
+    (1.0, 0.5)
+    """
+
+    parts: tuple[Cost, ...]
+    weights: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.parts) == 0 or len(self.parts) != len(self.weights):
+            raise InputError(
+                f"weighted-sum: {len(self.parts)} costs and {len(self.weights)} weights; each cost needs one weight"
+            )
+        if not all(0.0 <= weight < math.inf for weight in self.weights) or sum(self.weights) == 0.0:
+            raise InputError(f"weighted-sum: weights {self.weights} must be finite, at least 0 and not all 0")
+
+    def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
+        """Return the weighted sum for every candidate and person, see :meth:`Cost.measure`."""
+        return reduce(
+            np.add,
+            (weight * part.measure(tracks) for part, weight in zip(self.parts, self.weights, strict=True)),
+        )

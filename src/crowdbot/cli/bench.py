@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .output import add_json, json_text, note, number, print_json, print_table, progress
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from crowdbot.benchmark import DriveReport, EngineReport, EnvironmentReport
     from crowdbot.benchmark.environments.work_rate import WorkRate
 
+Measured = TypeVar("Measured", "DriveReport", "EngineReport", "EnvironmentReport")
 ENVIRONMENTS = "environments"
 """Name of the benchmark of environments, which has tables of its own."""
 ENGINES = "engines"
@@ -116,20 +118,25 @@ def _write(path: Path | None, value: Any) -> None:
             path.write_text(json_text(value) + "\n", encoding="utf-8")
 
 
+def _show(options: argparse.Namespace, measured: Measured, print_measured: Callable[[Measured], None]) -> int:
+    """Write a report to ``--out``, and print what is missing and the report."""
+    _write(options.out, measured.as_dict())
+    for sentence in getattr(measured, "missing", {}).values():
+        note(f"crowdbot: {sentence}")
+    if options.json:
+        print_json(measured.as_dict())
+    else:
+        print_measured(measured)
+    return 0
+
+
 def _measure_environments(options: argparse.Namespace) -> int:
     from crowdbot.benchmark import BenchmarkSizes, measure_environments
 
     sizes = BenchmarkSizes.quick(options.repeats) if options.quick else BenchmarkSizes(repeats=options.repeats)
     with progress(options.json) as report:
-        found = measure_environments(sizes, report)
-    _write(options.out, found.as_dict())
-    for sentence in found.missing.values():
-        note(f"crowdbot: {sentence}")
-    if options.json:
-        print_json(found.as_dict())
-    else:
-        _print_environments(found)
-    return 0
+        measured = measure_environments(sizes, report)
+    return _show(options, measured, _print_environments)
 
 
 def _measure_engines(options: argparse.Namespace) -> int:
@@ -137,15 +144,8 @@ def _measure_engines(options: argparse.Namespace) -> int:
 
     sizes = EngineSizes.quick(options.repeats) if options.quick else EngineSizes(options.repeats)
     with progress(options.json) as report:
-        found = measure_engines(sizes, options.rvo2, report)
-    _write(options.out, found.as_dict())
-    for sentence in found.missing.values():
-        note(f"crowdbot: {sentence}")
-    if options.json:
-        print_json(found.as_dict())
-    else:
-        _print_engines(found)
-    return 0
+        measured = measure_engines(sizes, options.rvo2, report)
+    return _show(options, measured, _print_engines)
 
 
 def _print_engines(found: EngineReport) -> None:
@@ -167,15 +167,10 @@ def _measure_drives(options: argparse.Namespace) -> int:
     from crowdbot.benchmark import measure_drives
 
     with progress(options.json) as report:
-        found = measure_drives(
+        measured = measure_drives(
             options.robot or None, quick=options.quick, makers=options.makers, keep=options.keep, report=report
         )
-    _write(options.out, found.as_dict())
-    if options.json:
-        print_json(found.as_dict())
-    else:
-        _print_drives(found)
-    return 0
+    return _show(options, measured, _print_drives)
 
 
 def _print_drives(found: DriveReport) -> None:

@@ -9,15 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError, format_xml
-from crowdbot.trials import (
-    XmlReader,
-    element_from,
-    has_kind,
-    kind_of,
-    parse_trial_xml,
-    readable,
-    skip_unreadable,
-)
+from crowdbot.trials import XmlReader, element_from, has_kind, kind_of, parse_trial_xml, readable, skip_unreadable
 
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .page import page_of

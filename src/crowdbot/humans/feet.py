@@ -8,18 +8,7 @@ from typing import NamedTuple
 from crowdbot.core import kernel, storable
 from crowdbot.typing import Floats
 
-from .stride import (
-    LANDED,
-    STRIKE,
-    TIPPING,
-    Foot,
-    ankle_over,
-    cycle,
-    planted_foot,
-    smooth,
-    swinging_foot,
-    wrap_angle,
-)
+from .stride import LANDED, STRIKE, TIPPING, Foot, ankle_over, cycle, planted_foot, smooth, swinging_foot, wrap_angle
 from .vectors import Vector
 
 CREEP = 0.12

@@ -14,14 +14,7 @@ from .encounters import (
     expected_times,
     time_edges,
 )
-from .flow import (
-    compute_crossing_frames,
-    compute_flow,
-    compute_line_flow,
-    compute_n_t,
-    crossing_times,
-    mean_flow,
-)
+from .flow import compute_crossing_frames, compute_flow, compute_line_flow, compute_n_t, crossing_times, mean_flow
 from .geometry import MeasurementArea, MeasurementLine, WalkableArea
 from .interaction_energy import (
     FIT_RANGE,

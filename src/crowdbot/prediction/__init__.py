@@ -28,27 +28,17 @@ if TYPE_CHECKING:
     from .social_ways.training import SocialWaysTraining as SocialWaysTraining
     from .stored_forecasts import forecast_file, forecasts_of
     from .tracker_plausibility import TrackerWarning
-    from .training import (
-        BEST,
-        LAST,
-        LOG,
-        LogRow,
+    from .training.checkpoint import load_checkpoint, save_checkpoint
+    from .training.loop import BEST, LAST, LOG, LogRow, Trainable, TrainingResult, TrainingSchedule, train
+    from .training.samples import (
         Samples,
         TimeSplit,
-        Trainable,
-        TrainingResult,
-        TrainingSchedule,
         leave_out,
-        load_checkpoint,
         recordings_with_windows,
-        save_checkpoint,
         short_recordings,
         split_in_time,
-        torch_device,
-        torch_module,
-        torch_threads,
-        train,
     )
+    from .training.torch_backend import torch_device, torch_module, torch_threads
 
 __getattr__, __dir__, _ = lazy_exports(__name__)
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from crowdbot.core import UnknownName
 
 if TYPE_CHECKING:
-    from .training import Samples, Trainable
+    from .training.loop import Trainable
+    from .training.samples import Samples
 
 
 WEIGHTS_FIELDS = {"anchor-net": "file", "social-ways": "checkpoint"}

@@ -21,15 +21,7 @@ from crowdbot.world import graphics_library
 from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
-from .metadata import (
-    ADDED_ROBOTS,
-    DIGEST,
-    ENDING,
-    FORMAT,
-    METADATA,
-    as_json,
-    versions,
-)
+from .metadata import ADDED_ROBOTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
 from .step_messages import StepMessages
 
 FOREVER = "{sec: 2147483647, nsec: 4294967295}"

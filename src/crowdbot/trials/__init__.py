@@ -17,14 +17,16 @@ if TYPE_CHECKING:
     from .cameras.camera_remarks import camera_remarks
     from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
     from .distribution import Distribution
-    from .faults.blind_sensor import BlindSensor
+    from .faults.builtin_faults import (
+        BlindSensor,
+        FrozenSensor,
+        LateSensor,
+        LocalizationJump,
+        LocalizationOffset,
+        LostCommands,
+        SlippingWheel,
+    )
     from .faults.fault import Fault, FaultSpec, SensorFault, have_same_kinds
-    from .faults.frozen_sensor import FrozenSensor
-    from .faults.late_sensor import LateSensor
-    from .faults.localization_jump import LocalizationJump
-    from .faults.localization_offset import LocalizationOffset
-    from .faults.lost_commands import LostCommands
-    from .faults.slipping_wheel import SlippingWheel
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_digest, code_references, is_code
     from .files.layout_file import builtin_stages, load_layout

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,14 +18,16 @@ from crowdbot.core import (
     Clock,
     InputError,
     Pose,
+    RobotError,
     TickSchedule,
     Twist,
     Walls,
     did_you_mean,
+    reads_only,
 )
 from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner
 from crowdbot.prediction import Predictor
-from crowdbot.sensors import Sensor, SensorSchedule
+from crowdbot.sensors import Lidar2D, Lidar3D, Sensor, SensorSchedule
 from crowdbot.typing import Floats
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
@@ -35,11 +37,86 @@ from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial_element import readable
 from .robots.joint_target import JointTarget, joint_problems
-from .robots.people_input import ABOUT_PEOPLE, PEOPLE_INPUTS, people_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose, mirrored_pose
-from .robots.robot_types import robot_folder_of, robot_of_type
 from .robots.safety import SafetySpec, safety_problems
+
+PEOPLE_INPUTS = ("seen", "true", "tracked")
+ABOUT_PEOPLE = (
+    "people in observations: seen (true states of those in the latest readings), true (everybody), or tracked (found in"
+    " laser scans)"
+)
+
+
+def people_problems(people: str, mounts: Sequence[Any]) -> Iterator[str]:
+    """Yield why a robot cannot have such an input.
+
+    >>> list(people_problems("tracked", []))
+    ['has people="tracked" but no laser scanner; add <sensor type="lidar2d"/> or <sensor type="lidar3d"/>']
+    """
+    if people == "tracked" and not any(isinstance(mount.sensor, Lidar2D | Lidar3D) for mount in mounts):
+        yield ('has people="tracked" but no laser scanner; add <sensor type="lidar2d"/> or <sensor type="lidar3d"/>')
+
+
+def robot_folder_of(name: str, folder: Path | None, trust: bool) -> Path | None:
+    """Return the robot folder next to the trial, None for a built-in robot.
+
+    Raises:
+        InputError: there is no robot of this name, or its folder lies outside the folder of the trial.
+    """
+    root = folder or Path.cwd()
+    known = builtin_robots()
+    try:
+        place = (root / name).resolve()
+        there = (place / "robot.xml").is_file()
+    except (OSError, ValueError, RuntimeError):
+        there = False
+    if there and not trust and not place.is_relative_to(root.resolve()):
+        raise InputError(
+            f"type={quote_value(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass"
+            " --trust to allow it"
+        )
+    if there:
+        return place
+    if name in known:
+        return None
+    raise InputError(
+        f"type={quote_value(name)} is not a robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
+        f" is in {root.resolve()}; built-in robots are {', '.join(known)}"
+    )
+
+
+def robot_of_type(name: str, folder: Path | None, trust: bool) -> world.Robot:
+    """Return the robot of a type.
+
+    Raises:
+        InputError: there is no such robot, or its folder has errors.
+    """
+    place = robot_folder_of(name, folder, trust)
+    if place is None:
+        return _load_builtin(name)
+    return _load_folder(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
+
+
+@functools.cache
+def _load_builtin(name: str) -> world.Robot:
+    return world.Robot.load(_assets(name))
+
+
+def _assets(name: str) -> Path:
+    import importlib.resources
+
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots", name)))
+
+
+@functools.lru_cache(maxsize=16)
+def _load_folder(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
+    try:
+        return world.Robot.load(place, trust=trust)
+    except RobotError as error:
+        more = f" (and {len(error.problems) - 1} more; see crowdbot check)" if len(error.problems) > 1 else ""
+        raise InputError(f"type={quote_value(place.name)}: {error.problems[0]}{more}") from None
+
 
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
 """Defaults of a robot without a type [m, m, kg]."""

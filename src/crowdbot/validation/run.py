@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import json
+import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,17 +17,94 @@ from crowdbot.core import CrowdbotError, InputError, builtin_classes, find_class
 from crowdbot.models import CrowdModel
 
 from .bottleneck import BOTTLENECK
+from .code_digest import code_digest
 from .components import ASSIGNED_EXITS, COUNTER_FLOW, PREMOVEMENT, SLOW_MEMBER
 from .corridor import CORRIDOR
 from .evacuation import DOORS, LONG_CORNER, TWO_ROOMS
 from .lanes import LANES, NARROW
 from .recording import measure_recordings
 from .rimea import CORNER, CORRIDOR_TIME, FREE_SPEEDS
-from .scenario import Check, Report, Row, Verdict
+from .scenario import Check, Report, Row, Verdict, substeps
 from .single_file import SINGLE_FILE
 from .statistics import STARTS
-from .store import ResultFile, round_numbers, write_json
 from .time_steps import TIME_STEPS
+
+
+class ResultFile:
+    """Rows of a model by check and start.
+
+    Rows are valid for the code of the check and of the model, the parameters of the model and its time step. Rows of
+    other code are replaced when the check runs anew.
+
+    Args:
+        path: the file; it is created by the first row.
+        model: the model with its parameters.
+        quick: whether runs are shortened.
+    """
+
+    def __init__(self, path: Path, model: CrowdModel, quick: bool) -> None:
+        self.path = path
+        self._model = model
+        self.quick = quick
+        kept = read_json(path)
+        checks = kept.get("checks")
+        self._checks: dict[str, Any] = checks if isinstance(checks, dict) else {}
+
+    def rows(self, check: Check) -> dict[int, Row]:
+        """Return the valid rows of a check by start."""
+        kept = self._checks.get(check.name)
+        if not isinstance(kept, dict) or kept.get("settings") != self._settings(check):
+            return {}
+        rows = kept.get("rows")
+        return {int(start): row for start, row in rows.items()} if isinstance(rows, dict) else {}
+
+    def seconds(self, check: Check) -> float:
+        """Return the computing time of the rows of a check [s]."""
+        return float(self._checks[check.name]["seconds"]) if self.rows(check) else 0.0
+
+    def add(self, check: Check, rows: dict[int, Row], seconds: float) -> None:
+        """Store rows of some starts and the computing time [s]."""
+        known, spent = self.rows(check), self.seconds(check)
+        every = {str(start): round_numbers(row) for start, row in sorted({**known, **rows}.items())}
+        kept = {"settings": self._settings(check), "seconds": round(spent + seconds, 2), "rows": every}
+        self._checks[check.name] = kept
+        write_json(self.path, {"model": repr(self._model), "checks": self._checks})
+
+    def _settings(self, check: Check) -> str:
+        kind = type(self._model)
+        bases = [base.__module__ for base in kind.__mro__]
+        layered = [type(part).__module__ for part in vars(self._model).values() if isinstance(part, CrowdModel)]
+        code = code_digest([check.run.__module__, *bases, *layered])
+        length = "quick" if self.quick else "full"
+        return f"{code} {length} {substeps(self._model)} {self._model!r}"
+
+
+def read_json(file: Path) -> dict[str, Any]:
+    """Return the content of a file, empty if it is missing, incomplete or no table."""
+    try:
+        kept = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return kept if isinstance(kept, dict) else {}
+
+
+def write_json(file: Path, value: Any) -> None:
+    """Write numbers, rounded to four decimals, in one step."""
+    draft = file.with_suffix(".part")
+    draft.write_text(json.dumps(round_numbers(value), separators=(",", ":")) + "\n", encoding="utf-8")
+    os.replace(draft, file)
+
+
+def round_numbers(value: Any) -> Any:
+    """Round all numbers to four decimals, for equal results of first and resumed runs."""
+    if isinstance(value, float):
+        return round(value, 4)
+    if isinstance(value, dict):
+        return {key: round_numbers(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [round_numbers(item) for item in value]
+    return value
+
 
 CHECKS: tuple[Check, ...] = (
     SINGLE_FILE,

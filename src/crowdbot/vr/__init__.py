@@ -6,13 +6,7 @@ from .calibration_pose import BodyMeasure, measure_pose
 from .capture import Suit
 from .certificate import certificate_files, local_addresses, tls_context
 from .headset_access import session_of_token, token_of_session
-from .headset_recording import (
-    HeadsetClock,
-    HeadsetRecord,
-    HeadsetRecorder,
-    read_headset_clock,
-    read_headset_recording,
-)
+from .headset_recording import HeadsetClock, HeadsetRecord, HeadsetRecorder, read_headset_clock, read_headset_recording
 from .headset_sample import HeadsetSample
 from .headset_stream import HeadsetStream, StreamSettings
 from .headset_window import HEADSET_COMMANDS, HeadsetWindow, headset_frame, pack_triples

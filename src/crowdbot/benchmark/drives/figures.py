@@ -103,7 +103,7 @@ def compare_traces(drive: Drive, manoeuvre: Manoeuvre, physics: DriveTrace, plan
         physics, plane: motion in the two worlds.
 
     >>> from crowdbot.world import Robot
-    >>> from crowdbot.benchmark.drives import manoeuvres, trace_planar
+    >>> from crowdbot.benchmark import manoeuvres, trace_planar
     >>> robot = Robot.load("differential")
     >>> first = manoeuvres(robot, quick=True)[0]
     >>> plane = trace_planar(robot, first.commands, 0.02)

@@ -1,20 +1,55 @@
-"""Measurement of drives over robots, time steps and manoeuvres."""
+"""Measurement of drives over robots, time steps and manoeuvres; robots may come from the files of their makers."""
 
 from __future__ import annotations
 
+import contextlib
+import re
+import shutil
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from crowdbot.benchmark.speed.timing import environment
-from crowdbot.world import Robot, builtin_robots
+from crowdbot.world import Robot, builtin_robots, import_robot
 
 from .figures import DriveFigures, compare_traces
-from .maker_robots import maker_robot
 from .manoeuvre import Manoeuvre, manoeuvres
 from .trace_store import Run, TraceStore
 from .traces import DriveTrace
+
+
+@contextlib.contextmanager
+def maker_robot(file: Path) -> Iterator[tuple[Robot, str]]:
+    """Import a robot as ``crowdbot new robot FILE --yes`` does, and yield it with its kind of base.
+
+    Its folder exists only inside the context.
+
+    Args:
+        file: URDF, xacro or SDF file of a whole robot.
+
+    Raises:
+        RobotError: the file has errors, or has no mass.
+        InputError: the file is missing, or a controller file beside it cannot be read.
+
+    >>> from importlib.resources import files
+    >>> with maker_robot(files("crowdbot") / "assets/robots/turtlebot2/turtlebot2.urdf") as (robot, kind):
+    ...     print(robot.name, kind)
+    turtlebot2 differential
+    """
+    name = re.sub(r"[^\w-]", "_", file.name.partition(".")[0], flags=re.ASCII).lstrip("_-0123456789") or "robot"
+    with tempfile.TemporaryDirectory() as place:
+        made = import_robot(file, name)
+        folder = Path(place) / name
+        folder.mkdir()
+        for path, source in made.copies.items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, folder / path)
+        for path, text in made.texts.items():
+            (folder / path).write_text(text, encoding="utf-8")
+        yield Robot.load(folder), made.kind
+
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02)
 """Time steps of the engine [s]."""

@@ -33,7 +33,7 @@ def drive_runs(robot: Robot, step: float, chosen: Sequence[Manoeuvre]) -> tuple[
         step: time step of the engine [s].
         chosen: the manoeuvres.
 
-    >>> from crowdbot.benchmark.drives import manoeuvres
+    >>> from crowdbot.benchmark import manoeuvres
     >>> robot = Robot.load("differential")
     >>> runs = drive_runs(robot, 0.01, manoeuvres(robot, quick=True)[:1])
     >>> len(runs), bool(abs(runs[0][1].position[-1, 0] - runs[0][2].position[-1, 0]) < 0.02)
@@ -58,7 +58,7 @@ class TraceStore:
         OutputError: a file cannot be written.
 
     >>> import tempfile
-    >>> from crowdbot.benchmark.drives import manoeuvres
+    >>> from crowdbot.benchmark import manoeuvres
     >>> robot = Robot.load("differential")
     >>> with tempfile.TemporaryDirectory() as place:
     ...     store = TraceStore(Path(place))

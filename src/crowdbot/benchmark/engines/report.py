@@ -5,23 +5,112 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.benchmark.speed.timing import environment
 from crowdbot.benchmark.speed.workloads import crowd
 from crowdbot.core import InputError, MissingExtra, Scene, kebab_case
 
-from .engine_peer import EnginePeer
-from .engine_row import EngineRow, MillionRow
-from .other_peers import JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer
-from .paired_steps import kernel_threads, time_steps
-from .rvo2_peer import Rvo2Peer
+from .peers import EnginePeer, JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer, Rvo2Peer
+
+Start = Callable[[], Callable[[], object]]
+"""Makes an engine at the start, and returns the function that makes one step of it."""
+
+
+def time_steps(ours: Start, theirs: Start, steps: int, repeats: int) -> NDArray[np.float64]:
+    """Return the mean time [s] of a step of both engines, ``[2, repeats]``.
+
+    Each repetition begins at the start in both engines, with one step that is not timed.
+
+    >>> def start(count):
+    ...     return lambda: (lambda: sum(range(count)))
+    >>> found = time_steps(start(1), start(10_000), 5, 3)
+    >>> bool((found[0] < found[1]).all()), found.shape
+    (True, (2, 3))
+    """
+    found = np.empty((2, repeats))
+    for k in range(repeats):
+        for row, start in enumerate((ours, theirs)):
+            step = start()
+            step()
+            begin = time.perf_counter()
+            for _ in range(steps):
+                step()
+            found[row, k] = (time.perf_counter() - begin) / steps
+    return found
+
+
+@contextmanager
+def kernel_threads(count: int) -> Iterator[None]:
+    """Run kernels in ``count`` threads inside of the context."""
+    import numba
+
+    before = numba.get_num_threads()
+    numba.set_num_threads(count)
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)
+
+
+@dataclass(frozen=True)
+class EngineRow:
+    """Time of a step of a model and of the same model in another engine.
+
+    Fields:
+        model: name of our model.
+        engine: name of the other engine.
+        people: number of people.
+        order: order of the people in memory, ``random`` or ``sorted`` by place.
+        threads: threads of both.
+        dt: time step of both [s].
+        ours, theirs: median time of a step [ms].
+        ratio: ``theirs / ours``, the median over the repetitions.
+        low, high: 10th and 90th percentile of these ratios.
+    """
+
+    model: str
+    engine: str
+    people: int
+    order: str
+    threads: int
+    dt: float
+    ours: float
+    theirs: float
+    ratio: float
+    low: float
+    high: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as ``crowdbot bench engines --json`` prints it."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class MillionRow:
+    """A step of a very large crowd in a process of its own.
+
+    Fields:
+        model: name of the model.
+        people: number of people.
+        seconds: shortest time of a step [s].
+        megabytes: largest memory of the process [MB].
+    """
+
+    model: str
+    people: int
+    seconds: float
+    megabytes: float
+
 
 PROTOCOL = (
     "People on a jittered grid, 0.5 per square metre, with random goals; both engines walk on from the same state with"

@@ -2,24 +2,231 @@
 
 from __future__ import annotations
 
+import itertools
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
+from types import FrameType
 from typing import Any
 
 from crowdbot.benchmark.speed.timing import environment
-from crowdbot.core import MissingExtra
-from crowdbot.trials import Trial, load_trial
+from crowdbot.core import CrowdbotError, InputError, MissingExtra
+from crowdbot.simulation import Simulation
+from crowdbot.trials import Trial, builtin_trials, expand_sweeps, load_trial
 
-from .builtin_rates import trial_rates
-from .calls import call_rows
-from .crossing import BEAMS, CrossingTask, advance_work, crossing_trial, episode_work, reset_work
-from .ir_sim_peer import IrSimPeer
-from .navground_peer import NavgroundPeer
-from .rows import CallRow, EnvironmentRow, PeerRate, TrialRate
-from .sizes import BenchmarkSizes
-from .work_rate import TimedWork, rates
+from .crossing import BEAMS, CrossingTask, advance_work, crossing_trial, episode_work, repeat_step, reset_work
+from .peers import IrSimPeer, NavgroundPeer
+from .work_rate import TimedWork, WorkRate, rates
+
+
+@dataclass(frozen=True)
+class BenchmarkSizes:
+    """Numbers of environments, steps, episodes and repetitions.
+
+    Fields:
+        repeats: timed repetitions after a warm-up.
+        environments: environments E of a batch.
+        steps: steps of a batch of 10 people; twice as many with 50.
+        single_steps: steps of a single environment.
+        peer_worlds: worlds of navground per repetition.
+        episodes: episodes to their end, ours and in navground.
+        block: episodes that are simulated together.
+        slow_episodes: episodes to their end in ir-sim.
+        trial_environments: environments of each built-in trial, beside a single one.
+        trial_steps: steps of each built-in trial.
+        trials: largest number of built-in trials.
+
+    Raises:
+        InputError: a number is below 1.
+
+    >>> BenchmarkSizes(environments=64).steps
+    100
+    """
+
+    repeats: int = 5
+    environments: int = 256
+    steps: int = 100
+    single_steps: int = 100
+    peer_worlds: int = 64
+    episodes: int = 1000
+    block: int = 250
+    slow_episodes: int = 4
+    trial_environments: int = 64
+    trial_steps: int = 20
+    trials: int = 1000
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value < 1:
+                raise InputError(f"{name.replace('_', ' ')} {value} is below 1")
+
+    @classmethod
+    def quick(cls, repeats: int = 1) -> BenchmarkSizes:
+        """Return sizes that take seconds and only show that everything works."""
+        return cls(repeats, 4, 4, 4, 2, 2, 2, 1, 2, 2, 2)
+
+
+@dataclass(frozen=True)
+class PeerRate:
+    """Rate of another simulator in a row.
+
+    Fields:
+        peer: its name.
+        protocol: what its work includes, and how it differs from ours.
+        rate: its rate.
+        ratio_cpu, ratio_wall: our rate divided by its rate, per CPU second and per second.
+    """
+
+    peer: str
+    protocol: str
+    rate: WorkRate
+    ratio_cpu: float
+    ratio_wall: float
+
+
+@dataclass(frozen=True)
+class EnvironmentRow:
+    """A rate of our simulation and those of other simulators.
+
+    Fields:
+        name: name of the row.
+        protocol: what the work includes.
+        unit: unit of the rates per second.
+        people: people in each environment, without the robot.
+        environments: environments E that advance together.
+        rate: our rate.
+        peers: rates of other simulators.
+    """
+
+    name: str
+    protocol: str
+    unit: str
+    people: int
+    environments: int
+    rate: WorkRate
+    peers: tuple[PeerRate, ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as ``crowdbot bench environments --json`` prints it."""
+        return {**asdict(self), "cpu_milliseconds_per_unit": 1e3 / self.rate.per_cpu_second}
+
+
+@dataclass(frozen=True)
+class CallRow:
+    """Calls in one step of a simulation.
+
+    Fields:
+        name: name of the row.
+        environments: environments E that advance together.
+        python_calls: calls of Python functions per step.
+        builtin_calls: calls of compiled functions from Python per step.
+        ratio: Python calls divided by those of a single environment.
+    """
+
+    name: str
+    environments: int
+    python_calls: float
+    builtin_calls: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class TrialRate:
+    """Speed of a built-in trial.
+
+    Fields:
+        name: name of the trial.
+        agents: people and robots at the start.
+        single: steps per second of a single environment.
+        batch: steps of environments per second of a batch.
+        environments: environments E of the batch.
+        ratio: steps per CPU second of the batch divided by those of the single environment.
+        reason: why the trial was not measured, empty otherwise.
+    """
+
+    name: str
+    agents: int = 0
+    single: WorkRate | None = None
+    batch: WorkRate | None = None
+    environments: int = 0
+    ratio: float | None = None
+    reason: str = ""
+
+
+def planar_trials() -> Iterator[tuple[str, Trial]]:
+    """Yield the built-in trials in the planar world by name; of sweeps, their first trial."""
+    for name in builtin_trials():
+        trial = load_trial(name)
+        first = expand_sweeps(trial)[0] if trial.sweeps else trial
+        if first.world == "planar":
+            yield name, first
+
+
+def trial_rates(sizes: BenchmarkSizes, report: Callable[[str, float], None]) -> list[TrialRate]:
+    """Return the speed of all built-in planar trials; ``report`` receives the progress."""
+    trials = list(itertools.islice(planar_trials(), sizes.trials))
+    rows = []
+    for k, (name, trial) in enumerate(trials):
+        report("built-in trials", k / len(trials))
+        try:
+            rows.append(_rate_of(name, trial, sizes))
+        except CrowdbotError as error:
+            rows.append(TrialRate(name, reason=str(error)))
+    report("built-in trials", 1.0)
+    return rows
+
+
+def _rate_of(name: str, trial: Trial, sizes: BenchmarkSizes) -> TrialRate:
+    single, _ = _measure(trial, 1, sizes.trial_steps)
+    batch, agents = _measure(trial, sizes.trial_environments, sizes.trial_steps)
+    return TrialRate(
+        name, agents, single, batch, sizes.trial_environments, batch.per_cpu_second / single.per_cpu_second
+    )
+
+
+def _measure(trial: Trial, environments: int, steps: int) -> tuple[WorkRate, int]:
+    """Return the steps of environments per second after a warm-up of two steps, and the agents at the start."""
+    simulation = Simulation(trial, range(environments))
+    agents = int(simulation.world.scene.active[0].sum())
+    repeat_step(2)(simulation)
+    work = TimedWork(environments * steps, lambda: simulation, repeat_step(steps))
+    rate = rates({"ours": work}, repeats=1, warm_up=False)["ours"]
+    failure = next((one for one in simulation.failures if one is not None), None)
+    if failure is not None:
+        raise CrowdbotError(f"an environment ended with an error: {failure}")
+    return rate, agents
+
+
+def count_calls(simulation: Simulation, steps: int) -> tuple[float, float]:
+    """Return the calls of Python functions and of compiled functions per step, in the calling thread."""
+    found = {"call": 0, "c_call": 0}
+
+    def tally(frame: FrameType, event: str, argument: Any) -> None:
+        if event in found:
+            found[event] += 1
+
+    before = sys.getprofile()
+    sys.setprofile(tally)
+    try:
+        for _ in range(steps):
+            simulation.advance()
+    finally:
+        sys.setprofile(before)
+    return found["call"] / steps, (found["c_call"] - 1) / steps  # the last one is setprofile
+
+
+def call_rows(trial: Trial, environments: int, steps: int) -> list[CallRow]:
+    """Return the calls of a single environment and of a batch."""
+    rows: list[CallRow] = []
+    for name, count in (("calls-single", 1), ("calls-batch", environments)):
+        simulation = Simulation(trial, range(count))
+        simulation.advance()
+        python, builtin = count_calls(simulation, steps)
+        rows.append(CallRow(name, count, python, builtin, python / rows[0].python_calls if rows else 1.0))
+    return rows
+
 
 PEERS: tuple[type[NavgroundPeer] | type[IrSimPeer], ...] = (NavgroundPeer, IrSimPeer)
 """The other simulators."""

@@ -1,4 +1,9 @@
-"""NaoqiBridge: the transport ``naoqi``, virtual sensors for a real robot with NAOqi."""
+"""NaoqiBridge: the transport ``naoqi``, virtual sensors for a real robot with NAOqi.
+
+Readings become values of ``ALMemory`` under the keys of the real sensors, from the NAOqi documentation 2.5. The
+horizontal lasers have 15 points each, x forward and y left in the frame of the device [m], from the leftmost
+(``Seg01``) to the rightmost. The virtual robot follows the odometry of the real one.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +14,145 @@ import math
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
-from crowdbot.core import InputError, import_optional, refuse_system
+from crowdbot.bridges.join.robot_input import StartAlignment
+from crowdbot.core import InputError, import_optional, refuse_system, wrap_angle
+from crowdbot.messages import points_in
 from crowdbot.recording import StepMessage
 
-from .memory_keys import SENSORS, memory_values
-from .odometry_follower import OdometryFollower
+PLATFORM = "Device/SubDeviceList/Platform"
+SEGMENTS = 15
+BUMPERS = ("FrontLeft", "Back", "FrontRight")
+"""Bumpers counter-clockwise from straight ahead, as the sectors of the virtual bumper."""
+
+
+def _laser(side: str, message: Any) -> dict[str, float]:
+    """Return the points of a laser; where it sees nothing, they are at its largest range."""
+    angles = message.angle_min + message.angle_increment * np.arange(len(message.ranges))
+    ranges = np.clip(np.nan_to_num(message.ranges, nan=message.range_max), 0.0, message.range_max)
+    wanted = np.linspace(angles[-1], angles[0], SEGMENTS)
+    distance = np.interp(wanted, angles, ranges)
+    found = {}
+    for k, (x, y) in enumerate(zip(distance * np.cos(wanted), distance * np.sin(wanted), strict=True), 1):
+        for axis, value in (("X", x), ("Y", y)):
+            found[f"{PLATFORM}/LaserSensor/{side}/Horizontal/Seg{k:02}/{axis}/Sensor/Value"] = float(value)
+    return found
+
+
+def _sonar(side: str, message: Any) -> dict[str, float]:
+    """Return the distance of an ultrasound [m]; where it hears nothing, its largest range."""
+    distance = min(max(float(message.range), 0.0), float(message.max_range))
+    return {f"{PLATFORM}/{side}/Sonar/Sensor/Value": distance}
+
+
+def _bumper(message: Any) -> dict[str, float]:
+    """Return the switches of the bumper: 1 pressed, 0 not."""
+    pressed = {int(one) for one in points_in(message)["sector"].ravel()}
+    return {f"{PLATFORM}/{name}/Bumper/Sensor/Value": float(k in pressed) for k, name in enumerate(BUMPERS)}
+
+
+SENSORS: dict[str, tuple[str, Callable[[Any], dict[str, float]]]] = {
+    "base_laser_front": ("sensor_msgs/msg/LaserScan", lambda message: _laser("Front", message)),
+    "base_laser_left": ("sensor_msgs/msg/LaserScan", lambda message: _laser("Left", message)),
+    "base_laser_right": ("sensor_msgs/msg/LaserScan", lambda message: _laser("Right", message)),
+    "sonar_front": ("sensor_msgs/msg/Range", lambda message: _sonar("Front", message)),
+    "sonar_back": ("sensor_msgs/msg/Range", lambda message: _sonar("Back", message)),
+    "bumper": ("sensor_msgs/msg/PointCloud2", _bumper),
+}
+"""Sensors of a virtual Pepper that the memory knows, with their message type."""
+
+
+def memory_values(sensor: str, message: Any) -> dict[str, float]:
+    """Return the values of a reading by their key.
+
+    Args:
+        sensor: name of the sensor, one of :data:`SENSORS`.
+        message: its message.
+
+    >>> from crowdbot.messages import Messages
+    >>> make = Messages()
+    >>> header = make.header(0)
+    >>> echo = make.make("sensor_msgs/msg/Range", header=header, radiation_type=0, field_of_view=0.5, min_range=0.2,
+    ...                  max_range=5.0, range=float("inf"))
+    >>> memory_values("sonar_front", echo)
+    {'Device/SubDeviceList/Platform/Front/Sonar/Sensor/Value': 5.0}
+    """
+    return SENSORS[sensor][1](message)
+
+
+GAIN = 2.0
+"""Velocity that corrects an error of the pose [1/s]."""
+LARGEST = 2.0
+"""Error of the position [m] above which a robot was moved by hand, and the poses are aligned anew."""
+
+Pose = tuple[float, float, float]
+
+
+class OdometryFollower:
+    """Makes velocity commands that keep a virtual robot at the odometry of a real one.
+
+    A command is the velocity of the real robot, plus a correction of the distance between both. Velocities alone would
+    part them: each one counts until the next arrives, and the virtual robot accelerates in its own way. The origin of
+    odometry is anywhere, so the first pose after :meth:`align` is that of the virtual robot at this moment.
+
+    Args:
+        x, y: position of the virtual robot at the start [m].
+        heading: its heading [rad].
+
+    >>> follower = OdometryFollower(1.0, 2.0, math.pi / 2)
+    >>> follower.command((0.5, 0.0, 0.0), (7.0, 7.0, 0.0))
+    (0.5, 0.0, 0.0)
+    >>> [round(one, 3) for one in follower.command((0.0, 0.0, 0.0), (7.1, 7.0, 0.0))]  # the virtual robot is behind
+    [0.2, 0.0, 0.0]
+    """
+
+    def __init__(self, x: float, y: float, heading: float) -> None:
+        self._virtual: Pose = (x, y, heading)
+        self._frame: StartAlignment | None = None
+        self._lock = threading.Lock()
+
+    def align(self) -> None:
+        """Take the next pose of the real robot as that of the virtual one, after a new connection."""
+        with self._lock:
+            self._frame = None
+
+    def note_virtual(self, x: float, y: float, heading: float) -> None:
+        """Note the pose of the virtual robot."""
+        with self._lock:
+            self._virtual = x, y, heading
+
+    def command(self, velocity: Sequence[float], pose: Sequence[float]) -> tuple[float, float, float]:
+        """Return the command for the virtual robot: forward, left [m/s], turn [rad/s].
+
+        Args:
+            velocity: the same of the real robot.
+            pose: x, y [m], heading [rad] of its odometry.
+        """
+        with self._lock:
+            dx, dy, turn = self._error(pose)
+            if math.hypot(dx, dy) > LARGEST:
+                self._frame = None
+                dx, dy, turn = self._error(pose)
+            cos, sin = math.cos(self._virtual[2]), math.sin(self._virtual[2])
+        ahead, aside = math.cos(turn), math.sin(turn)
+        forward = ahead * velocity[0] - aside * velocity[1] + GAIN * (cos * dx + sin * dy)
+        left = aside * velocity[0] + ahead * velocity[1] + GAIN * (cos * dy - sin * dx)
+        return forward, left, velocity[2] + GAIN * turn
+
+    def _error(self, pose: Sequence[float]) -> Pose:
+        """Return how far the real robot is from the virtual one: x, y [m] in the trial, heading [rad]."""
+        if self._frame is None:
+            self._frame = StartAlignment(*self._virtual)
+        x, y, heading = self._frame.pose(pose[0], pose[1], pose[2])
+        return x - self._virtual[0], y - self._virtual[1], wrap_angle(heading - self._virtual[2])
+
 
 PORT = 9559
 STARTUP, ENDING = 10.0, 5.0

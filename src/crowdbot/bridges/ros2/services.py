@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import array
 import importlib
 import queue
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from typing import Any
+
+import numpy as np
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.plain_services import PLAIN_SERVICES, PlainService
@@ -13,7 +17,61 @@ from crowdbot.bridges.verbs.definitions import PACKAGE, SERVICES
 from crowdbot.bridges.verbs.results import FAILED, result
 from crowdbot.core import InputError
 
-from .values import fill_message, message_fields
+TYPES = {"float": float, "double": float, "boolean": bool, "string": str}
+"""Python types of the numbers and texts of ROS; all others are whole numbers."""
+
+
+def message_fields(message: Any) -> dict[str, Any]:
+    """Return the fields of a message of rclpy; arrays become lists.
+
+    >>> class Steps:
+    ...     steps = 3
+    ...     def get_fields_and_field_types(self):
+    ...         return {"steps": "uint64"}
+    >>> message_fields(Steps())
+    {'steps': 3}
+    """
+    return {name: _plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "get_fields_and_field_types"):
+        return message_fields(value)
+    if isinstance(value, array.array | np.ndarray):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    return value
+
+
+def fill_message(message: Any, fields: Mapping[str, Any]) -> Any:
+    """Set the fields of a message of rclpy that a mapping has, and return it; others stay 0 or empty.
+
+    Args:
+        message: the message.
+        fields: nested mappings.
+    """
+    for name, kind in message.get_fields_and_field_types().items():
+        if name in fields:
+            setattr(message, name, _typed(fields[name], kind, getattr(message, name)))
+    return message
+
+
+def _typed(value: Any, kind: str, now: Any) -> Any:
+    """Return a value of a type, such as ``double``, ``geometry_msgs/Point`` or ``sequence<string>``."""
+    if hasattr(now, "get_fields_and_field_types"):
+        return fill_message(now, value)
+    inner = re.fullmatch(r"sequence<(.*?)(?:, *\d+)?>", kind) or re.fullmatch(r"(.*)\[\d+\]", kind)
+    if inner is None:
+        return TYPES.get(kind, int)(value)
+    return [_typed(one, inner[1], _new(inner[1])) for one in value]
+
+
+def _new(kind: str) -> Any:
+    """Return an empty message of a type, None for a number or text."""
+    package, sign, name = kind.partition("/")
+    return getattr(importlib.import_module(f"{package}.msg"), name)() if sign else None
+
 
 CALLS = 4
 """Number of calls that can wait for the simulation at the same time; the node needs as many threads."""

@@ -26,17 +26,7 @@ from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .clock import regular_rows, row_rate_of_times
-from .columns import (
-    TIME_UNITS,
-    Columns,
-    Lines,
-    check_columns,
-    find_columns,
-    ids,
-    labels,
-    numbers,
-    time_unit,
-)
+from .columns import TIME_UNITS, Columns, Lines, check_columns, find_columns, ids, labels, numbers, time_unit
 from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 

@@ -11,8 +11,7 @@ import numpy as np
 from crowdbot.core import DataError
 from crowdbot.typing import Floats
 
-from .annotated_scan import AnnotatedScan, planar_scan
-from .text_lines import read_text_lines
+from .annotated_scan import AnnotatedScan, planar_scan, read_text_lines
 
 FIELD_OF_VIEW = math.radians(225.0)
 """Field of view of the scanner, a SICK S300."""

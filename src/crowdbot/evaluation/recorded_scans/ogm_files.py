@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import math
+import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, Pose, Walls
@@ -14,7 +17,41 @@ from crowdbot.evaluation.tracking.reading_log import LoggedReading, ReadingLog
 from crowdbot.typing import Floats
 
 from .annotated_scan import planar_scan
-from .npy_file import read_npy_row
+
+LARGEST_POSE = 131_072
+"""Largest size of a file [bytes]."""
+HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+"""Readers of the header by version of the format."""
+WRONG = (ValueError, TypeError, SyntaxError, RecursionError, MemoryError, OverflowError, tokenize.TokenError)
+"""What the readers of the header raise on damaged files."""
+
+
+def read_npy_row(path: Path) -> Floats:
+    """Return the numbers ``[N]`` of a file; its array has at most one axis that is longer than 1.
+
+    Only the header is parsed, so that neither pickled objects nor the memory that a header asks for are created.
+
+    Raises:
+        DataError: the file is missing, too large or damaged.
+    """
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_POSE:
+            raise DataError(f"{path} must be a file of at most {LARGEST_POSE // 1024} KiB")
+        data = path.read_bytes()
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error}") from None
+    stream = io.BytesIO(data)
+    try:
+        shape, _, kind = HEADERS[npy.read_magic(stream)](stream)
+    except (*WRONG, KeyError):
+        raise DataError(f"{path} is not an NPY file of version 1.0 or 2.0") from None
+    rest = data[stream.tell() :]
+    if kind.kind not in "fiu":
+        raise DataError(f"{path} has values of type {str(kind)[:40]}, it must have numbers")
+    if max(shape, default=1) != math.prod(shape) or math.prod(shape) * kind.itemsize != len(rest):
+        raise DataError(f"{path} has {len(rest)} bytes of shape {str(shape)[:60]}, it must have one row of {kind}")
+    return np.frombuffer(rest, kind).astype(np.float64)
+
 
 OGM_PERIOD = 0.1
 """Time between two scans [s]."""

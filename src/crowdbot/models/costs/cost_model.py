@@ -9,13 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, neighbors_of, rows, speed_limit
 from crowdbot.typing import Floats
 
 from .cost_terms import HalfPlanes

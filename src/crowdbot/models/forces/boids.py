@@ -9,27 +9,10 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import (
-    CHUNK,
-    Neighbors,
-    Paper,
-    PerAgent,
-    Scene,
-    kernel,
-    parameter,
-    per_agent,
-    prange,
-)
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_variant,
-    launch,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, check_variant, launch, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
 from crowdbot.typing import Floats
 

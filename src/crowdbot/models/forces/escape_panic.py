@@ -23,14 +23,7 @@ from crowdbot.core import (
     prange,
 )
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_variant,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, check_variant, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
 from crowdbot.typing import Floats
 

@@ -10,14 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
 from crowdbot.typing import Floats

@@ -10,14 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
 from crowdbot.typing import Floats
 

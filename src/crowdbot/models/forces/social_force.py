@@ -9,26 +9,9 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import (
-    CHUNK,
-    Neighbors,
-    Paper,
-    PerAgent,
-    Scene,
-    kernel,
-    parameter,
-    prange,
-)
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_variant,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, check_variant, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
 from crowdbot.typing import Floats
 

@@ -11,15 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    launch,
-    movable,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, launch, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.typing import Floats
 

@@ -11,20 +11,144 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    movable,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.typing import Floats, Ints
 
-from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
-from .vog_fellows import MOST_FELLOWS, pick_fellows, unit, walking_direction
-from .vog_samples import SAMPLES, SLOW, keep_best, sample_around, sample_first
+from .vog_cost import CONE, DIRECTED, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
+
+MOST_FELLOWS = 16
+"""Maximum number of group members considered."""
+ALIKE = 0.7
+"""Group members are ignored if the cosine of the angle between the desired directions is lower."""
+PURPOSE = 0.5
+"""Minimum desired speed [m/s] that defines a direction in the selection of group members."""
+POINTED = 0.1
+"""Minimum desired speed [m/s] that defines the walking direction."""
+
+
+@kernel
+def pick_fellows(
+    row: int, mates: Ints, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
+    found: Ints, key: Floats,
+) -> int:  # fmt: skip
+    """Find the group members to stay with: near, ahead and in the same direction; return their number."""
+    held = 0
+    px, py = desired[row, 0], desired[row, 1]
+    own = math.sqrt(px * px + py * py)
+    lx, ly = (px, py) if own > PURPOSE else (velocity[row, 0], velocity[row, 1])
+    look = math.sqrt(lx * lx + ly * ly)
+    for other in mates:
+        x, y = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
+        d2 = x * x + y * y
+        if other == row or not d2 < reach * reach:
+            continue
+        qx, qy = desired[other, 0], desired[other, 1]
+        its = math.sqrt(qx * qx + qy * qy)
+        value = 1.5 * d2
+        if look > DIRECTED and d2 > 0.0:
+            value -= 0.5 * math.sqrt(d2) * (x * lx + y * ly) / look
+        if own > PURPOSE and its > PURPOSE:
+            cosine = (px * qx + py * qy) / (own * its)
+            if cosine <= ALIKE:
+                continue
+            value *= 2.0 - cosine
+        if held == most and not (most > 0 and value < key[held - 1]):
+            continue
+        n = min(held, most - 1)
+        held = n + 1
+        while n > 0 and value < key[n - 1]:
+            key[n], found[n] = key[n - 1], found[n - 1]
+            n -= 1
+        key[n], found[n] = value, other
+    return held
+
+
+@kernel
+def unit(x: float, y: float) -> tuple[float, float]:
+    """Return the direction of a velocity, or 0 if it is too slow."""
+    length = math.sqrt(x * x + y * y)
+    return (x / length, y / length) if length > DIRECTED else (0.0, 0.0)
+
+
+@kernel
+def walking_direction(px: float, py: float, qx: float, qy: float, vx: float, vy: float) -> tuple[float, float]:
+    """Return the common walking direction of two agents: desired direction of either, otherwise current direction."""
+    if px * px + py * py > POINTED * POINTED:
+        return unit(px, py)
+    if qx * qx + qy * qy > POINTED * POINTED:
+        return unit(qx, qy)
+    return unit(vx, vy)
+
+
+SAMPLES = 48
+"""Maximum number of samples per level."""
+SLOW = 0.1
+"""Below this speed [m/s] an agent samples all directions, and a chosen velocity counts as standing."""
+
+
+def _turns(count: int, shift: float, round_: float) -> Floats:
+    """Return sines and cosines in single precision, whose rounding decides if samples at right angles go backwards."""
+    angle = (np.arange(count, dtype=np.float32) + np.float32(shift)) * np.float32(np.pi) * np.float32(2.0)
+    angle = angle / np.float32(round_)
+    return np.stack([np.sin(angle), np.cos(angle)]).astype(np.float64)
+
+
+EIGHT, SIX, SIXTEEN = _turns(8, 0.0, 8.0), _turns(6, 0.5, 6.0), _turns(16, 0.0, 16.0)
+
+
+@kernel
+def sample_first(samples: Floats, vx: float, vy: float, px: float, py: float, radius: float) -> int:
+    """Write the first samples (x, y, size); return their number."""
+    speed = math.sqrt(vx * vx + vy * vy)
+    scale = max(math.sqrt(px * px + py * py), speed)
+    scale = 4.0 * radius if scale <= radius else scale
+    _write_sample(samples, 0, px, py, 0.3 * scale)
+    _write_sample(samples, 1, vx, vy, 0.3 * scale)
+    for k in range(8):  # on the circle from 0 to v
+        along, across = 0.5 * (1.0 + EIGHT[1, k]), 0.5 * EIGHT[0, k]
+        size = (1.0 - abs(k - 4.0) / 8.0) * 0.5 * scale
+        _write_sample(samples, 2 + k, vx * along + vy * across, vy * along - vx * across, size)
+    for k in range(6):
+        along, across = 0.5 + 0.3 * SIX[0, k], 0.3 * SIX[1, k]
+        _write_sample(samples, 10 + k, vx * along + vy * across, vy * along - vx * across, 0.3 * scale)
+        _write_sample(samples, 16 + k, vx + 0.2 * scale * SIX[1, k], vy + 0.2 * scale * SIX[0, k], 0.4 * scale)
+    _write_sample(samples, 22, 0.5 * vx, 0.5 * vy, 0.4 * scale)
+    if speed >= SLOW:
+        return 23
+    for k in range(16):
+        _write_sample(samples, 23 + k, scale * SIXTEEN[0, k], scale * SIXTEEN[1, k], 0.5 * scale)
+    for k in range(8):
+        _write_sample(samples, 39 + k, 0.5 * scale * SIXTEEN[0, k], 0.5 * scale * SIXTEEN[1, k], 0.25 * scale)
+    return 47
+
+
+@kernel
+def _write_sample(samples: Floats, at: int, x: float, y: float, size: float) -> None:
+    samples[at, 0], samples[at, 1], samples[at, 2] = x, y, size
+
+
+@kernel
+def sample_around(samples: Floats, best: Floats) -> int:
+    """Write four samples around each of the two best; return their number."""
+    for k in range(2):
+        x, y, size = best[k, 0], best[k, 1], best[k, 2]
+        step, finer = 0.3 * size, 0.6 * size * size
+        _write_sample(samples, 4 * k, x + step, y + step, finer)
+        _write_sample(samples, 4 * k + 1, x - step, y + step, finer)
+        _write_sample(samples, 4 * k + 2, x - step, y - step, finer)
+        _write_sample(samples, 4 * k + 3, x + step, y - step, finer)
+    return 8
+
+
+@kernel
+def keep_best(best: Floats, samples: Floats, k: int, score: float) -> None:
+    """Update the two best samples with sample k; as in the original, a replaced best does not become second best."""
+    if score > best[0, 3]:
+        return
+    at = 0 if score > best[1, 3] else 1
+    best[at, 0], best[at, 1], best[at, 2], best[at, 3] = samples[k, 0], samples[k, 1], samples[k, 2], score
+
 
 MEMORY = "vog_calm"
 """Name in the memory of a scene: calm of each agent, which grows with the time since its last large velocity change."""

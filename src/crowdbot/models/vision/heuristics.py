@@ -11,14 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.typing import Floats, Ints
 

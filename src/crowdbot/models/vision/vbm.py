@@ -9,26 +9,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import (
-    CHUNK,
-    InputError,
-    Neighbors,
-    Paper,
-    PerAgent,
-    Scene,
-    kernel,
-    parameter,
-    prange,
-)
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    check_variant,
-    movable,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.core import CHUNK, InputError, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
+from crowdbot.models.model import CrowdModel, begin_step, check_variant, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.typing import Floats
 

@@ -11,14 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, InputError, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
-from crowdbot.models.model import (
-    CrowdModel,
-    begin_step,
-    launch,
-    neighbors_of,
-    rows,
-    speed_limit,
-)
+from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment
 from crowdbot.typing import Floats

@@ -28,15 +28,7 @@ from crowdbot.prediction.pretrained_weights import (
 )
 from crowdbot.typing import Floats, Ints
 
-from .agent_frame import (
-    HISTORY,
-    PREDICTED_ROWS,
-    agent_features,
-    agent_histories,
-    heading_vectors,
-    rotate,
-    speed_class,
-)
+from .agent_frame import HISTORY, PREDICTED_ROWS, agent_features, agent_histories, heading_vectors, rotate, speed_class
 from .anchors import CHAI, resample_paths, scatter_to_slots
 from .filtered_line import filtered_lines
 from .forward_pass import feature_limit, network_output, reach_of

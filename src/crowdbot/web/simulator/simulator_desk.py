@@ -34,15 +34,7 @@ from crowdbot.simulation import (
     VelocityOrder,
     read_order,
 )
-from crowdbot.trials import (
-    RobotSpec,
-    Trial,
-    add_element,
-    expand_sweeps,
-    override_remarks,
-    trial_remarks,
-    trial_titles,
-)  # fmt: skip
+from crowdbot.trials import RobotSpec, Trial, add_element, expand_sweeps, override_remarks, trial_remarks, trial_titles
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.scene import LAYERS, scene_resource

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core import DataError
-from crowdbot.prediction import weight_files
-from crowdbot.prediction.weight_files import find_weights, weight_hashes, weights_folder
+from crowdbot.prediction import pretrained_weights
+from crowdbot.prediction.pretrained_weights import find_weights, weight_hashes, weights_folder
 
-ASSETS = Path(weight_files.__file__).parents[1] / "assets" / "predictors"
+ASSETS = Path(pretrained_weights.__file__).parents[1] / "assets" / "predictors"
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def wheel(tmp_path, monkeypatch):
         (package / name).parent.mkdir(exist_ok=True)
         (package / name).write_bytes((ASSETS / name).read_bytes())
     extra.mkdir()
-    monkeypatch.setattr(weight_files, "_package_folder", lambda: package)
+    monkeypatch.setattr(pretrained_weights, "_package_folder", lambda: package)
     monkeypatch.setenv("CROWDBOT_WEIGHTS", str(extra))
     return extra
 
