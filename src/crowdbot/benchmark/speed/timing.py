@@ -23,6 +23,7 @@ from crowdbot.core import InputError, MissingExtra, UnknownName
 from .bridge_loads import bridge_measurements
 from .calibrated_frames import scheme_frames
 from .learning import learning_measurements
+from .live_frames import LIVE_FRAMES, live_frames
 from .measurement import Gauge, Measurement
 from .workloads import measurements
 
@@ -66,6 +67,7 @@ def measure(
         | learning_measurements()
         | bridge_measurements()
         | {f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)}
+        | {name: functools.partial(live_frames, name) for name in LIVE_FRAMES}
         | dict(more or {})
     )
     unknown = next((name for name in names if name not in known), None)
