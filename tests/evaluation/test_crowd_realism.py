@@ -52,17 +52,21 @@ def report(folder: Path, *trials: Trial) -> str:
         (
             "people",
             "Around a golf cart, recorded people keep a median least clearance of 0.82 m (quartiles 0.54 to 2.06 m),"
-            " the crowd people 0.70 m (0.48 to 1.63 m); in its median run it touches the cart in none of 23"
-            " recordings, recorded people in none. It keeps the distance of recorded people within 20 %, and touches"
+            " simulated people of the crowd 'people' 0.70 m (0.48 to 1.63 m); in their median run they touch"
+            " the cart in none of 23 recordings, recorded people in none."
+            " It keeps the distance of recorded people within 20 %, and touches"
             " the robot as rarely. Its parameters are fitted to these recordings, so this is no independent test.",
         ),
-        ("orca", "the crowd orca 0.11 m (0.10 to 1.85 m); in its median run it touches the cart in none of 23"),
+        (
+            "orca",
+            "of the crowd 'orca' 0.11 m (0.10 to 1.85 m); in their median run they touch the cart in none of 23",
+        ),
         (
             "social-force",
-            "the crowd social-force -0.03 m, an overlap (-0.07 to 1.64 m); in its median run it touches the cart in"
-            " 12 of 23 recordings, recorded people in none. It comes nearer than recorded people",
+            "of the crowd 'social-force' -0.03 m, an overlap (-0.07 to 1.64 m); in their median run they touch"
+            " the cart in 12 of 23 recordings, recorded people in none. It comes nearer than recorded people",
         ),
-        ("anticipation-velocity", "it touches the cart in 9 of 23 recordings"),
+        ("anticipation-velocity", "they touch the cart in 9 of 23 recordings"),
     ],
 )
 def test_the_report_compares_the_crowd_with_recorded_people(tmp_path: Path, crowd: str, words: str) -> None:
@@ -94,8 +98,8 @@ def test_a_crowd_that_was_not_compared_is_named_as_such(tmp_path: Path, crowds: 
 
 def test_a_changed_value_that_was_compared_has_its_own_numbers(tmp_path: Path) -> None:
     text = report(tmp_path, trial('<crowd type="people" robot-gap="0"/>'))
-    assert "the crowd people with robot-gap=0 0.11 m (-0.04 to 1.86 m)" in text
-    assert "it touches the cart in 9 of 23 recordings" in text
+    assert "simulated people of the crowd 'people' with robot-gap=0 0.11 m (-0.04 to 1.86 m)" in text
+    assert "they touch the cart in 9 of 23 recordings" in text
     assert "Its parameters are fitted" not in text
 
 
@@ -125,7 +129,7 @@ def test_each_of_two_crowds_that_people_follow_has_a_sentence(tmp_path: Path) ->
         ("new (boids)", "unknown"),
     ]
     text = report(tmp_path, both)
-    assert "the crowd calm (people) 0.70 m" in text
+    assert "of the crowd 'calm (people)' 0.70 m" in text
     assert f"The crowd new (boids) was not compared with recordings around a robot: {UNKNOWN}." in text
     assert (
         "Note: Some of these people keep about the distance of recorded people around a robot; some of these people"

@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot import models
 from crowdbot.cli import COMMANDS
+from crowdbot.core import builtin_classes
+from crowdbot.trials import builtin_trials
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
@@ -54,6 +57,15 @@ def test_a_walk_names_what_exists_and_enters_a_room_once(walk):
     rooms = [station["file"].split("/")[0] for station in stations]
     entered = [station["room"].strip() for station in stations if station["room"]]
     assert entered == list(dict.fromkeys(rooms))
+
+
+def test_numbers_of_built_in_names_are_those_of_today():
+    trials, kinds = len(builtin_trials()), len(builtin_classes(models, models.CrowdModel))
+    page = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    assert f"{trials} built-in trials" in page
+    assert f"calibrated crowds ({kinds} models)" in page
+    assert f"{kinds} crowd models" in (ROOT / "docs/about/comparison.md").read_text(encoding="utf-8")
+    assert f"{trials} trials are built in" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
 def test_the_floors_are_those_of_the_linter():

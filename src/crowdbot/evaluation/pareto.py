@@ -12,6 +12,8 @@ from .result import CellResult
 WIDTH, HEIGHT, MARGIN = 720, 380, 56
 LETTER, LINE, DOT = 6.3, 14.0, 8.0
 """Width of a letter of a label, height of a line, and half of the width of a point."""
+HALO = 'stroke="#fff" stroke-width="3" paint-order="stroke"'
+"""White edge of a label: a bar behind it crosses no letter."""
 
 
 def pareto_front(points: Sequence[tuple[float, ...]]) -> list[int]:
@@ -53,9 +55,10 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
     def y_of(share: float) -> float:
         return HEIGHT - MARGIN - (HEIGHT - 1.6 * MARGIN) * share
 
-    legend = f"success rate; {measure}: green 0" + (f", red {worst:.2g} and more" if worst > 0.0 else "")
+    legend = f"height: success rate; color: {measure}, green 0" + (f", red {worst:.2g} and more" if worst > 0.0 else "")
     parts = [_axes(fastest, slowest, x_of, y_of, legend)]
     labels = [(x_of(time.value) - DOT, x_of(time.value) + DOT, y_of(share.value) + 4.0) for _, share, time in rows]
+    texts = []
     for k, (cell, success, time) in enumerate(rows):
         x, y = x_of(time.value), y_of(success.value)
         edge = "#111" if k in best else "#9aa4b0"
@@ -71,8 +74,9 @@ def pareto_svg(cells: Sequence[CellResult]) -> str:
         left = x + shift - (LETTER * len(label) if anchor == "end" else 0.0)
         line = _free_line(labels, left, left + LETTER * len(label), y + 4.0)
         labels.append((left, left + LETTER * len(label), line))
-        parts.append(f'<text x="{x + shift:.1f}" y="{line:.1f}" text-anchor="{anchor}">{html.escape(label)}</text>')
-    body = "".join(parts)
+        place = f'x="{x + shift:.1f}" y="{line:.1f}" text-anchor="{anchor}"'
+        texts.append(f"<text {place} {HALO}>{html.escape(label)}</text>")
+    body = "".join(parts + texts)  # labels are above the bars of all cells
     return f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Success and time to the goal">{body}</svg>'
 
 

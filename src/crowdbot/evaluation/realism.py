@@ -249,9 +249,9 @@ def _crowd_realism(name: str, model: CrowdModel, change: str) -> CrowdRealism:
     contacts = _compare_contacts(row, table.recorded)
     parts = [
         f"Around a golf cart, recorded people keep a median least clearance of"
-        f" {_metres(table.recorded.median)} (quartiles {_ends(table.recorded)}), the crowd"
-        f" {title}{values} {_metres(row.median)} ({_ends(row)}); in its median run it touches the cart in"
-        f" {_of(row.touched, table.recordings)}, recorded people in {_of(table.recorded.touched)}.",
+        f" {_metres(table.recorded.median)} (quartiles {_ends(table.recorded)}), simulated people"
+        f" of the crowd {title!r}{values} {_metres(row.median)} ({_ends(row)}); in their median run they"
+        f" touch the cart in {_of(row.touched, table.recordings)}, recorded people in {_of(table.recorded.touched)}.",
         BIAS[contacts],
         *(["Its parameters are fitted to these recordings, so this is no independent test."] if row.fitted else []),
     ]
