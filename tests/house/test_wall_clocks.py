@@ -17,6 +17,8 @@ CLOCKS = {
 } | {f"{prefix}{name}" for prefix in ("", "datetime.") for name in ("datetime.now", "datetime.utcnow", "date.today")}
 REMEDY = "give it a clock of its own, or mark it with @pytest.mark.live"
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+Part = Definition | ast.Module
+"""A function or class of the tests, or a whole program that a test starts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +33,7 @@ class TestFile:
         always: fixtures that every test of the file has.
         full: full names of imported names, such as ``time.monotonic`` for ``monotonic``.
         modules: imported modules, by the name that the file gives them.
+        texts: texts in the values at its top, by name.
     """
 
     __test__ = False
@@ -42,6 +45,7 @@ class TestFile:
     always: list[Definition]
     full: dict[str, str]
     modules: dict[str, str]
+    texts: dict[str, set[str]]
 
     @classmethod
     def read(cls, path: Path) -> TestFile:
@@ -57,10 +61,12 @@ class TestFile:
         places = {node.name: node for node in tree.body if isinstance(node, Definition)}
         fixtures = {fixture_name(node): node for node in places.values() if is_fixture(node)}
         always = [node for node in fixtures.values() if "autouse=True" in decorators(node)]
-        return cls(path, tree, places, fixtures, always, full, modules)
+        values = [assigned for node in tree.body if isinstance(node, ast.Assign) for assigned in assignments(node)]
+        texts = {name: texts_of(value) for name, value in values}
+        return cls(path, tree, places, fixtures, always, full, modules, texts)
 
 
-Found = tuple[TestFile, Definition]
+Found = tuple[TestFile, Part]
 
 
 class Imports:
@@ -96,19 +102,36 @@ class Imports:
         folders = [folder for folder in user.path.parents if folder.is_relative_to(self._tests)]
         return [user, *(self.file(path) for folder in folders if (path := folder / "conftest.py").exists())]
 
-    def used_by(self, user: TestFile, node: Definition) -> list[Found]:
+    def used_by(self, user: TestFile, node: Part) -> list[Found]:
         """Return the functions and classes of the tests that a function or class uses, and its fixtures."""
         if (user, node) not in self._used:
             self._used[user, node] = list(self._search(user, node))
         return self._used[user, node]
 
-    def clocks_of(self, user: TestFile, node: Definition) -> set[tuple[Path, int, str]]:
-        """Return file, line and name of each clock that a function or class itself reads."""
+    def clocks_of(self, user: TestFile, node: Part) -> set[tuple[Path, int, str]]:
+        """Return file, line and name of each clock that a function, class or program itself reads."""
         if (user, node) not in self._clocks:
             self._clocks[user, node] = {(user.path, *call) for call in calls(node, user.full)}
         return self._clocks[user, node]
 
-    def _search(self, user: TestFile, node: Definition) -> Iterator[Found]:
+    def programs(self, user: TestFile, node: Part) -> Iterator[TestFile]:
+        """Yield the programs among the tests whose file names are in a part of a file, or in a value that it uses."""
+        used = [self._value(user, name) for name in words_of(node)]
+        for text in texts_of(node).union(*used):
+            name = text.rpartition("/")[2]
+            paths = self._paths.get(name.removesuffix(".py"), []) if name.endswith(".py") else []
+            if paths and not name.startswith(("test_", "conftest")) and name != user.path.name:
+                yield self.file(next((path for path in paths if path.parent == user.path.parent), paths[0]))
+
+    def _value(self, user: TestFile, name: str) -> set[str]:
+        """Return the texts in a value at the top of a file, which may come from another file of the tests."""
+        module, _, original = user.full.get(name, "").rpartition(".")
+        other = self.module(module, user) if module else None
+        return other.texts.get(original, set()) if other else user.texts.get(name, set())
+
+    def _search(self, user: TestFile, node: Part) -> Iterator[Found]:
+        for program in self.programs(user, node):
+            yield program, program.tree
         for name in words_of(node):
             if found := self._named(user, name):
                 yield found
@@ -203,9 +226,9 @@ def decorators(node: Definition) -> str:
     return " ".join(ast.unparse(one) for one in node.decorator_list)
 
 
-def is_fixture(node: Definition) -> bool:
+def is_fixture(node: Part) -> bool:
     """Return whether a function is a fixture."""
-    return "fixture" in decorators(node)
+    return not isinstance(node, ast.Module) and "fixture" in decorators(node)
 
 
 def fixture_name(node: Definition) -> str:
@@ -214,8 +237,10 @@ def fixture_name(node: Definition) -> str:
     return next((ast.literal_eval(word.value) for word in words if word.arg == "name"), node.name)
 
 
-def asked_by(node: Definition) -> set[str]:
+def asked_by(node: Part) -> set[str]:
     """Return the names of fixtures that a function asks for: its arguments, and what ``usefixtures`` names."""
+    if isinstance(node, ast.Module):
+        return set()
     arguments = [] if isinstance(node, ast.ClassDef) else [*node.args.args, *node.args.kwonlyargs]
     marks = [one for one in node.decorator_list if "usefixtures" in ast.unparse(one)]
     return {one.arg for one in arguments}.union(*map(texts_of, marks))
@@ -226,12 +251,12 @@ def texts_of(node: ast.AST) -> set[str]:
     return {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
 
 
-def words_of(node: Definition) -> set[str]:
+def words_of(node: Part) -> set[str]:
     """Return the names that a function or class uses."""
     return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
 
 
-def calls(node: Definition, full: dict[str, str]) -> Iterator[tuple[int, str]]:
+def calls(node: Part, full: dict[str, str]) -> Iterator[tuple[int, str]]:
     """Yield line and name of each call of a clock; ``full`` has the full names of what is imported."""
     for one in ast.walk(node):
         if isinstance(one, ast.Call):
@@ -286,6 +311,9 @@ HELPERS = {
     "def wait():\n    monotonic()\ndef wait_twice():\n    deep.wait()\ndef add(browser):\n    monotonic()\n",
     "elsewhere/deep.py": "import time\ndef wait():\n    time.time_ns()\n"
     "class Robot:\n    def move(self):\n        time.time()\n",
+    "here/robot.py": "import time\ndef main():\n    time.sleep(0.1)\n    time.monotonic()\nmain()\n",
+    "here/starts.py": "from pathlib import Path\nROBOT = Path(__file__).with_name('robot.py')\n"
+    "def start():\n    return run(ROBOT)\n",
 }
 """Other files of the tests, which the files below are beside in the folder here."""
 IMPORTS = {
@@ -297,6 +325,12 @@ IMPORTS = {
     "from waits import add\ndef test_x():\n    add(1)": "time.monotonic in waits.py:8",
     "from deep import Robot\ndef test_x():\n    Robot().move()": "time.time in deep.py:6",
     "def test_x(now):\n    pass": "time.time in conftest.py:5",
+    "def test_x():\n    run('here/robot.py')": "time.monotonic in robot.py:4",
+    "PROGRAM = FOLDER / 'robot.py'\ndef test_x():\n    run(PROGRAM)": "time.monotonic in robot.py:4",
+    "from starts import ROBOT\ndef test_x():\n    run(ROBOT)": "time.monotonic in robot.py:4",
+    "from starts import start\ndef test_x():\n    start()": "time.monotonic in robot.py:4",
+    "PROGRAM = 'robot.py'\ndef test_x():\n    pass": "",
+    "import pytest\n@pytest.mark.live\ndef test_x():\n    run('robot.py')": "",
     "import pytest\nfrom waits import wait\n@pytest.mark.live\ndef test_x():\n    wait()": "",
     "from waits import wait\ndef test_x():\n    pass": "",
     "import waits\ndef wait():\n    pass\ndef test_x():\n    wait()": "",

@@ -13,10 +13,14 @@ from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Element, Twist
 from crowdbot.world import import_robot
 from crowdbot.world.urdf import mjcf
+from samples import sample
 
 DRIVEN = ("classic_diff", "mecanum", "kiwi3", "kiwi4", "ackermann", "quadruped", "balancing", "conditional_xacro",
           "sdf_diff", "swerve", "sphere_wheels", "swivel_castors", "german_skid", "six_wheels", "mesh_wheels",
           "manipulator", "tricycle", "tracked", "sprung", "rear_steering")  # fmt: skip
+KINDS = ("classic_diff", "mecanum", "kiwi3", "ackermann", "quadruped", "swerve", "sphere_wheels", "six_wheels",
+         "mesh_wheels", "tracked", "sprung", "rear_steering")  # fmt: skip
+"""A robot for each kind of base, wheel and suspension; ``make sweeps`` drives the others, too."""
 
 
 @pytest.mark.parametrize("name", MAKERS)
@@ -26,7 +30,7 @@ def test_base_and_mass_are_those_of_the_file(tmp_path: Path, name: str) -> None:
     assert made.mass == pytest.approx(MAKERS[name][2])
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", sample(DRIVEN, KINDS))
 def test_a_robot_of_a_maker_drives_as_asked(tmp_path: Path, name: str) -> None:
     file = write_maker(tmp_path, name)
     grid = measure_drives([], steps=[0.005], quick=True, makers=[file]).makers[0].grid

@@ -105,16 +105,16 @@ def test_wrong_values_are_explained(values, message):
 
 
 def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):
-    trial = parse_methods("scan-map")[0].put_into(load_trial("frontal", duration=7.0))
-    together = simulate_seeds(trial, range(2))
-    assert [one.digest for one in together] == [simulate(trial, seed).digest for seed in range(2)]
-    first = record(trial, out=tmp_path / "first")
+    trial = parse_methods("scan-map")[0].put_into(load_trial("frontal", duration=5.0))
+    together = [one.digest for one in simulate_seeds(trial, range(2))]
+    first = record(trial, 0, out=tmp_path / "first")
+    assert together == [first.digest, simulate(trial, 1).digest]
     assert replay(tmp_path / "first" / "episode.mcap").equal
-    assert branch(tmp_path / "first" / "episode.mcap", at=6.0).digest == first.digest
+    assert branch(tmp_path / "first" / "episode.mcap", at=4.0).digest == first.digest
 
 
 def test_a_robot_without_tracker_passes_a_person():
     trial = parse_methods("scan-map")[0].put_into(load_trial("frontal"))
-    outcomes = [one.outcome for one in simulate_seeds(trial, range(4))]
-    assert outcomes.count("success") >= 3
-    assert math.isfinite(sum(one.metrics["min_clearance"] for one in simulate_seeds(trial, range(1))))
+    runs = list(simulate_seeds(trial, range(4)))
+    assert [one.outcome for one in runs].count("success") >= 3
+    assert math.isfinite(sum(one.metrics["min_clearance"] for one in runs))
