@@ -194,13 +194,37 @@ def test_a_stored_tree_restores_the_objects_that_exist() -> None:
         ({"tree/0/value/load": np.zeros(3)}, r"has the shape \[3\], but the trial has \[2\]"),
         ({"tree/0/value/load": np.zeros((1, 2))}, "has 2 axes of float64, but the trial has 1"),
         ({"tree/0/value": StateMark("value", "Popen")}, "is a 'Popen', which is unknown"),
-        ({"tree/3/value": StateMark("plain", [])}, "not one random stream for each environment"),
+        ({"tree/3/value": StateMark("plain", [])}, "is a 'plain', which is unknown"),
         ({"tree/9": 1}, "has a value 'tree/9', which this trial does not have"),
     ],
 )
 def test_leaves_that_do_not_fit_are_refused(change: dict[str, Any], problem: str) -> None:
     with pytest.raises(StateError, match=problem):
         tree.unflatten(tree.flatten(machine(7.0)) | change, machine(2.0))
+
+
+class Wagons:
+    """An object with state, a constant, and a constant by environment."""
+
+    storage = Storage(constants=("length", "owners"), environments=("owners",), shared=("built",))
+
+    def __init__(self, loads: list[list[int]]) -> None:
+        self.loads, self.speed = tree.objects(loads), np.arange(float(len(loads)))
+        self.owners, self.length, self.built = tree.objects(loads), np.zeros(7), np.zeros(5)
+
+
+def test_environments_of_objects_are_copied_and_constants_shared() -> None:
+    train = Wagons([[1], [2], [3]])
+    some = tree.take(train, np.array([2, 0, 2]))
+    some.loads[0].append(9)
+    assert (some.loads.tolist(), some.speed.tolist()) == ([[3, 9], [1], [3]], [2.0, 0.0, 2.0])
+    assert (train.loads.tolist(), train.speed.tolist()) == ([[1], [2], [3]], [0.0, 1.0, 2.0])
+    assert some.owners[0] is train.owners[2]
+    assert some.length is train.length
+    assert some.built is train.built
+    whole = tree.put(train, np.array([1]), Wagons([[8]]))
+    assert (whole.loads.tolist(), whole.speed.tolist(), tree.count(whole)) == ([[1], [8], [3]], [0.0, 0.0, 2.0], 3)
+    assert tree.join([train, some]).owners.tolist() == [[1], [2], [3], [3], [1], [3]]
 
 
 def test_an_object_of_an_unknown_class_is_not_stored() -> None:

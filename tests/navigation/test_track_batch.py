@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, stream
+from crowdbot.core import InputError, stream, tree
 from crowdbot.navigation import DriveLimits, ObservationBatch, TrackBatch, TrackHistory
 
 
@@ -48,10 +48,10 @@ def test_each_history_has_the_bits_of_a_single_one(seed, length, people):
 @given(st.integers(0, 1000), st.lists(st.integers(0, 3), min_size=1, max_size=5), st.permutations(range(4)))
 def test_environments_are_selected_and_replaced(seed, rows, places):
     (batch, alone), (other, others) = grow(seed), grow(seed + 1)
-    some = batch.select(np.array(rows))
+    some = tree.take(batch, np.array(rows))
     assert all(same(some[k], alone[e]) for k, e in enumerate(rows))
     kept = batch.position.copy()
-    mixed = batch.put(np.array(places[:2]), other.select(np.array([0, 1])))
+    mixed = batch.put(np.array(places[:2]), tree.take(other, np.array([0, 1])))
     expected = list(alone)
     expected[places[0]], expected[places[1]] = others[0], others[1]
     assert all(same(mixed[e], expected[e]) for e in range(4))

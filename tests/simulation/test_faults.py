@@ -126,6 +126,15 @@ def test_late_readings_arrive_in_their_order() -> None:
     assert observed.people.position[0, 0] - simulation.world.scene.position[0, 0, 0] == pytest.approx(0.5, abs=0.02)
 
 
+def test_a_late_sensor_of_selected_environments_has_no_rows_of_others() -> None:
+    simulation = Simulation(_trial('<fault type="late-sensor" delay="0.5"/>'), range(3))
+    for _ in range(4):
+        simulation.advance()
+    for sensor in simulation.select([2, 0]).robots[0].sensors:
+        rows = {name: len(value) for name, value in vars(sensor).items() if isinstance(value, np.ndarray)}
+        assert set(rows.values()) == {2}, rows
+
+
 def test_a_wrong_pose_moves_people_with_it() -> None:
     simulation = Simulation(_trial('<fault type="localization-offset" x="0.3" heading="0.2"/>'))
     observed, scene = simulation.observation("bot"), simulation.world.scene

@@ -253,7 +253,7 @@ def test_a_missed_decision_keeps_the_previous_command_and_is_replayed_without_a_
     assert again.robots[0].timer.missed.tolist() == live.robots[0].timer.missed.tolist()
     copied = again.select([0, 0])
     copied.advance()
-    assert copied.robots[0].timer.recorded == [RecordedDecisions(frozenset({2, 8}))] * 2
+    assert copied.robots[0].timer.recorded.tolist() == [RecordedDecisions(frozenset({2, 8}))] * 2
 
 
 def test_a_deadline_that_is_kept_changes_nothing() -> None:

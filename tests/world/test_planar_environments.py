@@ -107,6 +107,20 @@ def test_a_car_at_rest_replaces_one_that_drives_and_the_reverse(steps: tuple[int
     assert digests(parts[0]) == digests(single)  # type: ignore[arg-type]
 
 
+def test_commands_on_their_way_come_with_a_replaced_environment() -> None:
+    """The latency is 0.25 s, three steps."""
+    whole, other = join_worlds([world(seed, 4, "same") for seed in range(2)]), world(5, 4, "same")
+    for tick in range(4):
+        whole.step({0: command(tick, 1)})
+        other.step({0: command(tick, 2)})
+    alone = select_environments(other, [0])
+    put_environments(whole, [1], other)
+    for _ in range(4):
+        whole.step({0: Twist(0.1)})
+        alone.step({0: Twist(0.1)})
+    assert digests(whole)[1] == digests(alone)[0]
+
+
 def test_selected_environments_do_not_share_state() -> None:
     whole = join_worlds([world(seed, 4, "same") for seed in range(3)])
     whole.step({0: Twist(0.5)})

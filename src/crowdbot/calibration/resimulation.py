@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
+from crowdbot.core import Scene, tree
 from crowdbot.data import Windows, fill_gaps, slice_rows
 from crowdbot.typing import Floats, Ints
 
@@ -74,7 +74,7 @@ class Resimulation:
         rows = range(1, self.past.position.shape[1] - 1)
         scenes = [self.rollout.scene(slice_rows(self.past, 0, row + 1), row) for row in rows]
         order = np.arange(len(rows) * len(self.past)).reshape(len(rows), -1).T.ravel()
-        return _concatenate(scenes).environments(order)
+        return tree.join(scenes).environments(order)
 
     @functools.cached_property
     def _tracks(self) -> _RecordedTracks:
@@ -143,10 +143,3 @@ def _recorded_tracks(past: Windows) -> _RecordedTracks:
     last = T - 1 - np.argmax(past.present[:, ::-1], axis=1)
     changes = bool(np.any(past.robot) or np.any(past.present != past.present[:, :1]))
     return _RecordedTracks(past.position, velocity, past.present, last, changes)
-
-
-def _concatenate(scenes: list[Scene]) -> Scene:
-    """Concatenate the environments of scenes with the same people and walls."""
-    first = scenes[0]
-    names = [name for name, value in vars(first).items() if isinstance(value, np.ndarray)]
-    return first.replace(**{name: np.concatenate([getattr(scene, name) for scene in scenes]) for name in names})

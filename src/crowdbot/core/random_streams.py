@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Sequence
-from typing import Any, overload
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InputError
 from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
 from .kernels import kernel
 from .random import stream, stream_text
-from .tree import Storage
+from .tree import Storage, objects
 
 __all__ = ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"]
 
@@ -38,8 +38,21 @@ MULTIPLIER = (np.uint64(2549297995355413924), np.uint64(4865540595714422341))
 UNIT = 1.0 / 9007199254740992.0
 
 
+@dataclass
+class _Stream:
+    """A generator that is made at first use."""
+
+    seed: int
+    path: tuple[str | int, ...]
+    made: np.random.Generator | None = None
+    storage = Storage(constants=("path",))
+
+    def __deepcopy__(self, memo: Any) -> _Stream:
+        return _Stream(self.seed, self.path, copy.deepcopy(self.made))
+
+
 class RandomStreams(Sequence[np.random.Generator]):
-    """The generators of E environments, each made when it is first used.
+    """The generators of E environments, each made when it is first used; a tree, see :mod:`crowdbot.core.tree`.
 
     Args:
         seeds: seed of each environment.
@@ -50,108 +63,27 @@ class RandomStreams(Sequence[np.random.Generator]):
     True
     """
 
-    storage = Storage(plain="states")
+    storage = Storage()
 
     def __init__(self, seeds: Iterable[int], *path: str | int) -> None:
-        self._cells: list[_Cell] = [_Cell(int(seed), path) for seed in seeds]
+        self._streams = objects(_Stream(int(seed), path) for seed in seeds)
 
     def __len__(self) -> int:
         """Return E."""
-        return len(self._cells)
+        return len(self._streams)
 
-    @overload
-    def __getitem__(self, index: int) -> np.random.Generator: ...
-    @overload
-    def __getitem__(self, index: slice) -> RandomStreams: ...
-    def __getitem__(self, index: Any) -> Any:
-        """Return the generator of an environment, or the streams of some."""
-        return self._of(self._cells[index]) if isinstance(index, slice) else self._cells[index].generator
+    def __getitem__(self, environment: Any) -> Any:
+        """Return the generator of an environment."""
+        chosen: _Stream = self._streams[environment]
+        if chosen.made is None:
+            chosen.made = stream(chosen.seed, *chosen.path)
+        return chosen.made
 
-    def rows(self, environments: Iterable[int]) -> RandomStreams:
+    def rows(self, environments: Ints) -> RandomStreams:
         """Return the streams of some environments, which continue in this object too."""
-        return self._of([self._cells[e] for e in environments])
-
-    def select(self, environments: Iterable[int]) -> RandomStreams:
-        """Return independent streams of some environments, which may be repeated, in their current state."""
-        return self._of([self._cells[e].copy() for e in environments])
-
-    def join(self, others: Iterable[RandomStreams]) -> RandomStreams:
-        """Return the streams of the environments of this object and of others."""
-        return self._of([cell for one in (self, *others) for cell in one._cells])
-
-    def put(self, environments: Iterable[int], other: RandomStreams) -> None:
-        """Replace the streams of some environments by those of another object."""
-        for e, cell in zip(environments, other._cells, strict=True):
-            self._cells[e] = cell
-
-    @property
-    def states(self) -> list[list[Any]]:
-        """Seed, path and state of each generator as plain values; the state is None before the first use."""
-        return [cell.state for cell in self._cells]
-
-    @states.setter
-    def states(self, states: Any) -> None:
-        """Continue from the states of as many generators."""
-        if not isinstance(states, list) or len(states) != len(self):
-            raise InputError("there is not one random stream for each environment")
-        self._cells = self.of_states(states)._cells
-
-    @classmethod
-    def of_states(cls, states: Sequence[Any]) -> RandomStreams:
-        """Continue from :attr:`states`.
-
-        Raises:
-            InputError: these are not the states of generators.
-
-        >>> streams = RandomStreams([4, 5], "scan")
-        >>> later = RandomStreams.of_states(streams.states)
-        >>> [one.random() for one in later] == [one.random() for one in streams]
-        True
-        """
-        return cls._of([_Cell.of(state) for state in states])
-
-    @staticmethod
-    def _of(cells: list[_Cell]) -> RandomStreams:
         some = RandomStreams(())
-        some._cells = cells
+        some._streams = self._streams[environments]
         return some
-
-
-class _Cell:
-    """A generator that is made at first use."""
-
-    __slots__ = ("_made", "_path", "_seed")
-
-    def __init__(self, seed: int, path: tuple[str | int, ...], made: np.random.Generator | None = None) -> None:
-        self._seed, self._path, self._made = seed, path, made
-
-    @property
-    def generator(self) -> np.random.Generator:
-        if self._made is None:
-            self._made = stream(self._seed, *self._path)
-        return self._made
-
-    @property
-    def state(self) -> list[Any]:
-        return [self._seed, list(self._path), None if self._made is None else self._made.bit_generator.state]
-
-    @classmethod
-    def of(cls, state: Any) -> _Cell:
-        seed, path, known = state if isinstance(state, list | tuple) and len(state) == 3 else (None, None, None)
-        names = isinstance(path, list | tuple) and all(type(part) in (str, int) for part in path)
-        if type(seed) is not int or not names:
-            raise InputError("the state of a random stream needs its seed, its path, and the state of its generator")
-        cell = cls(seed, tuple(path or ()))
-        if known is not None:
-            cell._made = np.random.Generator(np.random.PCG64(0))
-            try:
-                cell._made.bit_generator.state = known
-            except (ValueError, TypeError, KeyError, OverflowError) as error:
-                raise InputError(f"this is not the state of a random generator: {str(error)[:80]}") from None
-        return cell
-
-    def copy(self) -> _Cell:
-        return _Cell(self._seed, self._path, copy.deepcopy(self._made))
 
 
 def stream_states(seeds: Ints, paths: Sequence[Sequence[str | int]]) -> Words:

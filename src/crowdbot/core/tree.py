@@ -1,19 +1,21 @@
 """Trees of arrays: count, check, select, join and replace their environments, and store them by path.
 
-A tree is a nest of dataclasses, tuples, lists and dicts. Its leaves are arrays, whose first axis is the environments,
-and numbers, texts and None, which belong to all environments. The class variable ``shared_fields`` of a dataclass names
-its fields without environments. Functions return new trees and leave their arguments as they are.
+A tree is a nest of dataclasses, tuples, lists, dicts and objects with a :class:`Storage`. Its leaves are arrays, whose
+first axis is the environments, and numbers, texts and None, which belong to all environments. An array of objects holds
+one object for each environment. The class variable ``shared_fields`` of a dataclass names its fields without
+environments. Functions return new trees and leave their arguments as they are.
 """
 
 from __future__ import annotations
 
 import collections
+import copy
 import dataclasses
 import enum
 import functools
 import itertools
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -30,6 +32,7 @@ __all__ = [
     "environment_index",
     "flatten",
     "join",
+    "objects",
     "put",
     "resize",
     "storable",
@@ -60,6 +63,19 @@ def environment_index(chosen: ArrayLike, count: int | None, name: str) -> Ints:
         allowed = "at least 0" if count is None else f"from 0 to {count - 1}"
         raise InputError(f"{name}: the environments are {index.tolist()}, each must be {allowed}")
     return index
+
+
+def objects(values: Iterable[Any]) -> NDArray[Any]:
+    """Array of objects, one for each environment.
+
+    >>> take(objects([{"a": 1}, None, "text"]), np.array([2, 0])).tolist()
+    ['text', {'a': 1}]
+    """
+    parts = list(values)
+    array = np.empty(len(parts), dtype=object)
+    for k, part in enumerate(parts):  # an assignment of all would make one array of equally long parts
+        array[k] = part
+    return array
 
 
 def count(tree: Any, name: str = "tree") -> int | None:
@@ -95,12 +111,19 @@ def check(tree: Any, environments: int, name: str) -> None:
 def take(tree: Tree, index: Ints | slice) -> Tree:
     """Copy the environments ``index``, in this order; an environment may be repeated.
 
+    Objects in arrays are copied, too, except those of :func:`storable` classes and of constants.
+
     >>> take({"time": 0.5, "speed": np.array([1.0, 2.0, 3.0])}, np.array([2, 0]))["speed"].tolist()
     [3.0, 1.0]
     """
-    if isinstance(index, slice):
-        return cast(Tree, _map(lambda array, _: array[index].copy(), tree))
-    return cast(Tree, _map(lambda array, _: array[index], tree))
+
+    def chosen(array: NDArray[Any], name: str, constant: bool) -> NDArray[Any]:
+        rows = array[index]
+        if array.dtype == object and not constant:
+            return objects(part if _is_storable(type(part)) else copy.deepcopy(part) for part in rows.tolist())
+        return rows.copy() if isinstance(index, slice) else rows
+
+    return cast(Tree, _map(chosen, tree))
 
 
 def join(trees: Sequence[Tree], places: Sequence[Ints | slice] | None = None, environments: int | None = None) -> Tree:
@@ -160,7 +183,7 @@ def resize(tree: Tree, agents: int, fills: Mapping[str, Any]) -> Tree:
     {'group': array([[ 3, -1, -1]]), 'time': 0.5}
     """
 
-    def change(array: NDArray[Any], name: str) -> NDArray[Any]:
+    def change(array: NDArray[Any], name: str, constant: bool) -> NDArray[Any]:
         if array.ndim < 2 or array.shape[1] == agents:
             return array
         more = max(0, agents - array.shape[1])
@@ -171,17 +194,22 @@ def resize(tree: Tree, agents: int, fills: Mapping[str, Any]) -> Tree:
 
 
 class _Fields(NamedTuple):
-    """Fields of a dataclass: those with environments, all that a copy needs, and whether a copy needs no checks."""
+    """Fields of an object: those with environments, all that a copy needs, and whether a copy needs no checks."""
 
     names: tuple[str, ...]
     every: tuple[str, ...]
     plain: bool
+    constants: tuple[str, ...] = ()
 
 
 def _fields(tree: Any) -> _Fields | None:
-    """Fields of a dataclass; None for another class."""
+    """Fields of a dataclass or of an object with a :class:`Storage`; None for another class."""
     kind: Any = type(tree)
-    return _fields_of(kind)
+    storage = _storage(tree)
+    if storage is None:
+        return _fields_of(kind)
+    alike = {*storage.constants, *storage.shared}.difference(storage.environments)
+    return _Fields(tuple(sorted(vars(tree).keys() - alike)), tuple(vars(tree)), True, storage.environments)
 
 
 @functools.cache
@@ -223,7 +251,7 @@ def _parts(tree: Any, keys: Sequence[Any]) -> list[Any]:
 
 def _rebuild(tree: Any, keys: Sequence[Any], parts: list[Any]) -> Any:
     """Copy a container with other parts; a container whose parts are the same objects stays itself."""
-    if all(map(operator.is_, parts, _parts(tree, keys))):
+    if _storage(tree) is None and all(map(operator.is_, parts, _parts(tree, keys))):
         return tree
     changes = dict(zip(keys, parts, strict=True))
     fields = _fields(tree)
@@ -238,14 +266,18 @@ def _rebuild(tree: Any, keys: Sequence[Any], parts: list[Any]) -> Any:
     return made
 
 
-def _map(change: Callable[[NDArray[Any], str], Any], tree: Any, name: str = "") -> Any:
-    """Change all arrays with environments; ``change`` gets an array and the field or key that holds it."""
+def _map(
+    change: Callable[[NDArray[Any], str, bool], Any], tree: Any, name: str = "", constants: Sequence[str] = ()
+) -> Any:
+    """Change all arrays with environments; ``change`` gets an array, its field or key, and whether it is constant."""
     if isinstance(tree, np.ndarray):
-        return change(tree, name) if tree.ndim else tree
+        return change(tree, name, name in constants) if tree.ndim else tree
     if isinstance(tree, LEAVES):
         return tree
-    keys = _keys(tree)
-    return _rebuild(tree, keys, [_map(change, part, key) for key, part in zip(keys, _parts(tree, keys), strict=True)])
+    keys, fields = _keys(tree), _fields(tree)
+    own = () if fields is None else fields.constants
+    parts = zip(keys, _parts(tree, keys), strict=True)
+    return _rebuild(tree, keys, [_map(change, part, key, own) for key, part in parts])
 
 
 def _arrays(tree: Any, path: tuple[Any, ...]) -> list[tuple[tuple[Any, ...], NDArray[Any]]]:
@@ -304,8 +336,8 @@ class StateMark(NamedTuple):
     """A container or a special value in a stored tree.
 
     Fields:
-        kind: ``holder``, ``plain``, ``value``, ``list``, ``tuple``, ``dict``, ``deque``, ``objects``, ``number``,
-            ``random`` or ``same``.
+        kind: ``holder``, ``value``, ``list``, ``tuple``, ``dict``, ``deque``, ``objects``, ``number``, ``random`` or
+            ``same``.
         content: name of the class, number of parts, state of random generators, or path of the same object.
     """
 
@@ -315,24 +347,26 @@ class StateMark(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Storage:
-    """What :func:`flatten` stores of a class; its class attribute ``storage``. Base classes add theirs.
+    """What is stored of a class, and what has environments; its class attribute ``storage``. Base classes add theirs.
 
     Objects of such a class are part of the structure: :func:`unflatten` sets the fields of the objects that exist. In a
     :func:`storable` class, constants have the value of the object that is replaced.
 
     Fields:
-        constants: fields that are not stored.
+        constants: fields that are not stored and have no environments.
+        environments: constants that have environments all the same; their objects are shared by copies.
+        shared: fields that are stored, but have no environments.
         properties: properties that are stored, too; each needs a setter.
         resized: fields with arrays whose lengths change.
         last: fields that refer to objects in other fields.
-        plain: property that holds everything as plain values (JSON) instead of fields.
     """
 
     constants: tuple[str, ...] = ()
+    environments: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
     properties: tuple[str, ...] = ()
     resized: tuple[str, ...] = ()
     last: tuple[str, ...] = ()
-    plain: str = ""
 
 
 SCALARS = (bool, int, float, str)
@@ -396,9 +430,9 @@ def _storage(value: Any) -> Storage | None:
 @functools.cache
 def _storage_of(kind: Any) -> Storage | None:
     rows = [row for base in kind.__mro__ if isinstance(row := vars(base).get("storage"), Storage)]
-    names = ("constants", "properties", "resized", "last")
-    every: dict[str, Any] = {name: tuple(part for row in rows for part in getattr(row, name)) for name in names}
-    return Storage(**every, plain=rows[0].plain) if rows else None
+    names = [field.name for field in dataclasses.fields(Storage)]
+    every = {name: tuple(part for row in rows for part in getattr(row, name)) for name in names}
+    return Storage(**every) if rows else None
 
 
 def _stored_fields(value: Any, storage: Storage) -> list[str]:
@@ -440,8 +474,6 @@ class _Writer:
         storage = _storage(value)
         if type(value) is np.ndarray:
             self._array(path, value)
-        elif storage is not None and storage.plain:
-            self.leaves[path] = StateMark("plain", getattr(value, storage.plain))
         elif storage is not None:
             self.leaves[path] = StateMark("holder", type(value).__name__)
             for name in _stored_fields(value, storage):
@@ -510,8 +542,8 @@ class _Reader:
 
     def _marked(self, path: str, leaf: StateMark, old: Any) -> Any:
         kind, content = leaf
-        if kind in ("holder", "plain"):
-            return self._holder(path, leaf, old)
+        if kind == "holder":
+            return self._holder(path, old)
         if kind == "value":
             return self._value(path, str(content), old)
         if kind == "random":
@@ -526,11 +558,7 @@ class _Reader:
         if kind == "deque":
             return collections.deque(self._numbered(path, int(content[0]), None), maxlen=content[1])
         if kind == "objects":
-            parts = self._numbered(path, int(content), old)
-            objects = np.empty(len(parts), dtype=object)
-            for k, part in enumerate(parts):
-                objects[k] = part
-            return objects
+            return objects(self._numbered(path, int(content), old.tolist() if isinstance(old, np.ndarray) else None))
         raise StateError(f"{path} is a {kind!r}, which is unknown")
 
     def _numbered(self, path: str, count: int, old: Any) -> list[Any]:
@@ -548,14 +576,12 @@ class _Reader:
             raise StateError(f"{path} has the parts {sorted(found)}, but the trial has {sorted(known)}")
         return found
 
-    def _holder(self, path: str, leaf: StateMark, old: Any) -> Any:
+    def _holder(self, path: str, old: Any) -> Any:
         storage = _storage(old)
-        if storage is None or bool(storage.plain) != (leaf.kind == "plain"):
+        if storage is None:
             raise StateError(f"{path} is not a part of this trial")
         self._known[path] = old
-        if storage.plain:
-            _set(path, old, storage.plain, leaf.content)
-        for name in () if storage.plain else _stored_fields(old, storage):
+        for name in _stored_fields(old, storage):
             part = f"{path}/{name}"
             _set(part, old, name, self.get(part, getattr(old, name), name not in storage.resized))
         return old

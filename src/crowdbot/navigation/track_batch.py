@@ -9,7 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, kernel, storable
+from crowdbot.core import InputError, kernel, storable, tree
 
 from .track_history import LENGTH, TrackHistory
 
@@ -140,24 +140,16 @@ class TrackBatch(Sequence[TrackHistory]):
         _fill(self.ids, self.position, rows, time, row[0], row[1], old, new, count, times, names, whole)
         return TrackBatch(times, names, count, whole)
 
-    def select(self, environments: Ints) -> TrackBatch:
-        """Return the histories of some environments, which may be repeated."""
-        index = np.asarray(environments, dtype=np.int64)
-        return TrackBatch(self.times[index], self.ids[index], self.people[index], self.position[index])
-
     def put(self, environments: Ints, other: TrackBatch) -> TrackBatch:
         """Return the histories with some environments replaced by those of another batch of the same length."""
-        N, T = self.times.shape
-        index, A = np.asarray(environments, dtype=np.int64), max(self.ids.shape[1], other.ids.shape[1])
-        times, count = self.times.copy(), self.people.copy()
-        times[index], count[index] = other.times, other.people
-        ids, position = np.zeros((N, A), dtype=np.int64), np.full((N, T, A, 2), np.nan)
-        ids[:, : self.ids.shape[1]], position[:, :, : self.ids.shape[1]] = self.ids, self.position
-        position[index] = np.nan
-        wide = np.arange(other.ids.shape[1])
-        ids[index[:, None], wide] = other.ids
-        position[index[:, None, None], np.arange(T)[:, None], wide] = other.position
-        return TrackBatch(times, ids, count, position)
+        people = max(self.ids.shape[1], other.ids.shape[1])
+        return tree.put(self._padded(people), environments, other._padded(people))
+
+    def _padded(self, people: int) -> TrackBatch:
+        """Return the histories with places for a number of people."""
+        more = (0, people - self.ids.shape[1])
+        position = np.pad(self.position, ((0, 0), (0, 0), more, (0, 0)), constant_values=np.nan)
+        return TrackBatch(self.times, np.pad(self.ids, ((0, 0), more)), self.people, position)
 
 
 @kernel

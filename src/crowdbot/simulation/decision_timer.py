@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Storage
+from crowdbot.core import Storage, tree
 from crowdbot.navigation import (
     Decisions,
     HungNavigatorError,
@@ -46,24 +46,24 @@ class DecisionTimer:
     Fields:
         missed: ``[E]`` tick of the latest decision that took longer than the deadline, -1 for none.
         hung: ``[E]`` tick of the decision that did not return, -1 for none.
-        recorded: recorded decisions of each environment that is replayed, otherwise None.
+        recorded: ``[E]`` recorded decisions of each environment that is replayed, otherwise None.
         clock: clock of the compute times [s], used only with a deadline or for a process.
-        spent: compute times [s] of the measured decisions of each environment.
+        spent: ``[E]`` compute times [s] of the measured decisions of each environment.
     """
 
     missed: Ints
     hung: Ints
-    recorded: list[RecordedDecisions | None]
+    recorded: NDArray[Any]
     clock: Callable[[], float] = time.perf_counter
-    spent: list[list[float]] = field(default_factory=list)
+    spent: NDArray[Any] = field(default_factory=lambda: tree.objects([]))
     _warm: bool = field(default=False, init=False)
-    storage = Storage(constants=("recorded", "clock", "spent", "_warm"))
+    storage = Storage(constants=("recorded", "clock", "spent", "_warm"), environments=("recorded", "spent"))
 
     @classmethod
     def of(cls, count: int) -> DecisionTimer:
         """Return the state before the first decision."""
         missed, hung = (np.full(count, NEVER, dtype=np.int64) for _ in range(2))
-        return cls(missed, hung, [None] * count, spent=[[] for _ in range(count)])
+        return cls(missed, hung, tree.objects([None] * count), spent=tree.objects([()] * count))
 
     def first_memories(
         self, robot: RobotSpec, batch: ObservationBatch, environments: Ints
@@ -99,7 +99,7 @@ class DecisionTimer:
         late[list(decisions.failures)] = False
         for k in np.flatnonzero(decisions.seconds > 0.0).tolist():
             if k not in decisions.failures:
-                self.spent[environments[k]].append(float(decisions.seconds[k]))
+                self.spent[environments[k]] += (float(decisions.seconds[k]),)
         self.missed[environments[late]] = ticks[late]
         for k, error in decisions.failures.items():
             if isinstance(error, HungNavigatorError):
@@ -150,20 +150,6 @@ class DecisionTimer:
     def replay(self, environment: int, recorded: RecordedDecisions | None) -> None:
         """Let the decisions of an environment be missed and hang as recorded; None: measure again."""
         self.recorded[environment] = recorded
-
-    def select(self, environments: Ints) -> DecisionTimer:
-        """Return an independent state of some environments."""
-        recorded = [self.recorded[e] for e in environments]
-        spent = [list(self.spent[e]) for e in environments]
-        other = DecisionTimer(self.missed[environments], self.hung[environments], recorded, self.clock, spent)
-        other._warm = self._warm
-        return other
-
-    def put(self, environments: Ints, other: DecisionTimer) -> None:
-        """Replace the state of some environments."""
-        self.missed[environments], self.hung[environments] = other.missed, other.hung
-        for k, e in enumerate(environments.tolist()):
-            self.recorded[e], self.spent[e] = other.recorded[k], list(other.spent[k])
 
     def _is_replay(self, environments: Ints) -> bool:
         return all(self.recorded[e] is not None for e in environments)

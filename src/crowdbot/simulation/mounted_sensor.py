@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose, Storage, storable
+from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose, Storage, storable, tree
 from crowdbot.sensors import (
     Reading,
     SensorSchedule,
@@ -46,6 +45,7 @@ class SensorReadings:
         reading: reading with N rows.
         ids: ``[N, A]`` ids of the agents at the time of the measurement.
         slots: ``[N]`` number of agents of each environment.
+        arrival: ``[N]`` ticks at which they arrive.
         people: ``[N, A, 4]`` positions and velocities then, for a sensor whose readings can be old.
     """
 
@@ -54,6 +54,7 @@ class SensorReadings:
     reading: Reading
     ids: Ints
     slots: Ints
+    arrival: Ints
     people: NDArray[np.float64] | None = None
 
     def row(self, number: int) -> Reading:
@@ -67,8 +68,13 @@ class SensorReadings:
 
     def without(self, excluded: Bools) -> SensorReadings | None:
         """Return the readings without the environments ``excluded`` ``[E]``, None if none is left."""
-        rows = np.flatnonzero(~excluded[self.environments])
-        return self.select(rows, self.environments[rows]) if len(rows) else None
+        kept = ~excluded[self.environments]
+        return self.where(kept) if kept.any() else None
+
+    def where(self, chosen: Bools) -> SensorReadings:
+        """Return the readings of the rows ``chosen`` ``[N]``."""
+        rows = np.flatnonzero(chosen)
+        return self.select(rows, self.environments[rows])
 
     def matching(self, environments: Ints) -> SensorReadings | None:
         """Return the readings of some environments, which may be repeated and are numbered anew; None for none."""
@@ -81,9 +87,8 @@ class SensorReadings:
 
     def select(self, rows: Ints, environments: Ints) -> SensorReadings:
         """Return some rows, which belong to other environments now."""
-        reading = self.reading.select(rows)
-        people = None if self.people is None else self.people[rows]
-        return SensorReadings(self.name, environments, reading, self.ids[rows], self.slots[rows], people)
+        tree.check(self, len(self.environments), self.name)
+        return dataclasses.replace(tree.take(self, rows), environments=environments)
 
 
 @dataclass
@@ -99,13 +104,12 @@ class MountedSensor:
         rngs: random number generator of each environment.
         space: whether it senses bodies in space; otherwise discs in the plane.
         together: whether one call measures all environments that are due.
-        state: state of the sensor in all environments if ``together``, otherwise a list with one for each.
-        waiting: readings not yet delivered, with their ticks of arrival ``[N]``.
+        state: state of the sensor in all environments if ``together``, otherwise ``[E]`` one object for each.
+        waiting: readings not yet delivered.
         latest, latest_row: ``[E]`` latest readings and the row of the environment in them.
         moved: ``[E, 6]`` place on the robot after its joints moved, as ``placed``; None before.
         seen, seen_ids: ``[E, A]`` agents in the latest reading, and their ids then.
         wheels: wheels of the robot, for a sensor with encoders.
-        lateness: ``[E]`` additional ticks until a reading arrives, by a fault; None for a sensor without one.
         keeps_people: whether readings hold the states of people.
     """
 
@@ -116,18 +120,18 @@ class MountedSensor:
     space: bool
     together: bool
     state: Any
-    waiting: list[tuple[Ints, SensorReadings]] = field(default_factory=list)
+    waiting: list[SensorReadings] = field(default_factory=list)
     latest: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=object))
     latest_row: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     moved: NDArray[np.float64] | None = None
     seen: Bools | None = None
     seen_ids: Ints | None = None
     wheels: WheelGeometry | None = None
-    lateness: Ints | None = None
     keeps_people: bool = False
     storage = Storage(
-        constants=("mount", "placed", "schedule", "space", "together", "wheels", "lateness", "keeps_people"),
-    )  # fmt: skip
+        constants=("mount", "placed", "schedule", "space", "together", "wheels", "keeps_people"),
+        shared=("state", "waiting"),
+    )
 
     def __post_init__(self) -> None:
         if not len(self.latest):
@@ -144,7 +148,7 @@ class MountedSensor:
         return bool(self.waiting) or self.schedule.measures(tick)
 
     def work(
-        self, ticks: Ints, live: Bools, agent: int, around: WorldView
+        self, ticks: Ints, live: Bools, agent: int, around: WorldView, lateness: Ints | None = None
     ) -> tuple[list[SensorReadings], list[tuple[int, Exception]]]:
         """Measure where due, and return the readings that arrive now, oldest first, and exceptions by environment.
 
@@ -155,12 +159,15 @@ class MountedSensor:
             live: ``[E]`` environments that run.
             agent: index of the robot.
             around: the world.
+            lateness: ``[E]`` additional ticks until a reading arrives, by a fault.
         """
         due = np.flatnonzero(live & self.schedule.measures(ticks))
         errors: list[tuple[int, Exception]] = []
         for part in [due] if self.together else [due[k : k + 1] for k in range(len(due))]:
             try:
-                self.waiting += [self._measure(part, ticks, agent, around)] if len(part) else []
+                self.waiting += (
+                    [self._measure(part, agent, around, self._arrival(part, ticks, lateness))] if len(part) else []
+                )
             except MissingExtra:
                 raise
             except Exception as error:  # sensors may raise anything
@@ -168,15 +175,15 @@ class MountedSensor:
         if not self.waiting:
             return [], errors
         ready, later = [], []
-        for arrival, readings in self.waiting:
-            now = arrival <= ticks[readings.environments]
+        for readings in self.waiting:
+            now = readings.arrival <= ticks[readings.environments]
             if now.all():
                 ready.append(readings)
             elif not now.any():
-                later.append((arrival, readings))
+                later.append(readings)
             else:
-                ready.append(readings.select(*_rows(now, readings)))
-                later.append((arrival[~now], readings.select(*_rows(~now, readings))))
+                ready.append(readings.where(now))
+                later.append(readings.where(~now))
         self.waiting = later
         for readings in ready:
             self._keep(readings)
@@ -196,7 +203,8 @@ class MountedSensor:
 
     def known_people(self, environment: int) -> NDArray[np.float64] | None:
         """Return ``[A, 4]`` positions and velocities of agents in the latest reading, None without one."""
-        return known_people(self.latest[environment], int(self.latest_row[environment]))
+        readings: SensorReadings | None = self.latest[environment]
+        return None if readings is None or readings.people is None else readings.people[self.latest_row[environment]]
 
     def _keep(self, readings: SensorReadings) -> None:
         index = readings.environments
@@ -205,42 +213,58 @@ class MountedSensor:
         seen = visible_agents(readings.reading, readings.ids.shape[1])
         if seen is None:
             return
-        agents, count = readings.ids.shape[1], len(self.rngs)
-        if self.seen is None or self.seen_ids is None:
-            self.seen = np.zeros((count, agents), dtype=np.bool_)
-            self.seen_ids = np.zeros((count, agents), dtype=np.int64)
-        self.seen, self.seen_ids = _fit(self.seen, agents), _fit(self.seen_ids, agents)
-        self.seen[index], self.seen_ids[index] = seen, readings.ids
+        known, ids = self._seen_agents(readings.ids.shape[1])
+        known[index], ids[index] = seen, readings.ids
 
-    def _measure(self, due: Ints, ticks: Ints, agent: int, around: WorldView) -> tuple[Ints, SensorReadings]:
+    def _seen_agents(self, agents: int) -> tuple[Bools, Ints]:
+        """Make room for a number of agents in the latest readings and their ids ``[E, A]``, and return both."""
+        none = np.zeros((len(self.rngs), 0), dtype=np.int64)
+        self.seen = _fit(none > 0 if self.seen is None else self.seen, agents)
+        self.seen_ids = _fit(none if self.seen_ids is None else self.seen_ids, agents)
+        return self.seen, self.seen_ids
+
+    def _arrival(self, due: Ints, ticks: Ints, lateness: Ints | None) -> Ints:
+        """Return ``[N]`` the ticks at which new readings arrive; late ones arrive in their order."""
+        arrival: Ints = self.schedule.arrives(ticks[due])
+        if lateness is None:
+            return arrival
+        arrival = arrival + lateness[due]
+        for readings in self.waiting:
+            rows, places = np.nonzero(readings.environments[:, None] == due[None, :])
+            arrival[places] = np.maximum(arrival[places], readings.arrival[rows])
+        return arrival
+
+    def _measure(self, due: Ints, agent: int, around: WorldView, arrival: Ints) -> SensorReadings:
         if not self.together:
-            return self._measure_one(int(due[0]), ticks, agent, around)
+            return self._measure_one(int(due[0]), agent, around, arrival)
         ids, slots = around.world.ids, around.world.slots
         every = len(due) == len(self.rngs)
         scene, pose = around.flat, self.pose(agent, around)
         if not every:
-            scene, pose = scene.environments(due), _select_pose(pose, due)
-        count, rngs = len(self.rngs), self.rngs.rows(due.tolist())
+            scene, pose = scene.environments(due), tree.take(pose, due)
+        count, rngs = len(self.rngs), self.rngs.rows(due)
         state = self.state if every or self.state is None else take_state_rows(self.state, due)
         wheels = wheel_rotation(around.world, agent, self.wheels)
         view = SensorView(scene.without(agent), pose, wheels=wheels)
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
         if new is not None or self.state is not None:
             self.state = new if every else put_state_rows(self.state, due, new, count)
-        people = people_then(self, around, due)
-        return arrival_of(self, ticks, due), SensorReadings(self.name, due, reading, ids[due], slots[due], people)
+        return SensorReadings(self.name, due, reading, ids[due], slots[due], arrival, self._people(around, due))
 
-    def _measure_one(self, e: int, ticks: Ints, agent: int, around: WorldView) -> tuple[Ints, SensorReadings]:
+    def _measure_one(self, e: int, agent: int, around: WorldView, arrival: Ints) -> SensorReadings:
         index = np.array([e])
         scene = (around.space(e) if self.space else around.flat_of(e)).without(agent)
         pose = self.pose(agent, around, e)
         world = around.world
         view = SensorView(scene, pose, around.of(e), wheel_rotation(world, agent, self.wheels, e))
         reading, self.state[e] = self._ask(view, self.state[e], self.rngs[e])
-        people = people_then(self, around, index)
-        return arrival_of(self, ticks, index), SensorReadings(
-            self.name, index, reading, world.ids[index], world.slots[index], people
-        )
+        people = self._people(around, index)
+        return SensorReadings(self.name, index, reading, world.ids[index], world.slots[index], arrival, people)
+
+    def _people(self, around: WorldView, due: Ints) -> Floats | None:
+        """Return ``[N, A, 4]`` positions [m] and velocities [m/s] now, None for a sensor that keeps none."""
+        scene = around.world.scene
+        return np.concatenate([scene.position[due], scene.velocity[due]], axis=-1) if self.keeps_people else None
 
     def _ask(self, view: SensorView, state: Any, rng: Any) -> tuple[Reading, Any]:
         answer: Any = self.mount.sensor.measure(view, state, rng)
@@ -261,7 +285,7 @@ class MountedSensor:
         mount = MountPlacement(self.mount.link, self.mount.origin, placed)
         return around.sensor_pose(agent, mount, self.space, environment)
 
-    def move(self, environments: int | Ints, placed: Any) -> None:
+    def move(self, environments: int | Ints | slice, placed: Any) -> None:
         """Set x, y, z [m], roll, pitch, yaw [rad] on the robot in some environments."""
         moved = np.tile(np.array(self.placed), (len(self.rngs), 1)) if self.moved is None else self.moved.copy()
         moved[environments] = placed
@@ -269,48 +293,25 @@ class MountedSensor:
 
     def select(self, environments: Ints) -> MountedSensor:
         """Return an independent sensor with some environments."""
-        other = copy.copy(self)
-        other.rngs = self.rngs.select(environments.tolist())
-        if self.together:
-            other.state = take_state_rows(self.state, environments)
-        else:
-            other.state = [copy.deepcopy(self.state[e]) for e in environments]
-        other.waiting = []
-        for arrival, readings in self.waiting:
-            rows, _ = np.nonzero(readings.environments[:, None] == environments[None, :])
-            if (part := readings.matching(environments)) is not None:
-                other.waiting.append((arrival[rows], part))
-        other.latest, other.latest_row = self.latest[environments], self.latest_row[environments]
-        other.moved = None if self.moved is None else self.moved[environments]
-        other.seen = None if self.seen is None else self.seen[environments]
-        other.seen_ids = None if self.seen_ids is None else self.seen_ids[environments]
+        other = tree.take(self, environments)
+        other.state = take_state_rows(self.state, environments)
+        other.waiting = [part for one in self.waiting if (part := one.matching(environments)) is not None]
         return other
 
     def put(self, environments: Ints, other: MountedSensor) -> None:
         """Replace some environments by those of another simulation of the same trial."""
-        if self.together:
-            self.state = put_state_rows(self.state, environments, other.state, len(self.rngs))
-        self.rngs.put(environments.tolist(), other.rngs)
-        self.latest[environments], self.latest_row[environments] = other.latest, other.latest_row
-        for k, e in enumerate(environments.tolist() if not self.together else ()):
-            self.state[e] = other.state[k]
-        if self.moved is not None or other.moved is not None:
-            self.move(environments, other.placed if other.moved is None else other.moved)
-        kept = []
-        for arrival, readings in self.waiting:
-            stays = ~np.isin(readings.environments, environments)
-            if stays.any():
-                kept.append((arrival[stays], readings.select(*_rows(stays, readings))))
-        moved = [(arrival, readings.renumber(environments)) for arrival, readings in other.waiting]
-        self.waiting = kept + moved
-        if self.seen is not None and self.seen_ids is not None:
-            agents = self.seen.shape[1]
-            new = np.zeros((len(environments), agents), dtype=np.bool_) if other.seen is None else other.seen
-            agents = max(agents, new.shape[1])
-            self.seen, self.seen_ids = _fit(self.seen, agents), _fit(self.seen_ids, agents)
-            self.seen[environments] = _fit(new, agents)
-            if other.seen_ids is not None:
-                self.seen_ids[environments] = _fit(other.seen_ids, agents)
+        state = put_state_rows(self.state, environments, other.state, len(self.rngs))
+        fresh = np.isin(np.arange(len(self.rngs)), environments)
+        waiting = [part for one in self.waiting if (part := one.without(fresh)) is not None]
+        waiting += [one.renumber(environments) for one in other.waiting]
+        both = (self, other)
+        if seen := [sensor.seen for sensor in both if sensor.seen is not None]:
+            for sensor in both:
+                sensor._seen_agents(max(one.shape[1] for one in seen))
+        if any(sensor.moved is not None for sensor in both):
+            for sensor in both:
+                sensor.move(slice(None), sensor.placed if sensor.moved is None else sensor.moved)
+        vars(self).update(vars(tree.put(self, environments, other)) | {"state": state, "waiting": waiting})
 
 
 def needs_bodies(trial: Trial) -> bool:
@@ -360,7 +361,7 @@ def mounted_sensors(
             wheels=wheel_geometry(robot.body) if sensor.encoders else None,
             keeps_people=any(getattr(spec.fault, "sensor", None) in ("", mount.name) for spec in robot.faults),
         )
-        probe.state = sensor.begin() if probe.together else [sensor.begin() for _ in seeds]
+        probe.state = sensor.begin() if probe.together else tree.objects(sensor.begin() for _ in seeds)
         old = (known or {}).get(mount.name)
         if old is not None:
             same = type(old.mount.sensor) is type(sensor) and old.together == probe.together
@@ -382,17 +383,6 @@ def visible_agents(reading: Reading, agents: int) -> Bools | None:
     return np.asarray(reading.visible_agents(agents))
 
 
-def _select_pose(pose: Pose | SpatialPose, index: Ints) -> Any:
-    if isinstance(pose, Pose):
-        return Pose(pose.position[index], pose.heading[index])
-    return SpatialPose(pose.position[index], pose.rotation[index])
-
-
-def _rows(chosen: Bools, readings: SensorReadings) -> tuple[Ints, Ints]:
-    rows = np.flatnonzero(chosen)
-    return rows, readings.environments[rows]
-
-
 def _fit(values: NDArray[Any], agents: int) -> NDArray[Any]:
     """Return ``[E, A]`` with zeros for further agents, or without the last ones."""
     if values.shape[1] == agents:
@@ -400,34 +390,6 @@ def _fit(values: NDArray[Any], agents: int) -> NDArray[Any]:
     if values.shape[1] > agents:
         return values[:, :agents]
     return np.concatenate([values, np.zeros((len(values), agents - values.shape[1]), dtype=values.dtype)], axis=1)
-
-
-def arrival_of(sensor: Any, ticks: Ints, due: Ints) -> Ints:
-    """Return ``[N]`` the ticks at which the readings of some environments arrive; late ones arrive in their order."""
-    arrival: Ints = sensor.schedule.arrives(ticks[due])
-    if sensor.lateness is None:
-        return arrival
-    arrival = arrival + sensor.lateness[due]
-    for earlier, readings in sensor.waiting:
-        rows, places = np.nonzero(readings.environments[:, None] == due[None, :])
-        arrival[places] = np.maximum(arrival[places], earlier[rows])
-    return arrival
-
-
-def people_then(sensor: Any, around: WorldView, due: Ints) -> Floats | None:
-    """Return ``[N, A, 4]`` positions [m] and velocities [m/s] of agents now, None for a sensor that keeps none."""
-    if not sensor.keeps_people:
-        return None
-    scene = around.world.scene
-    return np.concatenate([scene.position[due], scene.velocity[due]], axis=-1)
-
-
-def known_people(readings: Any, row: int) -> Floats | None:
-    """Return ``[A, 4]`` positions and velocities in a row of readings, None without a reading."""
-    if readings is None or readings.people is None:
-        return None
-    known: Floats = readings.people[row]
-    return known
 
 
 def name_by_id(reading: Reading, ids: Ints) -> Reading:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -12,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls
+from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls, tree
 from crowdbot.navigation import (
     AgentsInView,
     DriveLimits,
@@ -26,7 +25,7 @@ from crowdbot.navigation import (
 from crowdbot.perception import CloudClusters, Detector, GlobalNearestNeighbor, LidarClusters, Tracks
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
-from crowdbot.world import Doors, Twists, World, add_rings, free_joints, worlds_of
+from crowdbot.world import Doors, Twists, World, add_rings, free_joints
 
 from .decision_timer import DecisionTimer
 from .faults.fault_state import FaultState
@@ -42,8 +41,6 @@ Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
-ROWS = ("command", "begun", "arrived", "path", "ordered", "goal", "tolerance", "joints")
-"""Fields with one row for each environment."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
 NEVER = -1
@@ -127,7 +124,10 @@ class RobotControl:
     faults: FaultState | None = None
     perceived: list[PerceivedPeople] = field(default_factory=list)
     wanted: dict[int, Mapping[str, float]] = field(default_factory=dict)
-    storage = Storage(constants=("robot", "agent", "limits", "control", "wanted", "planner"))
+    storage = Storage(
+        constants=("robot", "agent", "limits", "control", "wanted", "planner"),
+        shared=("sensors", "memories", "tracks", "perceived"),
+    )
 
     @classmethod
     def of(cls, trial: Trial, robot: RobotSpec, agent: int, world: World, seeds: Sequence[int]) -> RobotControl:
@@ -211,7 +211,7 @@ class RobotControl:
         failures: dict[int, Exception] = {}
         changes: dict[str, Any] = {}
         if tracks:
-            tracks, people = tracks.select(environments), batch.people
+            tracks, people = tree.take(tracks, environments), batch.people
             fresh = ~(batch.time <= tracks.times[:, -1])  # one row for each time; NaN before the first row
             tracks = tracks.update(batch.time, people.ids, people.position, people.seen, fresh)
             changes["tracks"] = tracks
@@ -364,32 +364,24 @@ class RobotControl:
 
     def select(self, environments: Ints) -> RobotControl:
         """Return an independent state of some environments."""
-        other = copy.copy(self)
+        other = tree.take(self, environments)
         other.sensors = tuple(sensor.select(environments) for sensor in self.sensors)
         other.memories = [copy_memory(self.memories[e], type(self.robot.navigator).__name__) for e in environments]
-        other.tracks = self.tracks.select(environments) if self.tracks else self.tracks
+        other.tracks = tree.take(self.tracks, environments) if self.tracks else self.tracks
         other.perceived = [self.perceived[e] for e in environments.tolist()] if self.perceived else []
-        other.timer = self.timer.select(environments)
-        other.faults = None if self.faults is None else self.faults.select(environments)
-        for name in ROWS:
-            setattr(other, name, getattr(self, name)[environments])
         return other
 
     def put(self, environments: Ints, other: RobotControl) -> None:
         """Replace the state of some environments."""
+        vars(self).update(vars(tree.put(self, environments, other)))
         for mine, new in zip(self.sensors, other.sensors, strict=True):
             mine.put(environments, new)
         for k, e in enumerate(environments.tolist()):
             self.memories[e] = other.memories[k]
-        self.timer.put(environments, other.timer)
-        if self.faults is not None and other.faults is not None:
-            self.faults.put(environments, other.faults)
         for e, one in zip(environments.tolist(), other.perceived, strict=False):
             self.perceived[e] = one
         if self.tracks:
             self.tracks = self.tracks.put(environments, other.tracks)
-        for name in ROWS:
-            getattr(self, name)[environments] = getattr(other, name)
 
 
 def _empty_tracks(robot: RobotSpec, count: int) -> TrackBatch:
@@ -419,8 +411,7 @@ def next_waypoints(
         place, goal: ``[N, 2]`` [m].
         path: ``[N, 9]`` states of the paths.
     """
-    worlds = worlds_of(world)
-    doors: Doors | None = worlds[int(environments[0]) if len(worlds) > 1 else 0].doors
+    doors: Doors | None = world.part(int(environments[0]))[0].doors
     if doors is None:
         return planner.next_waypoints(place, goal, path), goal
     lines = doors.path_lines()

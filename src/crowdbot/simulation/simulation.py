@@ -16,7 +16,6 @@ At tick 0, only parts 6 to 8 run. Sensors, navigators and recorders are due ever
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -35,12 +34,13 @@ from crowdbot.core import (
     Storage,
     Twist,
     draw_svg,
+    tree,
 )
 from crowdbot.metrics import HOLD
 from crowdbot.navigation import Observation
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial, floor_plan
-from crowdbot.world import World, put_environments, select_environments, step_environments, worlds_of
+from crowdbot.world import World, put_environments, select_environments, step_environments
 
 from .failure import RunFailure
 from .mounted_sensor import SensorReadings, shows_avatars
@@ -108,7 +108,11 @@ class Simulation:
     ([1, 1], 50000000)
     """
 
-    storage = Storage(constants=("trial", "people", "around", "_ways_out", "_template"), last=("readings",))
+    storage = Storage(
+        constants=("trial", "people", "around", "_ways_out", "_template"),
+        shared=("seeds", "world", "robots", "former_robots", "readings", "failures", "_contacts"),
+        last=("readings",),
+    )
 
     def __init__(
         self, trial: Trial | WorldTemplate, seeds: Seeds = 0, clock: Clock | None = None, *, posed: bool = False
@@ -175,7 +179,7 @@ class Simulation:
         Raises:
             InputError: there is no robot of this name.
         """
-        return self._robot(robot).observation(self.around, environment)
+        return self.control_of(robot).observation(self.around, environment)
 
     def agent_of(self, robot: str) -> int:
         """Return the index of a robot in the scene.
@@ -183,7 +187,7 @@ class Simulation:
         Raises:
             InputError: there is no robot of this name.
         """
-        return self._robot(robot).agent
+        return self.control_of(robot).agent
 
     def command(self, robot: str, twist: Twist, environment: int = 0) -> None:
         """Set the command of a robot until its navigator decides again; part 7.
@@ -191,7 +195,7 @@ class Simulation:
         Raises:
             InputError: there is no robot of this name.
         """
-        self._robot(robot).ask(environment, twist, self.ticks)
+        self.control_of(robot).ask(environment, twist, self.ticks)
 
     def contacts(self, environment: int = 0) -> tuple[RobotContact, ...]:
         """Return the contacts of robots in the latest step of an environment."""
@@ -310,7 +314,7 @@ class Simulation:
     def select(self, environments: Sequence[int] | Ints) -> Simulation:
         """Return an independent simulation of some environments, which may be repeated, in their current state."""
         index = environment_index(environments, self.count)
-        some = copy.copy(self)
+        some = tree.take(self, index)
         some.seeds = [self.seeds[e] for e in index]
         some._take_template(self._template.of_environments(index))
         some.world = select_environments(self.world, index)
@@ -322,15 +326,13 @@ class Simulation:
             (robots[id(robot)], part) for robot, told in self.readings if (part := told.matching(index)) is not None
         ]
         some.failures = [self.failures[e] for e in index]
-        some.event, some.ended, some._told = self.event[index], self.ended[index], self._told[index]
-        some._fallen = self._fallen[index]
-        some.begun, some.failed, some.broken = self.begun[index], self.failed[index], self.broken[index]
         some._contacts = {k: self._contacts[e] for k, e in enumerate(index.tolist()) if e in self._contacts}
         return some
 
     def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
         index = environment_index(environments, self.count, other.count)
+        vars(self).update(vars(tree.put(self, index, other)))
         self._take_template(self._template.with_environments(index, other._template))
         self.world = put_environments(self.world, index, other.world)
         self._set_around()
@@ -341,14 +343,17 @@ class Simulation:
             self._contacts.pop(e, None)
             if k in other._contacts:
                 self._contacts[e] = other._contacts[k]
-        for name in ("event", "ended", "begun", "_told", "_fallen", "failed", "broken"):
-            getattr(self, name)[index] = getattr(other, name)
 
     def _take_template(self, template: WorldTemplate) -> None:
         if template is not self._template:
             self._template, self.trial = template, template.trial
 
-    def _robot(self, name: str) -> RobotControl:
+    def control_of(self, name: str) -> RobotControl:
+        """Return the state of a robot.
+
+        Raises:
+            InputError: there is no robot of this name.
+        """
         for robot in self.robots:
             if robot.robot.name == name:
                 return robot
@@ -453,8 +458,8 @@ def read_sensors(
     live = live.copy()
     for robot in robots:
         for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
-            able = live if robot.faults is None else robot.faults.measuring(sensor, around.world, live)
-            arrived, failures = sensor.work(ticks, able, robot.agent, around)
+            able, late = (live, None) if robot.faults is None else robot.faults.measuring(sensor, around.world, live)
+            arrived, failures = sensor.work(ticks, able, robot.agent, around, late)
             found += [(robot, readings) for readings in arrived]
             for e, error in failures:
                 errors[e], live[e] = error, False
@@ -524,8 +529,7 @@ def new_events(events: Sequence[Ended], told: NDArray[np.int64], environment: in
 
 def simulation_svg(simulation: Any, environment: int = 0) -> str:
     """Return an SVG drawing of an environment: stage with ground, doors at their current angle, people and robots."""
-    worlds, stage = worlds_of(simulation.world), simulation.trial.stage
-    doors = worlds[environment if len(worlds) > 1 else 0].doors
+    doors, stage = simulation.world.part(environment)[0].doors, simulation.trial.stage
     shares = {}
     if doors is not None:
         shares = {leaf.name: float(share) for leaf, share in zip(doors.leaves, doors.signed_share, strict=True)}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.core import Pose, Scene, SpatialPose, tree
 from crowdbot.world import MountPlacement, World
 
 if TYPE_CHECKING:
@@ -59,10 +59,7 @@ class WorldView:
         pose = self.world.sensor_pose(agent, mount, spatial)
         if environment is None or len(self.world.slots) == 1:
             return pose
-        rows = slice(environment, environment + 1)
-        if isinstance(pose, Pose):
-            return Pose(pose.position[rows], pose.heading[rows])
-        return SpatialPose(pose.position[rows], pose.rotation[rows])
+        return tree.take(pose, slice(environment, environment + 1))
 
     def _scene(self, kind: str, environment: int) -> Scene:
         """Return a scene of the current step, computed once."""

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from .doors.doors import Doors
     from .doors.leaf import DoorLeaf
     from .doors.motion import show_doors
-    from .environments import join_worlds, put_environments, select_environments, step_environments
     from .ground.ground import Ground
     from .ground.part import GroundPart
     from .live_changes import (
@@ -90,7 +89,7 @@ if TYPE_CHECKING:
     from .urdf.link_surface import LinkSurface, link_surface
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
-    from .world_batch import worlds_of
+    from .world_batch import join_worlds, put_environments, select_environments, step_environments, worlds_of
 
 _LAZY = {
     "AckermannDrive": "robots.drives.ackermann",
@@ -190,7 +189,7 @@ _LAZY = {
     "give_pose": "crowd.avatars",
     "import_robot": "robots.robot_import",
     "integrate_twist": "robots.drives.drive",
-    "join_worlds": "environments",
+    "join_worlds": "world_batch",
     "joint_states": "robots.wheel_encoders",
     "link_surface": "urdf.link_surface",
     "maximum_lean": "physics.balance.ability",
@@ -200,7 +199,7 @@ _LAZY = {
     "people_by_reaction": "reactions.robot_reactions",
     "permitted_speed": "physics.body_region_limits",
     "planar_world": "planar_environments",
-    "put_environments": "environments",
+    "put_environments": "world_batch",
     "quaternion": "urdf.transforms",
     "reaction_codes": "reactions.robot_reactions",
     "read_mesh": "urdf",
@@ -212,11 +211,11 @@ _LAZY = {
     "robot_description": "robots.robot_description",
     "roll_pitch_yaw": "urdf.transforms",
     "scene_bodies": "physics.colliders",
-    "select_environments": "environments",
+    "select_environments": "world_batch",
     "show_doors": "doors.motion",
     "simulated_body": "robots.wheel_encoders",
     "slot_of": "live_changes",
-    "step_environments": "environments",
+    "step_environments": "world_batch",
     "two_body_force": "physics.body_region_limits",
     "wheel_geometry": "robots.wheel_encoders",
     "wheel_rotation": "robots.wheel_encoders",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,17 +18,17 @@ Ints = NDArray[np.int64]
 
 @dataclass
 class EnvironmentTime:
-    """The time of E environments that share a clock and may begin at different ticks.
+    """The time of E environments that share a clock and may begin at different ticks; a tree.
 
     Fields:
         clock: the clock of the world.
         first_tick: ``[E]`` tick of the clock at which an environment began.
         begin: ``[E]`` time of the scene at that tick [s].
 
-    >>> from crowdbot.core import FreeClock
+    >>> from crowdbot.core import FreeClock, tree
     >>> time = EnvironmentTime.of(FreeClock(0.5), 0.0, 2)
     >>> time.clock.advance()
-    >>> time.put([1], EnvironmentTime.of(FreeClock(0.5), 3.0, 1))
+    >>> time = tree.put(time, np.array([1]), EnvironmentTime.of(time.clock, 3.0, 1))
     >>> time.clock.advance()
     >>> time.ticks.tolist(), time.age.tolist(), time.now.tolist()
     ([2, 1], [1.0, 0.5], [1.0, 3.5])
@@ -38,7 +37,7 @@ class EnvironmentTime:
     clock: Clock
     first_tick: Ints
     begin: Floats
-    storage = Storage(constants=("clock", "first_tick"), properties=("ticks",))
+    storage = Storage(constants=("clock", "first_tick"), environments=("first_tick",), properties=("ticks",))
 
     @classmethod
     def of(cls, clock: Clock, begin: float | Floats, count: int) -> EnvironmentTime:
@@ -83,23 +82,7 @@ class EnvironmentTime:
         same = len(begin) == 1 or bool((begin == begin[0]).all())
         return (float(begin[0]) if same else begin) + self.age
 
-    def follow(self, clock: Clock) -> None:
-        """Continue on another clock with the same time step; the time of the environments stays."""
+    def follow(self, clock: Clock | None = None) -> None:
+        """Continue on another clock with the same time step (default: a free one); the time of environments stays."""
+        clock = FreeClock(self.clock.dt, self.clock.tick) if clock is None else clock
         self.first_tick, self.clock = clock.tick - self.ticks, clock
-
-    def select(self, environments: Sequence[int] | Ints) -> EnvironmentTime:
-        """Return the time of some environments, on a free clock at the same tick."""
-        index = np.asarray(environments, dtype=np.int64)
-        return EnvironmentTime(FreeClock(self.clock.dt, self.clock.tick), self.first_tick[index], self.begin[index])
-
-    def join(self, others: Sequence[EnvironmentTime]) -> EnvironmentTime:
-        """Return the time of these environments and those of others, on the clock of this one."""
-        ticks = np.concatenate([one.ticks for one in (self, *others)])
-        begin = np.concatenate([one.begin for one in (self, *others)])
-        return EnvironmentTime(self.clock, self.clock.tick - ticks, begin)
-
-    def put(self, environments: Sequence[int] | Ints, other: EnvironmentTime) -> None:
-        """Replace the time of some environments by that of another world."""
-        index = np.asarray(environments, dtype=np.int64)
-        self.first_tick[index] = self.clock.tick - other.ticks
-        self.begin[index] = other.begin

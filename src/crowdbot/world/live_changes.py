@@ -61,7 +61,7 @@ def check_goal(world: World, position: tuple[float, float], goal: tuple[float, f
     """Raise :class:`InputError` if a goal cannot be reached from a position, in a world with routing."""
     check_place(*position)
     check_place(*goal)
-    router = getattr(_own(world, environment), "router", None)
+    router = getattr(world.part(environment)[0], "router", None)
     if router is not None:
         router.towards(position, goal)
 
@@ -126,8 +126,7 @@ def push_person(
     >>> [world.step({}).velocity[0, 0, 0].round(2).item() for _ in range(3)]
     [0.39, 0.66, 0.52]
     """
-    slot, own = slot_of(world, person, environment), _own(world, environment)
-    row = environment if own is world else 0
+    slot, (own, row) = slot_of(world, person, environment), world.part(environment)
     scene = own.scene
     pushes = push_memory(
         scene.memory.get(PUSH), scene.shape, row, slot, person, np.array(force), duration, mass, height
@@ -155,8 +154,7 @@ def add_person(
     """
     check_room(world, environment)
     slot = _free_slot(world, environment)
-    own = _own(world, environment)
-    row = environment if own is world else 0
+    own, row = world.part(environment)
     flow = own._traffic
     person = int(flow.following[row])
     flow.ids[row, slot] = person
@@ -176,8 +174,8 @@ def add_person(
 
 def next_person(world: World, environment: int = 0) -> int:
     """Return the id that the next person or robot gets."""
-    own = _own(world, environment)
-    return int(own._traffic.following[environment if own is world else 0])
+    own, row = world.part(environment)
+    return int(own._traffic.following[row])
 
 
 def check_room(world: World, environment: int = 0) -> None:
@@ -187,21 +185,16 @@ def check_room(world: World, environment: int = 0) -> None:
         raise InputError(f"nobody can be added: {present} people and robots are present, the limit is {MOST}")
 
 
-def _own(world: Any, environment: int) -> Any:
-    """Return the world that holds an environment."""
-    return world.worlds[environment] if hasattr(world, "worlds") else world
-
-
 def _free_slot(world: World, environment: int) -> int:
     """Return an index without an agent; arrays and bodies grow if there is none."""
     scene, slots = world.scene, int(world.slots[environment])
     free = np.flatnonzero(~scene.active[environment, :slots] & ~scene.external[environment, :slots])
     if len(free):
         return int(free[0])
-    own = _own(world, environment)
+    own, row = world.part(environment)
     widen(own, slots + 1)
-    own.slots[environment if own is world else 0] = slots + 1
-    own.embody_person(slots, environment if own is world else 0)
+    own.slots[row] = slots + 1
+    own.embody_person(slots, row)
     return slots
 
 

@@ -33,8 +33,6 @@ from .crowd.waypoint import PolygonZone
 from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
 from .planar_live_changes import (
-    check_robot_place,
-    chosen_environments,
     keep_added_robots,
     new_prop_name,
     prop_number,
@@ -439,25 +437,6 @@ class PlanarWorld(World):
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         return find_contacts(before, after, list(self.twists), self.ghosts)
 
-    def add_robot(
-        self,
-        robot: Robot,
-        x: float,
-        y: float,
-        heading: float = 0.0,
-        *,
-        ghost: bool = False,
-        environments: Sequence[int] | None = None,
-    ) -> int:
-        """Add a robot, at rest; see :meth:`World.add_robot`."""
-        check_robot_place(robot, x, y, heading)
-        chosen, agent = chosen_environments(len(self.slots), environments), int(self.slots.max())
-        put_robot_at(self, agent, robot, (x, y, heading), ghost, chosen)
-        for bodies in self._bodies or ():
-            bodies.robots = {**bodies.robots, agent: robot}
-            bodies.forget_renderer()
-        return agent
-
     def _push_people(self, earlier: Scene, crowd: Scene) -> Scene:
         """Return the scene after the motion by pushes in a step of the crowd."""
         if PUSH not in crowd.memory:
@@ -469,10 +448,10 @@ class PlanarWorld(World):
         remove_robot_at(self, agent, robot_environments(self, agent, environments))
 
     def place_robot(
-        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, present: bool
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        """Make an agent a robot of a world with one environment, which is present or absent."""
-        put_robot_at(self, agent, robot, place, ghost, [0] if present else [])
+        """Make an agent a robot; see :class:`World`."""
+        put_robot_at(self, agent, robot, place, ghost, environments)
         for bodies in self._bodies or ():
             bodies.robots = {**bodies.robots, agent: robot}
             bodies.forget_renderer()

@@ -16,13 +16,12 @@ from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.drives.servo import Pending
 
 from .crowd.environment_rows import (
+    align_scenes,
     pad_ids,
-    put_scene,
     set_models,
-    stack_scenes,
+    with_common_time,
     works_in_batches,
 )
-from .crowd.people_flow import PeopleFlow
 from .doors.motion import ONE_ENVIRONMENT
 from .planar import PlanarWorld
 
@@ -36,7 +35,6 @@ __all__ = [
 ]
 
 Ints = NDArray[np.int64]
-Delayed = Mapping[int, tuple[tuple[Pending, ...], Twist | Twists]]
 
 
 def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
@@ -56,21 +54,9 @@ def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:
     if first.doors is not None:
         raise InputError(ONE_ENVIRONMENT)
     whole = copy.copy(first)
-    whole.scene = stack_scenes([world.scene for world in worlds])
-    whole._previous = stack_scenes([world._previous for world in worlds]).replace(walls=whole.scene.walls)
-    whole.environment_time = first.environment_time.join([world.environment_time for world in worlds[1:]])
-    whole._rngs = first._rngs.join([world._rngs for world in worlds[1:]])
-    set_models(whole, [model for world in worlds for model in _models(world)])
-    _set_flow(whole, _join_flows([world._traffic for world in worlds], whole.scene.shape[1]))
-    whole.twists = {robot: tree.join([world.twists[robot] for world in worlds]) for robot in first.twists}
-    whole._delayed = _join_delays(worlds)
-    whole.slots = np.concatenate([world.slots for world in worlds])
-    whole.contacts, begin = (), 0
-    for world in worlds:
-        whole.contacts += tuple(one._replace(environment=begin + one.environment) for one in world.contacts)
-        begin += len(world.slots)
-    if first.avatars is not None:
-        whole.avatars = first.avatars.join([world.avatars for world in worlds[1:] if world.avatars is not None])
+    for world in worlds[1:]:
+        world.environment_time.follow(first.clock)
+    _set_state(whole, tree.join(_states(worlds)), [model for world in worlds for model in _models(world)])
     if first._bodies is not None:
         whole._bodies = [bodies for world in worlds for bodies in world._bodies or ()]
     return whole
@@ -101,25 +87,9 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
     """Return an independent world with some environments; an environment may be selected more than once."""
     index = np.asarray(environments, dtype=np.int64)
     some = copy.copy(world)
-    some.scene = world.scene.environments(index)
-    some._previous = world._previous.environments(index)
-    some.environment_time = world.environment_time.select(index)
-    some._rngs = world._rngs.select(index.tolist())
-    set_models(some, [_models(world)[e] for e in index])
-    flow = world._traffic
-    arrivals = None if flow.arrivals is None else flow.arrivals.select(index.tolist())
-    changed: dict[str, Any] = {name: getattr(flow, name)[index] for name in ("seeds", "ids", "following")}
-    _set_flow(some, dataclasses.replace(flow, arrivals=arrivals, **changed))
-    some.twists = {robot: tree.take(twists, index) for robot, twists in world.twists.items()}
-    some._delayed = {robot: _take_delay(delay, index, world) for robot, delay in world._delayed.items()}
-    some.slots = world.slots[index]
-    some.avatars = None if world.avatars is None else world.avatars.select(index)
+    _set_state(some, tree.take(_states([world])[0], index), [_models(world)[e] for e in index])
+    some.environment_time.follow()
     some.doors = None if world.doors is None else world.doors.copy()
-    rows: dict[int, list[int]] = {}
-    for k, e in enumerate(index.tolist()):
-        rows.setdefault(e, []).append(k)
-    contacts = (one._replace(environment=k) for one in world.contacts for k in rows.get(one.environment, ()))
-    some.contacts = tuple(sorted(contacts))
     if world._bodies is not None:
         some._bodies = [world._bodies[e].copy() for e in index]
         for bodies in some._bodies:
@@ -130,34 +100,18 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
 def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, other: PlanarWorld) -> None:
     """Replace some environments of a running world by those of another world of the same trial."""
     index = np.asarray(environments, dtype=np.int64)
-    agents = max(world.scene.shape[1], other.scene.shape[1])
-    walls = world.scene.walls if world.doors is None else other.scene.walls
-    world.doors, world.router = other.doors, world.router if other.doors is None else other.router
-    world.scene = put_scene(world.scene, index, other.scene).replace(walls=walls)
-    world._previous = put_scene(world._previous, index, other._previous).replace(walls=walls)
-    world.environment_time.put(index, other.environment_time)
+    if world.doors is not None:
+        world.scene = world.scene.replace(walls=other.scene.walls)
+        world.doors, world.router = other.doors, other.router
+    other.environment_time.follow(world.clock)
     models = list(_models(world))
-    flow, new = world._traffic, other._traffic
-    flow.ids = pad_ids(flow.ids, agents)
-    flow.ids[index] = pad_ids(new.ids, agents)
-    flow.seeds[index], flow.following[index] = new.seeds, new.following
-    if flow.arrivals is not None and new.arrivals is not None:
-        flow.arrivals.put(index.tolist(), new.arrivals)
-    _set_flow(world, flow)
-    world._rngs.put(index.tolist(), other._rngs)
     for k, e in enumerate(index.tolist()):
         models[e] = _models(other)[k]
         if world._bodies is not None and other._bodies is not None:
             world._bodies[e] = other._bodies[k]
-    if any(model is not world.model for model in models):
-        set_models(world, models)
-    world.slots[index] = other.slots
-    if world.avatars is not None and other.avatars is not None:
-        world.avatars.put(index, other.avatars)
-    world.twists = {robot: _put_twists(twists, index, other.twists[robot]) for robot, twists in world.twists.items()}
-    world._delayed = {robot: _reset_delay(delay, index, world) for robot, delay in world._delayed.items()}
-    fresh = set(index.tolist())
-    world.contacts = tuple(one for one in world.contacts if one.environment not in fresh)
+    changed = any(model is not world.model for model in models)
+    whole, rows = _states([world, other])
+    _set_state(world, tree.put(whole, index, rows), models if changed else None)
 
 
 def undo_point(world: PlanarWorld) -> Callable[[], None]:
@@ -165,7 +119,7 @@ def undo_point(world: PlanarWorld) -> Callable[[], None]:
     kept = {name: getattr(world, name) for name in ("scene", "_previous", "contacts")}
     twists, delayed, tick = dict(world.twists), dict(world._delayed), world.clock.tick
     ids, following = world._traffic.ids.copy(), world._traffic.following.copy()
-    rngs = None if works_in_batches(world.model) else world._rngs.select(range(len(world._rngs)))
+    rngs = None if works_in_batches(world.model) else tree.take(world._rngs, slice(None))
 
     def undo() -> None:
         world._rngs = rngs or world._rngs
@@ -205,59 +159,64 @@ def _models(world: PlanarWorld) -> list[Any]:
     return world._models if world._models is not None else [world.model] * len(world.slots)
 
 
-def _set_flow(world: PlanarWorld, flow: PeopleFlow) -> None:
-    world._traffic = flow
-    world.ids = flow.ids
+def _states(worlds: Sequence[PlanarWorld]) -> list[dict[str, Any]]:
+    """Fields with environments of worlds, as trees of one structure: padded, with equally many pending commands."""
+    scenes, before = [[getattr(world, name) for world in worlds] for name in ("scene", "_previous")]
+    if len(worlds) > 1:
+        scenes, before = align_scenes(scenes), align_scenes(before)
+    delays, states = _aligned_delays(worlds), []
+    for k, world in enumerate(worlds):
+        contacts = tree.objects([()] * len(world.slots))
+        for contact in world.contacts:
+            contacts[contact.environment] += (contact,)
+        ids = pad_ids(world._traffic.ids, scenes[k].shape[1])
+        states.append(
+            {
+                "scene": scenes[k], "_previous": before[k], "_traffic": dataclasses.replace(world._traffic, ids=ids),
+                "twists": {robot: _aligned_twists(worlds, robot)[k] for robot in world.twists},
+                "_delayed": delays[k], "contacts": contacts, "slots": world.slots, "avatars": world.avatars,
+                "environment_time": world.environment_time, "_rngs": world._rngs,
+            }
+        )  # fmt: skip
+    return states
 
 
-def _join_flows(flows: Sequence[PeopleFlow], agents: int) -> PeopleFlow:
-    first = flows[0]
-    return dataclasses.replace(
-        first,
-        seeds=np.concatenate([flow.seeds for flow in flows]),
-        ids=np.concatenate([pad_ids(flow.ids, agents) for flow in flows]),
-        following=np.concatenate([flow.following for flow in flows]),
-        arrivals=None if first.arrivals is None else first.arrivals.join([f.arrivals for f in flows[1:] if f.arrivals]),
-    )
+def _set_state(world: PlanarWorld, state: dict[str, Any], models: list[Any] | None) -> None:
+    """Set the fields with environments, and the model of each environment if it changes."""
+    scene = world.scene
+    for name, value in state.items():
+        setattr(world, name, value)
+    world.ids = world._traffic.ids
+    world.contacts = tuple(one._replace(environment=e) for e, row in enumerate(state["contacts"]) for one in row)
+    world.scene = with_common_time(world.scene, scene)
+    world._previous = with_common_time(world._previous, scene).replace(walls=world.scene.walls)
+    if models is not None:
+        set_models(world, models)
 
 
-def _put_twists(twists: Twists, index: Ints, rows: Twists) -> Twists:
-    """Replace the twists of some environments; those of a car have a steering angle after its first step, 0 before."""
-    kind = type(twists) if isinstance(twists, type(rows)) else type(rows)
+def _aligned_twists(worlds: Sequence[PlanarWorld], robot: int) -> list[Twists]:
+    """Twists of a robot in worlds; those of a car have a steering angle after its first step, 0 before."""
+    twists = [world.twists[robot] for world in worlds]
+    kind = max(map(type, twists), key=lambda one: len(dataclasses.fields(one)))
     names = [field.name for field in dataclasses.fields(kind) if field.init]
-    whole, part = (kind(*(getattr(one, name, np.zeros_like(one.forward)) for name in names)) for one in (twists, rows))
-    return tree.put(whole, index, part)
+    return [
+        one if type(one) is kind else kind(*(getattr(one, name, np.zeros_like(one.forward)) for name in names))
+        for one in twists
+    ]
 
 
-def _join_delays(worlds: Sequence[PlanarWorld]) -> dict[int, tuple[tuple[Pending, ...], Twist | Twists]]:
-    """Return the delayed commands of all worlds; worlds without pending commands have stopped robots."""
-    found: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
+def _aligned_delays(worlds: Sequence[PlanarWorld]) -> list[dict[int, tuple[tuple[Pending, ...], Twists]]]:
+    """Delayed commands of worlds, equally many; robots without pending commands stand still until their first one."""
+    rows: list[dict[int, tuple[tuple[Pending, ...], Twists]]] = [{} for _ in worlds]
     for robot in {robot for world in worlds for robot in world._delayed}:
-        rows = [world._delayed.get(robot, ((), Twist())) for world in worlds]
-        counts = [len(world.slots) for world in worlds]
-        most = max((pending for pending, _ in rows), key=len)
-        pending = []
-        for k in range(1, len(most) + 1):  # from the latest command backwards
-            parts = [
-                Twists.of(row[-k].command if k <= len(row) else Twist(), n)
-                for (row, _), n in zip(rows, counts, strict=True)
-            ]
-            pending.append(Pending(most[-k].wait, tree.join(parts)))
-        now = tree.join([Twists.of(command, n) for (_, command), n in zip(rows, counts, strict=True)])
-        found[robot] = (tuple(reversed(pending)), now)
-    return found
-
-
-def _take_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
-    pending, now = delay
-    count = len(world.slots)
-    rows = tuple(Pending(one.wait, tree.take(Twists.of(one.command, count), index)) for one in pending)
-    return rows, tree.take(Twists.of(now, count), index)
-
-
-def _reset_delay(delay: Any, index: Ints, world: PlanarWorld) -> Any:
-    """Return delayed commands in which restarted robots stand still until their first command arrives."""
-    pending, now = delay
-    count, still = len(world.slots), Twists.of(Twist(), len(index))
-    rows = tuple(Pending(one.wait, tree.put(Twists.of(one.command, count), index, still)) for one in pending)
-    return rows, tree.put(Twists.of(now, count), index, still)
+        delays = [world._delayed.get(robot, ((), Twist())) for world in worlds]
+        longest = max((pending for pending, _ in delays), key=len)
+        for row, world, (pending, now) in zip(rows, worlds, delays, strict=True):
+            count = len(world.slots)
+            commands = [Twist()] * (len(longest) - len(pending)) + [one.command for one in pending]
+            both = zip(longest, commands, strict=True)
+            row[robot] = (
+                tuple(Pending(one.wait, Twists.of(command, count)) for one, command in both),
+                Twists.of(now, count),
+            )
+    return rows

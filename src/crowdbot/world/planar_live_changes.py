@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,9 @@ from crowdbot.world.robots.drives.drive import Drive, Twists
 
 from .crowd.environment_rows import pad_ids, resize_scene, set_models
 from .robots.robot import Robot
-from .world import World
+
+if TYPE_CHECKING:
+    from .physics.people_motion import PeopleMotion
 
 __all__ = [
     "check_robot_place",
@@ -24,6 +26,7 @@ __all__ = [
     "live_prop_names",
     "match_robots",
     "new_prop_name",
+    "people_motions",
     "prop_number",
     "props_of",
     "put_robot_at",
@@ -52,8 +55,9 @@ def chosen_environments(count: int, environments: Sequence[int] | None) -> list[
     return chosen
 
 
-def check_robot_place(robot: Robot, x: float, y: float, heading: float) -> None:
-    """Raise :class:`InputError` if a robot cannot be added at a place."""
+def check_robot_place(robot: Robot, place: tuple[float, float, float]) -> None:
+    """Raise :class:`InputError` if a robot cannot be added at x, y [m], heading [rad]."""
+    x, y, heading = place
     if not isinstance(robot, Robot):
         raise InputError(f"robot is a {type(robot).__name__}; give a Robot such as Robot.load('turtlebot2')")
     if not (math.isfinite(x) and math.isfinite(y) and max(abs(x), abs(y)) <= FARTHEST and math.isfinite(heading)):
@@ -63,7 +67,7 @@ def check_robot_place(robot: Robot, x: float, y: float, heading: float) -> None:
         )
 
 
-def robot_environments(world: World, agent: int, environments: Sequence[int] | None) -> list[int]:
+def robot_environments(world: Any, agent: int, environments: Sequence[int] | None) -> list[int]:
     """Return the environments in which a robot is to be removed, None: all in which it is present.
 
     Raises:
@@ -86,7 +90,7 @@ def widen(world: Any, agents: int) -> None:
         world._traffic.ids = pad_ids(world._traffic.ids, agents)
         world.ids = world._traffic.ids
         set_models(world, [world.model] * len(world.slots) if world._models is None else world._models)
-    for people in _people_of(world):
+    for people in people_motions(world):
         people.grow(agents)
 
 
@@ -226,8 +230,8 @@ def replace_walls(world: Any, walls: Walls) -> None:
     world.scene, world._previous = world.scene.replace(walls=walls), world._previous.replace(walls=walls)
 
 
-def _people_of(world: Any) -> list[Any]:
-    """Return the bodies of people of a world, if it has any."""
+def people_motions(world: Any) -> list[PeopleMotion]:
+    """Return the bodies of people in each environment, empty without bodies."""
     if world._bodies is not None:
         return [bodies.people for bodies in world._bodies]
     return [] if world.people is None else [world.people]

@@ -13,6 +13,7 @@ from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls, storabl
 from crowdbot.world.robots.drives.drive import Twists
 
 from .environment_time import EnvironmentTime
+from .planar_live_changes import check_robot_place, chosen_environments
 from .robots.mount import MountPlacement
 
 if TYPE_CHECKING:
@@ -121,21 +122,29 @@ class World(ABC):
     def environment_renderer(self, environment: int) -> Renderer:
         """Return the renderer of one environment; errors as for :attr:`renderer`."""
 
+    def part(self, environment: int) -> tuple[Any, int]:
+        """Return the world that holds an environment, and the row of the environment in it."""
+        return self, environment
+
     def forces_of(self, environment: int) -> tuple[ContactForce, ...]:
         """Return the contact forces of the last step in one environment."""
-        return self.forces
+        forces: tuple[ContactForce, ...] = self.part(environment)[0].forces
+        return forces
 
     def contact_events_of(self, environment: int) -> tuple[BodyContactEvent, ...]:
         """Return the contact events of one environment so far, ordered by start time."""
-        return self.contact_events
+        events: tuple[BodyContactEvent, ...] = self.part(environment)[0].contact_events
+        return events
 
     def falls_of(self, environment: int) -> tuple[Fall, ...]:
         """Return the falls of people in one environment so far, ordered by start time; also those that go on."""
-        return self.falls
+        falls: tuple[Fall, ...] = self.part(environment)[0].falls
+        return falls
 
     def fall_poses_of(self, environment: int) -> Mapping[int, FallPose]:
         """Return the poses of people who lean, fall or lie in one environment, by agent."""
-        return {} if self.people is None else self.people.fall_poses(self.scene.active[environment])
+        own, row = self.part(environment)
+        return {} if own.people is None else own.people.fall_poses(own.scene.active[row])
 
     @property
     def falls(self) -> tuple[Fall, ...]:
@@ -225,7 +234,6 @@ class World(ABC):
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
         """Change parameters of a running world; see :meth:`PlanarWorld.reconfigure`."""
 
-    @abstractmethod
     def add_robot(
         self,
         robot: Robot,
@@ -261,6 +269,17 @@ class World(ABC):
         >>> world.step({}).active.tolist()
         [[True, False]]
         """
+        place = (x, y, heading)
+        check_robot_place(robot, place)
+        chosen, agent = chosen_environments(len(self.slots), environments), int(self.slots.max())
+        self.place_robot(agent, robot, place, ghost, chosen)
+        return agent
+
+    @abstractmethod
+    def place_robot(
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
+    ) -> None:
+        """Make an agent a robot, present at x, y [m], heading [rad] in some environments; an error changes nothing."""
 
     @abstractmethod
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:

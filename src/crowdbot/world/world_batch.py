@@ -1,20 +1,20 @@
-"""WorldBatch: worlds of one environment each as the environments of one world."""
+"""Environments of worlds of either kind: join worlds, select environments, replace some, and step all that can."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
+import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Storage, Twist, Walls, tree
+from crowdbot.world import planar_environments as planar
 from crowdbot.world.crowd.environment_rows import pad_ids, resize_scene, stack_scenes
-from crowdbot.world.environment_time import EnvironmentTime
+from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.planar_live_changes import (
-    check_robot_place,
-    chosen_environments,
     live_prop_names,
     match_robots,
     new_prop_name,
@@ -25,43 +25,63 @@ from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
 
 if TYPE_CHECKING:
-    from crowdbot.humans import FallPose
+    from crowdbot.humans import People
     from crowdbot.world.crowd.source import PeopleSource
     from crowdbot.world.rendering.renderer import Renderer
     from crowdbot.world.robots.robot import Robot
 
-    from .physics.balance.fall import Fall
-    from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.stage import PhysicsStage, PropBody
 
-__all__ = ["WorldBatch", "worlds_of"]
+__all__ = [
+    "WorldBatch",
+    "join_worlds",
+    "put_environments",
+    "select_environments",
+    "step_environments",
+    "worlds_of",
+]
 
 T = TypeVar("T")
 Ints = NDArray[np.int64]
 
 
 class WorldBatch(World):
-    """Environments with worlds of their own, of the same trial, on a common clock.
+    """Environments with rigid bodies or with doors, whose leaves are walls: worlds of their own on a common clock.
 
     Args:
-        worlds: the worlds; they must not be used any more.
+        worlds: worlds of one trial; they must not be used any more.
         clock: the common clock; None: that of the first world.
+
+    Raises:
+        InputError: the walls of worlds with rigid bodies differ.
     """
 
     storage = Storage(constants=("dt", "_stacked"))
 
-    def __init__(self, worlds: Sequence[Any], clock: Clock | None = None) -> None:
+    def __init__(self, worlds: Sequence[PlanarWorld], clock: Clock | None = None) -> None:
         first = worlds[0]
-        self.worlds, self.dt = list(worlds), first.dt
+        for world in worlds[1:] if first.walls_fixed else ():
+            if not np.array_equal(world.scene.walls.segments(), first.scene.walls.segments()):
+                raise InputError("environments of the physics world need the same stage; run variants of it one by one")
+        self.worlds: list[PlanarWorld] = list(worlds)
+        self.dt = first.dt
         times = [world.environment_time for world in worlds]
-        self.environment_time = times[0].join(times[1:])
-        if clock is not None:
-            self.environment_time = EnvironmentTime(
-                clock, clock.tick - self.environment_time.ticks, self.environment_time.begin
-            )
-        for world in self.worlds:
-            world.environment_time = world.environment_time.select([0])
+        for time in times:
+            time.follow(clock or first.clock)
+        self.environment_time = tree.take(tree.join(times), slice(None))
+        for time in times:
+            time.follow()
         self._stacked: tuple[list[Scene], Scene] | None = None
+
+    @property
+    def people_shape(self) -> str:  # type: ignore[override]
+        """Shape of people for sensors."""
+        return self.worlds[0].people_shape
+
+    @property
+    def walls_fixed(self) -> bool:  # type: ignore[override]
+        """Whether the walls cannot change."""
+        return self.worlds[0].walls_fixed
 
     @property
     def scene(self) -> Scene:
@@ -141,11 +161,11 @@ class WorldBatch(World):
 
     def _each(self, work: Callable[[int], T]) -> list[T]:
         """Return the results of a function for each environment."""
-        return [work(e) for e in range(len(self.worlds))]
-
-    @abstractmethod
-    def select(self, environments: Sequence[int] | Ints) -> World:
-        """Return an independent world with some environments."""
+        count = len(self.worlds)
+        if not self.walls_fixed:
+            return [work(e) for e in range(count)]
+        with ThreadPoolExecutor(min(count, os.cpu_count() or 1)) as pool:
+            return list(pool.map(work, range(count)))
 
     def put(self, environments: Sequence[int] | Ints, other: World) -> None:
         """Replace some environments by those of another world, which must not be used any more."""
@@ -153,27 +173,18 @@ class WorldBatch(World):
             match_robots(self.worlds[0], world)
         for one in self.worlds:
             match_robots(one, worlds_of(other)[0])
-        for k, (e, world) in enumerate(zip(environments, worlds_of(other), strict=True)):
-            self.environment_time.put([e], other.environment_time.select([k]))
+        other.environment_time.follow(self.clock)
+        self.environment_time = tree.put(self.environment_time, np.asarray(environments), other.environment_time)
+        for e, world in zip(environments, worlds_of(other), strict=True):
             self.worlds[int(e)] = world
-            world.environment_time = world.environment_time.select([0])
+            world.environment_time.follow()
 
-    def add_robot(
-        self,
-        robot: Robot,
-        x: float,
-        y: float,
-        heading: float = 0.0,
-        *,
-        ghost: bool = False,
-        environments: Sequence[int] | None = None,
-    ) -> int:
-        """Add a robot, at rest on the floor; see :class:`World`."""
-        check_robot_place(robot, x, y, heading)
-        chosen, agent = chosen_environments(len(self.worlds), environments), int(self.slots.max())
-        for e in sorted(range(len(self.worlds)), key=lambda e: e not in chosen):  # an error changes nothing
-            self.worlds[e].place_robot(agent, robot, (x, y, heading), ghost, e in chosen)
-        return agent
+    def place_robot(
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
+    ) -> None:
+        """Make an agent a robot; see :class:`World`."""
+        for e in sorted(range(len(self.worlds)), key=lambda e: e not in environments):  # an error changes nothing
+            self.worlds[e].place_robot(agent, robot, place, ghost, [0] if e in environments else [])
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
         """Remove a robot and its body; see :class:`World`."""
@@ -213,49 +224,28 @@ class WorldBatch(World):
         """Return the scene of one environment in the plane; see :class:`World`."""
         if environment is None:
             raise InputError("the outlines of props differ between environments: ask for one of them")
-        found: Scene = self.worlds[environment].plane_scene()
-        return found
+        return self.worlds[environment].plane_scene()
 
     def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
         """Return the scene of one environment with bodies; see :class:`World`."""
-        found: Scene = self.worlds[environment].body_scene(skins, avatars=avatars)
-        return found
+        return self.worlds[environment].body_scene(skins, avatars=avatars)
 
     def environment_scene(self, environment: int) -> Scene:
         """Return the scene of one environment."""
-        found: Scene = self.worlds[environment].scene
-        return found
+        return self.worlds[environment].scene
 
     def environment_renderer(self, environment: int) -> Renderer:
         """Return the renderer of one environment."""
-        found: Renderer = self.worlds[environment].environment_renderer(0)
-        return found
+        return self.worlds[environment].environment_renderer(0)
 
     @property
     def renderer(self) -> Renderer:
         """Renderer of the first environment."""
-        found: Renderer = self.worlds[0].renderer
-        return found
+        return self.worlds[0].renderer
 
-    def forces_of(self, environment: int) -> tuple[ContactForce, ...]:
-        """Return the contact forces of the last step in one environment."""
-        found: tuple[ContactForce, ...] = self.worlds[environment].forces
-        return found
-
-    def contact_events_of(self, environment: int) -> tuple[BodyContactEvent, ...]:
-        """Return the contact events of one environment so far."""
-        found: tuple[BodyContactEvent, ...] = self.worlds[environment].contact_events
-        return found
-
-    def falls_of(self, environment: int) -> tuple[Fall, ...]:
-        """Return the falls of people in one environment so far."""
-        found: tuple[Fall, ...] = self.worlds[environment].falls
-        return found
-
-    def fall_poses_of(self, environment: int) -> Mapping[int, FallPose]:
-        """Return the poses of people out of balance in one environment, by agent."""
-        found: Mapping[int, FallPose] = self.worlds[environment].fall_poses_of(0)
-        return found
+    def part(self, environment: int) -> tuple[PlanarWorld, int]:
+        """Return the world of an environment; see :class:`World`."""
+        return self.worlds[environment], 0
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
         """Replace robots and stage in all environments; see :class:`World`."""
@@ -269,6 +259,16 @@ class WorldBatch(World):
             own = None if seed is None else (seed + e if isinstance(seed, int) else seed[e])
             world.reconfigure(one, sources, own, **how)
 
+    def embody(self, robots: Mapping[int, Robot], stage: PhysicsStage, people: People, **options: Any) -> None:
+        """Refuse bodies in the plane, as they are added to one environment at a time; other worlds have bodies."""
+        if not self.walls_fixed:
+            raise InputError(f"bodies are added to one environment at a time; this world has {len(self.worlds)}")
+
+    def pose_people(self) -> None:
+        """Move the bodies of people to the current scene; see :class:`World`."""
+        for world in self.worlds:
+            world.pose_people()
+
 
 def worlds_of(world: World) -> list[Any]:
     """Return the worlds of a batch, or the only one.
@@ -279,3 +279,71 @@ def worlds_of(world: World) -> list[Any]:
     1
     """
     return world.worlds if isinstance(world, WorldBatch) else [world]
+
+
+def join_worlds(worlds: Sequence[World]) -> World:
+    """Return one world with the environments of several worlds of the same trial, on the clock of the first.
+
+    The worlds must not be used any more.
+
+    >>> from crowdbot.core import Scene
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.world import PlanarWorld
+    >>> parts = [PlanarWorld(Scene.of([[float(k), 0.0]]), ORCA(), {}, dt=0.1, seed=k) for k in range(3)]
+    >>> join_worlds(parts).step({}).position[:, 0].tolist()
+    [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]
+    """
+    if len(worlds) == 1:
+        return worlds[0]
+    if worlds[0].has_own_walls:
+        return WorldBatch([one for world in worlds for one in worlds_of(world)], worlds[0].clock)
+    parts: Any = worlds
+    return planar.join_worlds(parts)
+
+
+def select_environments(world: World, environments: Sequence[int] | Ints) -> World:
+    """Return an independent world with some environments, which may be repeated, on a free clock."""
+    anything: Any = world
+    if not world.has_own_walls:
+        return planar.select_environments(anything, environments)
+    worlds = [worlds_of(world)[int(e)] for e in environments]
+    return join_worlds([one.copy() if one.walls_fixed else planar.select_environments(one, [0]) for one in worlds])
+
+
+def put_environments(world: World, environments: Sequence[int] | Ints, other: World) -> World:
+    """Return the world with some environments replaced by those of another, which must not be used any more."""
+    anything: Any = world
+    if isinstance(world, WorldBatch):
+        world.put(environments, other)
+    elif not world.walls_fixed:
+        new: Any = other
+        match_robots(world, other)
+        planar.put_environments(anything, environments, new)
+    else:
+        other.environment_time.follow(world.clock)
+        return other
+    return world
+
+
+def step_environments(world: World, commands: Mapping[int, Twist | Twists]) -> tuple[World, dict[int, Exception]]:
+    """Advance all environments by one step; return the world, and the exceptions of environments that could not.
+
+    An environment with an exception keeps its state, and loses its agents if there are others.
+
+    Raises:
+        MissingExtra: a package is not installed.
+    """
+    anything: Any = world
+    if isinstance(world, WorldBatch):
+        return world, world.try_step(commands)
+    undo = planar.undo_point(anything) if len(world.slots) > 1 else None
+    try:
+        world.step(commands)
+    except MissingExtra:
+        raise
+    except Exception as error:  # crowd models may raise anything
+        if undo is None:
+            return world, {0: error}
+        undo()
+        return planar.step_one_by_one(anything, commands)
+    return world, {}

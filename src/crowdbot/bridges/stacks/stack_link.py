@@ -144,7 +144,7 @@ class StackLink:
             for name in [name for name in missing if name in inbox.commanded]:
                 control, spent = missing.pop(name), time.perf_counter() - begin
                 self.seconds.append(spent)
-                control.timer.spent[0].append(spent)
+                control.timer.spent[0] += (spent,)
                 if control.robot.deadline is not None and spent > control.robot.deadline:
                     control.timer.missed[0] = simulation.ticks[0]
             if not missing:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -73,8 +72,8 @@ class FaultState:
         begin, end = self.numbers[:, k, 0], self.numbers[:, k, 1]
         return np.asarray((times >= begin - INSTANT) & (times < end - INSTANT))
 
-    def measuring(self, sensor: MountedSensor, world: World, live: Bools) -> Bools:
-        """Return ``[E]`` where a sensor may measure, and set how late its readings are."""
+    def measuring(self, sensor: MountedSensor, world: World, live: Bools) -> tuple[Bools, Ints | None]:
+        """Return ``[E]`` where a sensor may measure, and how many ticks late its readings are, None if never."""
         times, step = world.times, world.clock.dt
         lateness = np.zeros(len(times), dtype=np.int64)
         silent = np.zeros(len(times), dtype=np.bool_)
@@ -85,10 +84,7 @@ class FaultState:
                 lateness += np.where(active, np.rint(self.numbers[:, k, 2] / step).astype(np.int64), 0)
             elif isinstance(fault, FrozenSensor | BlindSensor):
                 silent |= active
-        sensor.lateness = (
-            lateness if any(isinstance(one, LateSensor) for _, one in self._of_sensor(sensor.name)) else None
-        )
-        return live & ~silent
+        return live & ~silent, lateness if any(isinstance(one, LateSensor) for _, one in own) else None
 
     def clear_blind(self, sensors: Sequence[MountedSensor], times: Floats) -> None:
         """Forget the readings of the sensors that are blind."""
@@ -145,19 +141,6 @@ class FaultState:
                 state = "begin" if now[e] else "end"
                 found.append((e, FaultOrder(robot=robot.name, fault=name, state=state)))
         return found
-
-    def select(self, environments: Ints) -> FaultState:
-        """Return an independent state of some environments."""
-        other = copy.copy(self)
-        other.numbers, other.draws = self.numbers[environments], self.draws[environments]
-        other.rngs = tuple(rngs.select(environments.tolist()) for rngs in self.rngs)
-        return other
-
-    def put(self, environments: Ints, other: FaultState) -> None:
-        """Replace the state of some environments."""
-        self.numbers[environments], self.draws[environments] = other.numbers, other.draws
-        for mine, new in zip(self.rngs, other.rngs, strict=True):
-            mine.put(environments.tolist(), new)
 
     def _of_sensor(self, name: str) -> list[tuple[int, SensorFault]]:
         return [

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.simulation.robot_control import RobotControl
 from crowdbot.simulation.simulation import NONE, SUCCESS
 from crowdbot.trials import robot_place_problem
 from crowdbot.world import check_place, redirect_person
@@ -49,7 +48,7 @@ class GoalOrder(Order):
     def check(self, simulation: Any) -> None:
         """Raise :class:`InputError` if there is no such robot, or it cannot be at the goal or has no path to it."""
         super().check(simulation)
-        control, place = self._control(simulation), (float(self.x), float(self.y))
+        control, place = simulation.control_of(self.robot), (float(self.x), float(self.y))
         start = f"GoalOrder: robot {self.robot!r}"
         reach = float(control.tolerance[self.environment]) if self.tolerance is None else float(self.tolerance)
         if problem := robot_place_problem(simulation.trial.stage, control.robot, place, reach):
@@ -64,13 +63,8 @@ class GoalOrder(Order):
 
     def apply(self, simulation: Any) -> None:
         """Set the goal."""
-        control, e, place = self._control(simulation), self.environment, (float(self.x), float(self.y))
+        control, e, place = simulation.control_of(self.robot), self.environment, (float(self.x), float(self.y))
         redirect_person(simulation.world, int(simulation.world.ids[e, control.agent]), *place, e)
         control.change_goal(e, place, None if self.tolerance is None else float(self.tolerance))
         if simulation.event[e] == SUCCESS:
             simulation.event[e] = NONE
-
-    def _control(self, simulation: Any) -> RobotControl:
-        agent = simulation.agent_of(self.robot)
-        found: RobotControl = next(control for control in simulation.robots if control.agent == agent)
-        return found

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.simulation.robot_control import RobotControl
 from crowdbot.simulation.robot_joints import move_robot_joint, tilt_problem
 from crowdbot.world import check_joint
 
@@ -39,7 +38,7 @@ class JointOrder(Order):
     def check(self, simulation: Any) -> None:
         """Raise :class:`InputError` if there is no such robot or joint, or it cannot be at the position."""
         super().check(simulation)
-        control = self._control(simulation)
+        control = simulation.control_of(self.robot)
         try:
             if not isinstance(self.position, int | float):
                 raise InputError(f"position = {self.position!r} must be a number")
@@ -53,9 +52,4 @@ class JointOrder(Order):
     def apply(self, simulation: Any) -> None:
         """Move the joint."""
         values = (self.environment, self.joint, float(self.position))
-        move_robot_joint(self._control(simulation), simulation.world, *values)
-
-    def _control(self, simulation: Any) -> RobotControl:
-        agent = simulation.agent_of(self.robot)
-        found: RobotControl = next(control for control in simulation.robots if control.agent == agent)
-        return found
+        move_robot_joint(simulation.control_of(self.robot), simulation.world, *values)

@@ -11,7 +11,7 @@ import numpy as np
 from crowdbot.core import InputError, stream
 from crowdbot.humans import People
 from crowdbot.trials import people_appearance
-from crowdbot.world import push_person, slot_of, worlds_of
+from crowdbot.world import push_person, slot_of
 
 from .order import Order
 from .people_orders import check_person, is_present
@@ -75,7 +75,7 @@ class PushOrder(Order):
         recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
         if trial.people - recorded <= slot < trial.people:
             raise InputError(f"{self.person} is the id of a recorded person, who keeps to the recording")
-        world = _world(simulation, self.environment)
+        world, _ = simulation.world.part(self.environment)
         if world.walls_fixed and not len(world.rigid.people.agent):
             raise InputError("PushOrder: the physics world has no bodies for people; use slots of at least 1")
 
@@ -98,7 +98,7 @@ def body_of(simulation: Any, slot: int, environment: int) -> tuple[float, float]
         slot: index of the person.
         environment: index of the environment.
     """
-    motion = _world(simulation, environment).people
+    motion = simulation.world.part(environment)[0].people
     if motion is not None and motion.row[slot] >= 0:
         row = int(motion.row[slot])
         return float(motion.people.mass[row]), float(motion.people.height[row])
@@ -110,8 +110,3 @@ def body_of(simulation: Any, slot: int, environment: int) -> tuple[float, float]
     if number >= people:
         figures, number = People.sample(1, stream(seed, "people", "agent", slot)), 0
     return float(figures.mass[number]), float(figures.height[number])
-
-
-def _world(simulation: Any, environment: int) -> Any:
-    worlds = worlds_of(simulation.world)
-    return worlds[environment] if len(worlds) > 1 else worlds[0]

@@ -58,8 +58,7 @@ class RobotPoseOrder(Order):
     def check(self, simulation: Any) -> None:
         """Raise :class:`InputError` if the robot does not take poses, or the time is too far ahead."""
         super().check(simulation)
-        agent = simulation.agent_of(self.robot)
-        robot = next(control.robot for control in simulation.robots if control.agent == agent)
+        robot = simulation.control_of(self.robot).robot
         if robot.mirror is None or robot.mirror.source != "external":
             raise InputError(
                 f'RobotPoseOrder: robot {self.robot!r} does not take poses; add <pose source="external"/> to it'

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import Scene, StateError, tree
-from crowdbot.world import show_doors, widen
+from crowdbot.world import show_doors, widen, worlds_of
 
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
@@ -102,10 +102,11 @@ def _check_scene(scene: Scene) -> None:
 
 def _part_worlds(world: Any) -> Iterator[tuple[str, Any]]:
     """Yield the path and the object of each world: one, or one for each environment with bodies in the engine."""
-    if not hasattr(world, "worlds"):
+    worlds = worlds_of(world)
+    if worlds == [world]:
         yield "simulation/world", world
         return
-    for e, one in enumerate(world.worlds):
+    for e, one in enumerate(worlds):
         yield f"simulation/world/worlds/{e}", one
 
 

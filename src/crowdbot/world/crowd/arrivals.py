@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,12 +25,6 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Words = NDArray[np.uint64]
-
-ROWS = (
-    "begin", "due", "come", "waiting", "arrival", "body", "gaps", "gap", "times", "bodies", "next", "last", "before",
-    "after", "places",
-)  # fmt: skip
-"""Fields of :class:`_Queues` with one row for each environment."""
 
 
 @dataclass
@@ -216,30 +209,6 @@ class Arrivals:
     def waiting_count(self) -> Numbers:
         """Number of people waiting to enter, ``[E]``."""
         return np.asarray(self._queues.waiting.sum(axis=1))
-
-    def select(self, environments: Sequence[int]) -> Arrivals:
-        """Return independent queues of some environments."""
-        index, chosen = list(environments), copy.copy(self)
-        rows: dict[str, Any] = {name: getattr(self._queues, name)[index] for name in ROWS}
-        streams = [one.select(index) for one in self._queues.streams]
-        chosen._queues = dataclasses.replace(self._queues, streams=streams, **rows)
-        return chosen
-
-    def join(self, others: Sequence[Arrivals]) -> Arrivals:
-        """Return the queues of this and other worlds with the same sources."""
-        whole, every = copy.copy(self), [one._queues for one in (self, *others)]
-        rows: dict[str, Any] = {name: np.concatenate([getattr(one, name) for one in every]) for name in ROWS}
-        streams = [ones[0].join(ones[1:]) for ones in zip(*(one.streams for one in every), strict=True)]
-        whole._queues = dataclasses.replace(self._queues, streams=streams, **rows)
-        return whole
-
-    def put(self, environments: Sequence[int], other: Arrivals) -> None:
-        """Replace the queues of some environments by those of another world with the same sources."""
-        index = list(environments)
-        for name in ROWS:
-            getattr(self._queues, name)[index] = getattr(other._queues, name)
-        for mine, new in zip(self._queues.streams, other._queues.streams, strict=True):
-            mine.put(index, new)
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
         """Replace the sources; queues and planned arrivals are kept.

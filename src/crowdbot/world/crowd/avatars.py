@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
@@ -10,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Storage
+from crowdbot.core import InputError, Scene, Storage, tree
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
+from crowdbot.world.planar_live_changes import people_motions
 from crowdbot.world.robots.drives.drive import Twists
 
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion
 
-__all__ = ["Avatars", "give_pose", "people_motions"]
+__all__ = ["Avatars", "give_pose"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -55,6 +55,7 @@ class Avatars:
 
     storage = Storage(
         constants=("agents", "names", "sources", "delay", "robots", "_latest", "external"),
+        environments=("sources",),
         properties=("streams",),
     )  # fmt: skip
 
@@ -71,7 +72,7 @@ class Avatars:
         self.robots = tuple(int(agent) for agent in robots)
         self.agents = np.asarray(agents, dtype=np.int64)
         self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
-        self.sources = [tuple(row) for row in sources]
+        self.sources = tree.objects(tuple(row) for row in sources)
         self._latest: dict[tuple[int, float], tuple[PoseSource, PoseMotion]] = {}  # holds sources, so ids are unique
         self.rows = np.zeros((len(self.sources), len(self.agents), len(BodyPose(0.0, 0.0).row())))
 
@@ -92,14 +93,14 @@ class Avatars:
     def streams(self, streams: list[list[PoseSource]]) -> None:
         """Set the sources of the external avatars in each environment."""
         rows = [iter(row) for row in streams]
-        self.sources = [
+        self.sources = tree.objects(
             tuple(next(row) if name in self.external else source for name, source in zip(self.names, old, strict=True))
             for row, old in zip(rows, self.sources, strict=True)
-        ]
+        )
 
     def __deepcopy__(self, memo: Any) -> Avatars:
         """Return an independent copy; sources do not change, so they are shared."""
-        return self.select(range(len(self.sources)))
+        return tree.take(self, slice(None))
 
     def hold(self, scene: Scene) -> Scene:
         """Return the scene with the avatars as external agents."""
@@ -233,36 +234,10 @@ class Avatars:
         sources[k] = track.with_sample(time, pose, now - self.delay[k] - AHEAD)
         self.sources[environment] = tuple(sources)
 
-    def select(self, environments: Sequence[int] | Ints) -> Avatars:
-        """Return independent avatars of some environments."""
-        some = copy.copy(self)
-        index = [int(e) for e in environments]
-        some.sources, some.rows = [self.sources[e] for e in index], self.rows[index]
-        return some
-
-    def join(self, others: Sequence[Avatars]) -> Avatars:
-        """Return the avatars of these and other environments."""
-        whole = copy.copy(self)
-        whole.sources = [row for one in (self, *others) for row in one.sources]
-        whole.rows = np.concatenate([one.rows for one in (self, *others)])
-        return whole
-
-    def put(self, environments: Sequence[int] | Ints, other: Avatars) -> None:
-        """Replace some environments by those of others."""
-        for k, e in enumerate(environments):
-            self.sources[int(e)], self.rows[int(e)] = other.sources[k], other.rows[k]
-
 
 def _turned(before: Floats, after: Floats) -> Floats:
     """Return the smaller turn [rad] from one heading to another, from -pi to pi."""
     return np.asarray(math.pi - (math.pi - (after - before)) % (2.0 * math.pi))
-
-
-def people_motions(world: Any) -> list[PeopleMotion]:
-    """Return the bodies of people in each environment, empty without bodies."""
-    if world._bodies:
-        return [one.people for one in world._bodies]
-    return [] if world.people is None else [world.people]
 
 
 def give_pose(world: Any, name: str, time: float, pose: BodyPose, environment: int = 0) -> None:
@@ -278,8 +253,7 @@ def give_pose(world: Any, name: str, time: float, pose: BodyPose, environment: i
     Raises:
         InputError: the avatar does not take samples.
     """
-    worlds = getattr(world, "worlds", None)
-    own, row = (world, environment) if worlds is None else (worlds[environment], 0)
+    own, row = world.part(environment)
     avatars = own.avatars
     if avatars is None or name not in avatars.names:
         raise InputError(f"there is no avatar {name!r}")

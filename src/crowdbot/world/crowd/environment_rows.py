@@ -13,12 +13,13 @@ from crowdbot.core import Scene, tree
 from crowdbot.models import CrowdModel, Mixture
 
 __all__ = [
+    "align_scenes",
     "join_models",
     "pad_ids",
-    "put_scene",
     "resize_scene",
     "set_models",
     "stack_scenes",
+    "with_common_time",
     "works_in_batches",
 ]
 
@@ -42,16 +43,10 @@ def stack_scenes(scenes: Sequence[Scene]) -> Scene:
     >>> stack_scenes([Scene.of([[0.0, 0.0]]), Scene.of([[1.0, 0.0], [2.0, 0.0]])]).active.tolist()
     [[True, False], [True, True]]
     """
-    return scenes[0] if len(scenes) == 1 else _with_common_time(tree.join(_aligned(scenes)), scenes[0])
+    return scenes[0] if len(scenes) == 1 else with_common_time(tree.join(align_scenes(scenes)), scenes[0])
 
 
-def put_scene(scene: Scene, index: NDArray[np.int64], rows: Scene) -> Scene:
-    """Replace the environments ``index`` of a scene; the scene with fewer agents is padded."""
-    whole, part = _aligned([scene, rows])
-    return _with_common_time(tree.put(whole, index, part), scene)
-
-
-def _aligned(scenes: Sequence[Scene]) -> list[Scene]:
+def align_scenes(scenes: Sequence[Scene]) -> list[Scene]:
     """Scenes without bodies, with equally many agents and the same memories.
 
     A memory that a scene lacks, such as that of pushes before the first one, is zero.
@@ -67,12 +62,12 @@ def _aligned(scenes: Sequence[Scene]) -> list[Scene]:
     return rows
 
 
-def _with_common_time(scene: Scene, first: Scene) -> Scene:
+def with_common_time(scene: Scene, first: Scene) -> Scene:
     """Scene with the bodies of the first one, and with one number as its time if all environments agree."""
     time = scene.time
     if isinstance(time, np.ndarray) and np.all(time == time[0]):
         time = float(time[0])
-    return scene.replace(time=time, bodies=first.bodies)
+    return scene.replace(time=time, bodies=first.bodies if scene.bodies is None else scene.bodies)
 
 
 def resize_scene(scene: Scene, agents: int) -> Scene:

@@ -48,7 +48,7 @@ class PeopleFlow:
     arrivals: Arrivals | None
     mixture: Mixture | None
     _turns: tuple[float, Numbers, Numbers, Floats, Floats] | None = field(default=None, init=False, repr=False)
-    storage = Storage(constants=("router", "journeys", "mixture"))
+    storage = Storage(constants=("router", "journeys", "mixture"), shared=("_turns",))
 
     @classmethod
     def of(

@@ -22,8 +22,6 @@ from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
 from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.planar_live_changes import (
-    check_robot_place,
-    chosen_environments,
     new_prop_name,
     prop_number,
     put_robot_at,
@@ -557,7 +555,7 @@ class PhysicsWorld(PlanarWorld):
             other = copy.deepcopy(self, known)
         finally:
             self._renderers = renderers
-        other.environment_time = other.environment_time.select([0])
+        other.environment_time.follow()
         return other
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: Any = None, **how: Any) -> None:
@@ -567,32 +565,16 @@ class PhysicsWorld(PlanarWorld):
             self.rigid.change(ghosts=self.ghosts)
             self._forget()
 
-    def add_robot(
-        self,
-        robot: Robot,
-        x: float,
-        y: float,
-        heading: float = 0.0,
-        *,
-        ghost: bool = False,
-        environments: Sequence[int] | None = None,
-    ) -> int:
-        """Add a robot, at rest on the floor; see :class:`World`."""
-        check_robot_place(robot, x, y, heading)
-        agent = self.scene.shape[1]
-        self.place_robot(agent, robot, (x, y, heading), ghost, bool(chosen_environments(1, environments)))
-        return agent
-
     def place_robot(
-        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, present: bool
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        """Make an agent without a body a robot, which is present or absent."""
+        """Make an agent without a body a robot; see :class:`World`."""
         place = (float(place[0]), float(place[1]), math.pi - (math.pi - float(place[2])) % (2.0 * math.pi))
-        if present:
+        if environments:
             starts = {**self.rigid.starts, agent: RobotStart(agent, robot, *place)}
             self.rigid.change(starts=starts, ghosts=[*self.rigid.ghosts, *([agent] if ghost else [])])
             self._at[agent] = place
-        put_robot_at(self, agent, robot, place, ghost, [0] if present else [])
+        put_robot_at(self, agent, robot, place, ghost, environments)
         if self.falling is not None:
             self.falling.grow(self.people, self.scene.shape[1])
         self._forget()

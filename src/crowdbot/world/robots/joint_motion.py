@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from crowdbot.core import InputError, did_you_mean
 
@@ -65,10 +65,9 @@ def move_joint(world: World, robot: int, joint: str, position: float, environmen
         position: target [rad or m].
         environment: index of the environment.
     """
-    found: Any = world
+    own, row = world.part(environment)
     if world.walls_fixed:
-        own = found.worlds[environment] if hasattr(found, "worlds") else found
         own.robot_body(robot).hold(joint, position)
-    elif found._bodies is not None:
-        bodies = found._bodies[environment]
+    elif own._bodies is not None:
+        bodies = own._bodies[row]
         bodies.joints = {**bodies.joints, robot: {**bodies.joints.get(robot, {}), joint: position}}

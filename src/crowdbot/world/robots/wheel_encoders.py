@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,9 +56,7 @@ def simulated_body(world: World, robot: int, environment: int) -> RobotBody | No
     """Return the rigid body of a robot in one environment of a physics world; None in the plane, or if it is absent."""
     if not world.walls_fixed:
         return None
-    found: Any = world
-    one = found.worlds[environment] if hasattr(found, "worlds") else found
-    body: RobotBody | None = one.robot_bodies.get(robot)
+    body: RobotBody | None = world.part(environment)[0].robot_bodies.get(robot)
     return body
 
 
