@@ -23,7 +23,7 @@ CROSS = """<trial name="cross" duration="8" step="0.1"><crowd type="orca"/>
 <navigator type="straight" speed="0.8"/></robot></trial>"""
 WIDE_URDF = """<robot name="wide"><link name="base"><inertial><mass value="60"/>
 <inertia ixx="2" iyy="4" izz="5" ixy="0" ixz="0" iyz="0"/></inertial>
-<collision><geometry><box size="0.96 0.6 0.4"/></geometry></collision></link></robot>"""
+<collision><geometry><box size="0.6 0.98 0.4"/></geometry></collision></link></robot>"""
 WIDE = '<robot name="wide" urdf="wide.urdf"><drive type="differential-drive"/></robot>'
 OVER = ("--over", "agent[p]/y=normal(5.4, 0.4)", "--over", "agent[p]/speed=uniform(0.8,1.2)")
 
@@ -72,7 +72,7 @@ def test_the_result_names_the_robot_and_a_passage_that_it_does_not_fit(
     ]
     assert main([*words, "--set", "duration=8", "--runs", "6", "--out", "out"]) == 0
     text = " ".join(capsys.readouterr().out.split())
-    narrow = "the narrowest passage on the way of the robot is 0.95 m wide: less than the diameter of its disc, 1.13 m"
+    narrow = "the narrowest passage on the way of the robot is 0.95 m wide: less than the width of the robot, 0.98 m"
     assert "doorway, straight on wide: collision" in text
     assert narrow in text
     assert "The failure probability is 1, 95 % interval" in text

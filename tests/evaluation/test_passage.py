@@ -1,4 +1,4 @@
-"""The remark on a robot whose outline fits through a passage, but not its disc."""
+"""The remark on a robot that is wider than a passage on its way."""
 
 import json
 
@@ -9,11 +9,8 @@ from crowdbot.evaluation import EvaluationPlan, load_evaluation, own_method
 from crowdbot.trials import load_trial, parse_trial
 
 SHORT = ["--set", "duration=0.2", "--seeds", "0:1", "--worst", "0"]
-REMARK = (
-    "the narrowest passage on the way of the robot is 0.95 m wide: less than the diameter of its disc, 1.20 m, and more"
-    " than the width of its outline, 0.60 m. In the planar world a robot is a disc, so it cannot reach its goal,"
-    " although its outline fits through."
-)
+WIDTH = "the narrowest passage on the way of the robot is 0.50 m wide: less than the width of the robot, 0.60 m"
+REMARK = WIDTH + ", so it cannot reach its goal."
 CORNER = """<trial name="corner" duration="5"><stage walkable="-5,-3 5,-3 5,3 -5,3"/><crowd type="orca"/>
 <robot type="qolo" x="-3" y="0"><goal x="3" y="-2.5" tolerance="0.5"/><navigator type="straight"/></robot></trial>"""
 
@@ -22,34 +19,41 @@ def remarks(trial, robot=""):
     return EvaluationPlan([trial], [own_method()], [robot]).cells[0].remarks
 
 
-def test_terminal_json_report_and_file_name_passage_disc_and_outline(tmp_path, capsys):
-    words = ["evaluate", "doorway", "--robots", "wheelchair, pepper", *SHORT]
-    assert main([*words, "--out", str(tmp_path)]) == 0
+def narrow(gap, robot="qolo"):
+    half = 0.5 * gap
+    walls = f'3 -5,3"><wall points="0,-3 0,{-half:g}"/><wall points="0,{half:g} 0,3"/></stage>'
+    return CORNER.replace('3 -5,3"/>', walls, 1).replace('"qolo"', f'"{robot}"')
+
+
+def test_terminal_json_report_and_file_name_passage_and_robot(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "corner.xml").write_text(narrow(0.5), encoding="utf-8")
+    words = ["evaluate", "corner.xml", "--robots", "wheelchair, pepper", *SHORT]
+    assert main([*words, "--out", "out"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert printed.count("Note on doorway on wheelchair: " + REMARK) == printed.count("Note on") == 1
-    assert (tmp_path / "report.html").read_text().count("Note: " + REMARK) == 1
-    cells = load_evaluation(tmp_path / "result.json").cells
+    assert printed.count("Note on corner on wheelchair: " + REMARK) == printed.count("Note on") == 1
+    assert (tmp_path / "out" / "report.html").read_text().count("Note: " + REMARK) == 1
+    cells = load_evaluation(tmp_path / "out" / "result.json").cells
     assert [cell.remarks for cell in cells] == [(REMARK,), ()]
     assert main([*words, "--json"]) == 0
     assert [cell["remarks"] for cell in json.loads(capsys.readouterr().out)["cells"]] == [[REMARK], []]
-
-
-def test_the_width_is_that_of_the_door():
-    (remark,) = remarks(load_trial("doorway", door=0.75), "wheelchair")
-    assert remark.startswith("the narrowest passage on the way of the robot is 0.75 m wide: less than")
 
 
 @pytest.mark.parametrize(
     ("values", "robot"),
     [
         ({}, ""),  # a disc without a type
-        ({"door": 1.3}, "wheelchair"),  # the disc fits
+        ({}, "wheelchair"),  # the outline fits, the disc does not
         ({"world": "physics"}, "wheelchair"),
-        ({"robot/ghost": True}, "wheelchair"),
     ],
 )
-def test_nothing_is_said_without_such_a_passage(values, robot):
+def test_nothing_is_said_where_the_robot_fits(values, robot):
     assert remarks(load_trial("doorway", values), robot) == ()
+
+
+def test_nothing_is_said_about_ghosts_and_in_the_physics_world():
+    for old, new in (('name="corner"', 'name="corner" world="physics"'), ('x="-3"', 'x="-3" ghost="true"')):
+        assert remarks(parse_trial(narrow(0.5).replace(old, new))) == ()
 
 
 SECOND = (
@@ -59,11 +63,11 @@ SECOND = (
 
 def test_every_robot_of_a_trial_is_named(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    text = CORNER.replace('3 -5,3"/>', '3 -5,3"><wall points="0,-3 0,-0.45"/><wall points="0,0.45 0,3"/></stage>', 1)
+    text = CORNER.replace('3 -5,3"/>', '3 -5,3"><wall points="0,-3 0,-0.28"/><wall points="0,0.28 0,3"/></stage>', 1)
     text = text.replace('"qolo"', '"pepper"').replace("</trial>", SECOND + "</trial>")
     (remark,) = remarks(parse_trial(text))
     start = (
-        "the narrowest passage on the way of robot 'second' is 0.90 m wide: less than the diameter of its disc, 1.20 m"
+        "the narrowest passage on the way of robot 'second' is 0.56 m wide: less than the width of the robot, 0.60 m"
     )
     assert remark.startswith(start)
     (tmp_path / "two.xml").write_text(text, encoding="utf-8")

@@ -10,7 +10,6 @@ from robot_logs import REGIONS, agents_of, log_of_paths, random_log, walk
 
 from crowdbot.core import InputError
 from crowdbot.metrics import (
-    FOOTPRINT_METRICS,
     IMPACT_METRICS,
     LOG_FAMILIES,
     NAVIGATION_METRICS,
@@ -46,7 +45,7 @@ def test_the_table_has_every_metric_once_with_its_definition():
         assert row.source
         assert row.needs
         assert row.correlates
-    for names in (NAVIGATION_METRICS, IMPACT_METRICS, FOOTPRINT_METRICS):
+    for names in (NAVIGATION_METRICS, IMPACT_METRICS):
         for name, (unit, meaning) in names.items():
             assert (table[name].unit, table[name].formula) == (unit, meaning.replace('"', "'"))
 

@@ -80,9 +80,9 @@ def print_table(
 
 def print_metrics(title: str, metrics: Mapping[str, float]) -> None:
     """Print the navigation metrics of an episode with their units."""
-    from crowdbot.metrics import FALL_METRICS, FOOTPRINT_METRICS, IMPACT_METRICS, NAVIGATION_METRICS
+    from crowdbot.metrics import FALL_METRICS, IMPACT_METRICS, NAVIGATION_METRICS
 
-    units = NAVIGATION_METRICS | IMPACT_METRICS | FALL_METRICS | FOOTPRINT_METRICS
+    units = NAVIGATION_METRICS | IMPACT_METRICS | FALL_METRICS
     rows = [
         (name.replace("_", " "), number(value), units.get(name.rpartition(".")[2], ("", ""))[0])
         for name, value in metrics.items()

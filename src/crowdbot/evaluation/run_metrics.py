@@ -70,13 +70,15 @@ def episode_log(episode: Episode) -> RobotLog:
         mass=float(robot.mass),
         height=float(robot.height),
         regions=REGIONS,
+        outline=robot.body.outline,
     )
 
 
 def shortest_path(trial: Trial, start: Floats, goal: Floats) -> Floats | None:
     """Return the shortest path ``[K, 2]`` [m] of the first robot around walls; None if there is none."""
     try:
-        planner = PathPlanner.for_stage(trial.stage.as_walls(), trial.robots[0].radius)
+        robot = trial.robots[0]
+        planner = PathPlanner.for_stage(trial.stage.as_walls(), robot.radius, half_width=robot.body.half_width)
         return np.concatenate([start[None], planner.waypoints(start, goal)])
     except InputError:
         return None

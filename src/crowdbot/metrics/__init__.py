@@ -8,7 +8,6 @@ from .coverage import ellipse_coverage
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
-from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .impacts import IMPACT_METRICS, Impact, impact_metrics
 from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval, corrected_interval, draw_counts, percentile_interval
@@ -57,7 +56,12 @@ from .social import (
     metric_table,
 )
 from .social.falls import FALL_METRICS, HIC15_LIMIT, FallOutcome, fall_hic15, fall_metrics
-from .step_clearance import step_clearance, step_wall_clearance
+from .step_clearance import (
+    step_clearance,
+    step_outline_clearance,
+    step_outline_wall_clearance,
+    step_wall_clearance,
+)
 from .tracking import (
     TRACKING_SCORES,
     ClearMot,
@@ -84,7 +88,6 @@ from .tracking import (
 __all__ = [
     "CONTACT_METRICS",
     "FALL_METRICS",
-    "FOOTPRINT_METRICS",
     "GAZE_HALF_ANGLE",
     "HEAD_HALF_ANGLE",
     "HIC15_LIMIT",
@@ -144,7 +147,6 @@ __all__ = [
     "fall_hic15",
     "fall_metrics",
     "fde",
-    "footprint_clearance",
     "gate_metrics",
     "gaze_dwell",
     "gospa",
@@ -186,6 +188,8 @@ __all__ = [
     "score",
     "stalled_time",
     "step_clearance",
+    "step_outline_clearance",
+    "step_outline_wall_clearance",
     "step_wall_clearance",
     "structural_similarity",
     "swept_clearance",

@@ -20,10 +20,11 @@ class ContactTracker:
     Args:
         robot: id of the robot.
         radius: radius of the robot [m].
+        outline: corners ``[K, 2]`` of the robot in its frame [m]; None for a disc.
     """
 
-    def __init__(self, robot: int, radius: float) -> None:
-        self.robot, self.radius = robot, radius
+    def __init__(self, robot: int, radius: float, outline: NDArray[np.float64] | None = None) -> None:
+        self.robot, self.radius, self.outline = robot, radius, outline
         self._before: AgentStates | None = None
         self._ended: list[ContactEvent] = []
         self._near: dict[int, tuple[float, float, list[AgentStates]]] = {}
@@ -54,7 +55,10 @@ class ContactTracker:
         """Return the states of the robot and one person; an absent person has the id -1."""
         ids = np.array([self.robot, person])
         position, velocity, here = states.at(ids)
-        return AgentStates(states.time, np.where(here, ids, -1), position, velocity, np.zeros(2), np.zeros(2))
+        heading = np.zeros(2)
+        if self.outline is not None and here[0]:
+            heading[0] = states.heading[np.searchsorted(states.ids, self.robot)]
+        return AgentStates(states.time, np.where(here, ids, -1), position, velocity, heading, np.zeros(2))
 
     def _events_of(self, person: int) -> list[ContactEvent]:
         _, radius, instants = self._near[person]
@@ -65,5 +69,7 @@ class ContactTracker:
             np.array([self.radius, radius]),
             np.stack([one.ids >= 0 for one in instants]),
             0,
+            np.array([one.heading[0] for one in instants]),
+            self.outline,
         )
         return [dataclasses.replace(event, person=person) for event in events]

@@ -9,6 +9,7 @@ import numpy as np
 
 from crowdbot.typing import Bools, Floats
 
+from .outline_clearance import outline_clearance, outline_touch
 from .proximity import JUMP, clearance, swept_clearance
 
 RELEASE = 0.05
@@ -58,13 +59,15 @@ def cause_of(normal: Floats, robot_velocity: Floats, person_velocity: Floats) ->
 
 
 def contact_events(
-    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int
-) -> tuple[ContactEvent, ...]:
+    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int,
+    heading: Floats | None = None, outline: Floats | None = None,
+) -> tuple[ContactEvent, ...]:  # fmt: skip
     """Return the contacts of the robot with all people, by first contact.
 
     An event begins when the swept clearance between two samples falls below 0, and ends when the clearance at the
     samples stays above 0.05 m for 0.5 s. Velocities at first contact are position differences between the two samples;
-    ``velocity`` is used only for contacts at the first sample.
+    ``velocity`` is used only for contacts at the first sample. With an ``outline`` ``[K, 2]`` [m] and headings ``[T]``
+    [rad], the robot is a polygon, otherwise a disc.
 
     >>> p = np.zeros((3, 2, 2)); p[:, 1, 0] = [0.6, 0.4, 0.6]
     >>> v, r, here = np.zeros((3, 2, 2)), np.array([0.25, 0.25]), np.ones((3, 2), bool)
@@ -72,14 +75,18 @@ def contact_events(
     >>> round(event.begin, 3), event.cause, round(event.impact_speed, 3), round(event.depth, 3)
     (0.05, 'person', 2.0, 0.1)
     """
-    swept = swept_clearance(times, position, radius, active, robot)
-    gap = clearance(position, radius, active, robot)
+    if outline is None or heading is None:
+        swept = swept_clearance(times, position, radius, active, robot)
+        gap = clearance(position, radius, active, robot)
+    else:
+        sizes = np.broadcast_to(radius, active.shape)
+        swept, gap, _ = outline_clearance(times, position, velocity, heading, sizes, active, robot, outline)
     found: list[ContactEvent] = []
     for person in np.flatnonzero(np.any(swept < 0.0, axis=0)):
         for first, last in contact_stretches(times, swept[:, person], gap[:, person]):
             deepest = -float(np.min(swept[first : last + 1, person]))
             begin, normal, own, other = _first_touch(
-                times, position, velocity, radius, active, robot, int(person), first
+                times, position, velocity, radius, active, robot, int(person), first, heading, outline
             )
             impact = max(0.0, float((own - other) @ normal))
             cause = cause_of(normal, own, other)
@@ -112,8 +119,9 @@ def contact_stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[i
 
 
 def _first_touch(
-    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int, person: int, k: int
-) -> tuple[float, Floats, Floats, Floats]:
+    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int, person: int, k: int,
+    heading: Floats | None, outline: Floats | None,
+) -> tuple[float, Floats, Floats, Floats]:  # fmt: skip
     """Return time, normal (robot to person) and both velocities at first contact, in the step that ends at k."""
     reach = float(radius[robot] + radius[person])
     away = position[k, person] - position[k, robot]
@@ -121,6 +129,15 @@ def _first_touch(
     begin = float(times[k])
     step = float(times[k] - times[k - 1]) if k > 0 else 0.0
     entered = k == 0 or not active[k - 1, person] or math.dist(*position[k - 1 : k + 1, person]) > JUMP * step
+    if outline is not None and heading is not None and np.isfinite(heading[k]):
+        b = k if entered else k - 1
+        turn = (float(heading[b if np.isfinite(heading[b]) else k]), float(heading[k]))
+        both = position[[b, k]][:, [robot, person]]
+        share, normal = outline_touch(both, turn, (float(radius[robot]), float(radius[person])), outline)
+        if not entered:
+            own, other = (both[1] - both[0]) / step
+            begin = float(times[b]) + share * step
+        return begin, normal, own, other
     if not entered:
         own = (position[k, robot] - position[k - 1, robot]) / step
         other = (position[k, person] - position[k - 1, person]) / step

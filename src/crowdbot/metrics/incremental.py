@@ -8,8 +8,8 @@ key                                value
 ``success``, ``collision``,        with an outcome given to :meth:`NavigationMetrics.result` (a run with one robot):
 ``timeout``, ``time_to_goal``      that of the run, judged at every time step. Otherwise judged from the records: the
                                    clearance to people and walls, swept between records, or ``contact`` of a record
-``contacts`` and its details,      from the clearance between discs at the records, also in the physics world
-``min_clearance``
+``contacts`` and its details,      from the clearance between people, who are discs, and the outline of the robot at the
+``min_clearance``                  records, also in the physics world; where its heading is unknown, the robot is a disc
 ``duration`` and everything else   from the records up to the first at the goal, the time limit or the end
 ``heading_change``                 from the headings; if unknown (NaN) from the direction of the velocity while moving
 ``radius`` of people               the radius in each record
@@ -30,7 +30,6 @@ from crowdbot.typing import Bools, Floats
 
 from .agent_states import AgentLog, AgentStates
 from .contact_tracker import ContactTracker
-from .footprint_clearance import FOOTPRINT_METRICS, footprint_clearance
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .proximity import personal_space_compliance, proxemic_shares
 from .record_clearance import log_clearance, record_clearance
@@ -118,8 +117,8 @@ class NavigationMetrics:
         ghost: whether the robot is a ghost, which passes through people and walls: the metrics of
             :data:`CONTACT_METRICS` are absent, and the outcome is never a collision.
         ignored: ids of agents that do not exist for this robot, such as other ghosts.
-        footprint: corners ``[N, 2]`` of the outline in the frame of the robot [m], for the metrics of
-            :data:`FOOTPRINT_METRICS`; None for a disc, which does not have them.
+        outline: corners ``[K, 2]`` of the convex outline in the frame of the robot, counter-clockwise [m], see
+            :attr:`crowdbot.world.Robot.outline`; None for a disc.
 
     >>> metrics = NavigationMetrics(0, 0.3, (1.0, 0.0), tolerance=0.2)
     >>> for k in range(3):
@@ -140,15 +139,15 @@ class NavigationMetrics:
         time_limit: float = math.inf,
         ghost: bool = False,
         ignored: Sequence[int] = (),
-        footprint: Floats | None = None,
+        outline: Floats | None = None,
     ) -> None:
-        self.footprint, self._outline = footprint, array("d")
+        self.outline = outline
         self.ghost, self.ignored = ghost, np.asarray(ignored, dtype=np.int64)
         self.robot, self.radius = robot, radius
         self.goal, self.tolerance, self.time_limit = np.asarray(goal, dtype=np.float64), tolerance, time_limit
         self.walls = np.zeros((0, 4)) if walls is None else walls
         self._samples = _Samples()
-        self._contacts = ContactTracker(robot, radius)
+        self._contacts = ContactTracker(robot, radius, outline)
         self._before: AgentStates | None = None
         self._decided: NavigationOutcome | None = None
         self._finished = False
@@ -184,8 +183,6 @@ class NavigationMetrics:
             raise InputError(f"navigation metrics: robot {self.robot} is absent at {states.time} s")
         swept, wall = self._measure(states, own)
         place = states.position[own]
-        if self.footprint is not None:
-            self._outline.append(footprint_clearance(states, own, self.footprint))
         self._before = states
         away = place - self.goal
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
@@ -213,7 +210,7 @@ class NavigationMetrics:
                 self.update(states, touched)
             return
         log, arrived = self._counted(log)
-        found = log_clearance(log, self.robot, self.radius, self.walls)
+        found = log_clearance(log, self.robot, self.radius, self.walls, self.outline)
         touched = contact[: len(log.times)] | (np.minimum(found.swept, found.wall) < 0.0)
         touched &= not self.ghost
         if (touched | arrived).any():
@@ -222,10 +219,6 @@ class NavigationMetrics:
         place, velocity = log.position[:, self.robot], log.velocity[:, self.robot]
         heading = np.array(list(map(_heading, log.heading[:, self.robot].tolist(), velocity)), dtype=np.float64)
         self._samples.extend(log.times, *place.T, *velocity.T, heading, *found[1:])
-        if self.footprint is not None:
-            for states in log.states():
-                own = int(np.searchsorted(states.ids, self.robot))
-                self._outline.append(footprint_clearance(states, own, self.footprint))
         self._update_contacts(log, found.closest)
         self._before = next(log.part(-1, None).states())
 
@@ -289,12 +282,11 @@ class NavigationMetrics:
             "mean_jerk": float(np.mean(jerks)) if len(jerks) else math.nan,
             "max_jerk": float(np.max(jerks)) if len(jerks) else math.nan,
             "heading_change": heading_change(heading[np.isfinite(heading)]),
-            **self._outline_metrics(),
         }
 
     def _measure(self, states: AgentStates, own: int) -> tuple[float, float]:
         """Keep the values of a record; return the swept clearance to people and that to walls."""
-        found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR)
+        found = record_clearance(self._before, states, own, self.radius, self.walls, NEAR, self.outline)
         if not self.ghost:
             self._contacts.update(states, found.near)
         place, velocity = states.position[own], states.velocity[own]
@@ -328,13 +320,6 @@ class NavigationMetrics:
             "max_penetration": max((event.depth for event in events), default=0.0),
             "max_impact_speed": max((event.impact_speed for event in events), default=0.0),
         }
-
-    def _outline_metrics(self) -> dict[str, float]:
-        if self.footprint is None:
-            return {}
-        known = np.array([one for one in self._outline if math.isfinite(one)])
-        values = (float(known.min()), float(known.mean())) if len(known) else (math.inf, math.inf)
-        return dict(zip(FOOTPRINT_METRICS, values, strict=True))
 
     def _time_to_collision(self) -> dict[str, float]:
         ttc = self._samples.collision_times

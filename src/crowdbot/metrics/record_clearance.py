@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,9 @@ from crowdbot.core import kernel
 from crowdbot.typing import Floats, Ints
 
 from .agent_states import AgentLog, AgentStates
+from .outline_clearance import outline_clearance
 from .proximity import JUMP
-from .step_clearance import step_wall_clearance, swept_length
+from .step_clearance import step_outline_wall_clearance, step_wall_clearance, swept_length
 
 REACH = 2.5
 """Radius [m] of the circle of the local density."""
@@ -83,7 +84,13 @@ def _measure(
 
 
 def record_clearance(
-    before: AgentStates | None, states: AgentStates, own: int, radius: float, walls: Floats, limit: float
+    before: AgentStates | None,
+    states: AgentStates,
+    own: int,
+    radius: float,
+    walls: Floats,
+    limit: float,
+    outline: Floats | None = None,
 ) -> RecordClearance:
     """Return the clearances of a robot at a record; motion since the record before is straight and uniform.
 
@@ -94,6 +101,7 @@ def record_clearance(
         radius: radius of the robot towards walls [m].
         walls: segments ``[N, 4]`` [m].
         limit: agents closer than this [m] are ``near``.
+        outline: corners ``[K, 2]`` of the robot in its frame [m]; None for a disc.
 
     >>> at = AgentStates(
     ...     0.0, np.arange(2), np.array([[0.0, 0.0], [2.0, 0.0]]), np.zeros((2, 2)), np.zeros(2), np.array([0.3, 0.2])
@@ -101,6 +109,10 @@ def record_clearance(
     >>> record_clearance(None, at, 0, 0.3, np.zeros((0, 4)), 1.0).nearest
     1.5
     """
+    if outline is not None:
+        row = log_clearance(_pair(before, states), own, radius, walls, outline)
+        near_ids = states.ids[row.closest[-1] < limit]
+        return RecordClearance(near_ids, *(float(column[-1]) for column in row[1:]))
     old = states if before is None else before
     jump = -1.0 if before is None else JUMP * (states.time - before.time)
     near = np.empty(len(states.ids), dtype=np.bool_)
@@ -113,6 +125,24 @@ def record_clearance(
         own_old = position if here[0] else np.zeros((1, 2))
     wall = step_wall_clearance(own_old, place[own : own + 1], np.array([radius]), walls)[0]
     return RecordClearance(states.ids[near], swept, nearest, count / (math.pi * REACH**2), ttc, float(wall))
+
+
+def _pair(before: AgentStates | None, states: AgentStates) -> AgentLog:
+    """Return the log of the agents of a record at the record before and now, or of a single record."""
+    old = states if before is None else before
+    place, velocity, here = old.at(states.ids)
+    index = np.minimum(np.searchsorted(old.ids, states.ids), len(old.ids) - 1)
+    heading = np.where(here, old.heading[index], np.nan)
+    everybody = np.ones(len(states.ids), dtype=np.bool_)
+    rows: tuple[Any, ...] = (
+        np.array([old.time, states.time]),
+        np.stack([place, states.position]),
+        np.stack([velocity, states.velocity]),
+        np.stack([heading, states.heading]),
+        np.stack([states.radius, states.radius]),
+        np.stack([here, everybody]),
+    )
+    return AgentLog(*(row[1 if before is None else 0 :] for row in rows))
 
 
 class LogClearance(NamedTuple):
@@ -170,7 +200,7 @@ def _measure_log(
         out[0, t], out[1, t], out[2, t], out[3, t] = least_swept, least, count, least_ttc
 
 
-def log_clearance(log: AgentLog, own: int, radius: float, walls: Floats) -> LogClearance:
+def log_clearance(log: AgentLog, own: int, radius: float, walls: Floats, outline: Floats | None = None) -> LogClearance:
     """Return the clearances of a robot at each record of a log, with the bits of :func:`record_clearance`.
 
     Args:
@@ -178,12 +208,15 @@ def log_clearance(log: AgentLog, own: int, radius: float, walls: Floats) -> LogC
         own: id of the robot.
         radius: radius of the robot towards walls [m].
         walls: segments ``[N, 4]`` [m].
+        outline: corners ``[K, 2]`` of the robot in its frame [m]; None for a disc.
 
     >>> place = np.array([[[0.0, 0.0], [2.0, 0.0]]])
     >>> log = AgentLog(np.zeros(1), place, 0 * place, np.zeros((1, 2)), np.array([[0.3, 0.2]]), np.ones((1, 2), bool))
     >>> log_clearance(log, 0, 0.3, np.zeros((0, 4))).nearest.tolist()
     [1.5]
     """
+    if outline is not None:
+        return _outline_log(log, own, radius, walls, outline)
     closest, out = np.empty(log.active.shape), np.empty((4, len(log.times)))
     jump = JUMP * np.diff(log.times, prepend=-math.inf)
     moving = np.ascontiguousarray(log.position), np.ascontiguousarray(log.velocity)
@@ -193,3 +226,26 @@ def log_clearance(log: AgentLog, own: int, radius: float, walls: Floats) -> LogC
     wall = step_wall_clearance(before, place, np.full(len(place), radius), walls)
     swept, nearest, count, ttc = out
     return LogClearance(closest, swept, nearest, count / (math.pi * REACH**2), ttc, wall)
+
+
+def _outline_log(log: AgentLog, own: int, radius: float, walls: Floats, outline: Floats) -> LogClearance:
+    heading = log.heading[:, own]
+    swept, gap, ttc = outline_clearance(
+        log.times, log.position, log.velocity, heading, log.radius, log.active, own, outline
+    )
+    place = log.position[:, own]
+    away = np.hypot(*np.moveaxis(log.position - place[:, None], -1, 0))
+    around = log.active & (away < REACH)
+    around[:, own] = False
+    old, turn = (np.concatenate([column[:1], column[:-1]]) for column in (place, heading))
+    known = np.isfinite(heading)
+    turn = np.where(np.isfinite(turn), turn, heading)
+    size = np.full(len(place), radius)
+    wall = step_wall_clearance(old, place, size, walls)
+    wall[known] = step_outline_wall_clearance(
+        old[known], turn[known], place[known], heading[known], size[known], outline, walls
+    )
+    least = (column.min(axis=1, initial=math.inf) for column in (np.minimum(swept, gap), gap, ttc))
+    near, nearest, soonest = least
+    density = around.sum(axis=1) / (math.pi * REACH**2)
+    return LogClearance(np.minimum(swept, gap), near, nearest, density, soonest, wall)

@@ -11,7 +11,7 @@ from .links.external_stack import Ros2Navigator, RosbridgeNavigator
 from .links.real_robot import RealRobotNavigator
 from .navigator import Navigator
 from .navigator_memory import copy_memory
-from .observation import DriveLimits, Observation, VisiblePeople
+from .observation import DISC, DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
@@ -34,6 +34,7 @@ from .wrappers.safety_layer import SafetyLayer, SafetyState
 from .wrappers.scan_map import ScanMapNavigator
 
 __all__ = [
+    "DISC",
     "LAYERS",
     "OWN_VALUES",
     "PERSON_VALUES",

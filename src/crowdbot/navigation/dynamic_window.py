@@ -83,6 +83,7 @@ def dynamic_window_twist(
         wall_arrays(observation.walls).segments,
         _limits(observation.limits, speed),
         *_weights(caution or STANDARD),
+        np.ascontiguousarray(observation.outline),
         out,
     )
     return Twist(*out[0].tolist())
@@ -110,7 +111,7 @@ def dynamic_window_twists(
     choose_twists(
         asking, batch.pose, batch.twist, batch.radius, wish,
         people.position, people.velocity, people.radius, people.seen, wall_arrays(batch.walls).segments,
-        _limits(batch.limits, speed), *_weights(caution or STANDARD), out,
+        _limits(batch.limits, speed), *_weights(caution or STANDARD), np.ascontiguousarray(batch.outline), out,
     )  # fmt: skip
 
 

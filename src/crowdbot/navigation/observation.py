@@ -18,12 +18,14 @@ from crowdbot.sensors import Odometry, Reading, main_scan
 from .goal_motion import SLOWING_TIME, TURN_GAIN
 from .track_history import HORIZON, TrackHistory, choose_predictor
 
-__all__ = ["DriveLimits", "Observation", "VisiblePeople"]
+__all__ = ["DISC", "DriveLimits", "Observation", "VisiblePeople", "wall_radius"]
 
 Floats = NDArray[np.float64]
 
 BY_INDEX: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 """Default of ids: people are numbered by their index."""
+DISC: Floats = np.zeros((0, 2))
+"""Outline of a disc: no corners."""
 AT_GOAL = (math.nan, math.nan)
 """Default of the waypoint: the goal."""
 LIMITS = ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration")
@@ -97,6 +99,8 @@ class Observation:
         tracks: past positions of the visible people, or None.
         predictor: default predictor of :meth:`forecast`, or None.
         predictor_step: time between rows of a forecast [s]; default: of the tracks.
+        outline: corners ``[K, 2]`` of the convex outline of the robot in its frame, counter-clockwise [m]; without
+            corners (default) the robot is a disc. ``radius`` is that of the circumscribed disc.
 
     Raises:
         InputError: a number is not finite or a radius, limit or ``dt`` is not above 0.
@@ -121,6 +125,7 @@ class Observation:
     tracks: TrackHistory | None = None
     predictor: Predictor | None = None
     predictor_step: float | None = None
+    outline: Floats = field(default_factory=lambda: DISC)
 
     def __post_init__(self) -> None:
         if self.waypoint is AT_GOAL:
@@ -151,6 +156,7 @@ class Observation:
         seen: NDArray[np.bool_] | None = None,
         sight: float = math.inf,
         scan: Reading | None = None,
+        outline: Floats | None = None,
         environment: int = 0,
         ids: NDArray[np.int64] | None = None,
         readings: Mapping[str, Reading] | None = None,
@@ -168,6 +174,7 @@ class Observation:
             seen: ``[A]`` visible agents, such as ``scan.visible_agents(A)[0]``; default all.
             sight: largest distance of visible agents, centre to centre [m].
             scan: latest scan.
+            outline: convex outline of the robot ``[K, 2]`` [m]; None for a disc.
             environment: index of the environment.
             ids: ``[A]`` identities of the agents; default: their indices in the scene.
             readings: latest reading of each sensor.
@@ -202,7 +209,13 @@ class Observation:
             readings={} if readings is None else readings,
             waypoint=AT_GOAL if waypoint is None else waypoint,
             tracks=tracks,
+            outline=DISC if outline is None else outline,
         )
+
+    @property
+    def wall_radius(self) -> float:
+        """Distance [m] from a straight path to a wall that the robot touches: half of its width, or its radius."""
+        return wall_radius(self.radius, self.outline)
 
     @property
     def position(self) -> Floats:
@@ -309,3 +322,8 @@ class Observation:
         if math.isinf(self.limits.max_acceleration):
             return math.inf
         return math.sqrt(1.6 * self.limits.max_acceleration * max(0.0, distance))
+
+
+def wall_radius(radius: float, outline: Floats) -> float:
+    """Return half of the width of an outline ``[K, 2]`` across its forward axis [m], or the radius of a disc."""
+    return float(np.abs(outline[:, 1]).max()) if len(outline) else radius

@@ -16,7 +16,7 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
 
-from .observation import DriveLimits, Observation, VisiblePeople
+from .observation import DISC, DriveLimits, Observation, VisiblePeople
 from .track_batch import TrackBatch
 from .track_history import HORIZON, SAME, TrackHistory, choose_predictor, forecast_problem
 
@@ -76,6 +76,7 @@ class ObservationBatch:
             not listed has a reading everywhere.
         tracks: N histories of the visible people, or empty; a sequence of histories becomes a :class:`TrackBatch`.
         predictor, predictor_step: default predictor of :meth:`forecast` and the time between its rows [s], or None.
+        outline: corners ``[K, 2]`` of the outline of the robot [m], see :class:`Observation`.
 
     Raises:
         InputError: a shape is wrong.
@@ -103,6 +104,7 @@ class ObservationBatch:
     tracks: TrackBatch | Sequence[TrackHistory] = ()
     predictor: Predictor | None = None
     predictor_step: float | None = None
+    outline: Floats = field(default_factory=lambda: DISC)
 
     def __post_init__(self) -> None:
         N = len(self.pose)
@@ -211,6 +213,7 @@ class ObservationBatch:
             tracks=self.tracks[k] if self.tracks else None,
             predictor=self.predictor,
             predictor_step=self.predictor_step,
+            outline=self.outline,
         )
 
     def forecast(

@@ -19,7 +19,7 @@ from .decisions import Decisions
 from .dynamic_window import dynamic_window_twist, dynamic_window_twists
 from .goal_motion import SLOWING_TIME, holonomic_twists
 from .navigator import Navigator
-from .observation import Observation
+from .observation import Observation, wall_radius
 from .observation_batch import ObservationBatch
 from .orca_search import choose_velocities
 from .wall_arrays import wall_arrays
@@ -131,6 +131,10 @@ class ORCANavigator(Navigator):
         except InputError:  # each decision reports it
             asking[:] = False
         out, people, limits = np.zeros((len(batch), 2)), batch.people, batch.limits
+        narrow, size = batch.radius, people.radius
+        if len(batch.outline):
+            narrow = np.full(len(batch), wall_radius(0.0, batch.outline))
+            size = size + (batch.radius - narrow)[:, None]
         numbers = np.array(
             [
                 min(self.speed, limits.max_speed),
@@ -144,8 +148,8 @@ class ORCANavigator(Navigator):
             ]
         )
         choose_velocities(
-            asking, batch.pose, batch.goal, batch.waypoint, batch.twist, batch.radius,
-            people.position, people.velocity, people.radius, people.seen,
+            asking, batch.pose, batch.goal, batch.waypoint, batch.twist, narrow,
+            people.position, people.velocity, size, people.seen,
             *wall_arrays(batch.walls).edges, numbers, round(self.max_neighbors), out,
         )  # fmt: skip
         return out
@@ -156,11 +160,13 @@ class ORCANavigator(Navigator):
         top = min(self.speed, observation.limits.max_speed)
         wish = self._wish(observation, top)
         external = np.full(len(people) + 1, self.share == 1.0)
+        # towards walls the robot is as wide as its outline, towards people it is its circumscribed disc
+        overhang = observation.radius - observation.wall_radius
         external[0] = False
         scene = Scene.of(
             _joined(observation.position, people.position),
             _joined(observation.velocity, people.velocity),
-            radius=np.concatenate([[observation.radius + self.safety], people.radius]),
+            radius=np.concatenate([[observation.wall_radius + self.safety], people.radius + overhang]),
             preferred_velocity=_joined(wish, people.velocity),
             max_speed=top,
             external=external,

@@ -20,6 +20,8 @@ MARGIN = 0.1
 """Default distance [m] between a robot on its path and the walls."""
 COLUMNS = 9
 """Numbers of the state of a path; NaN before it is planned."""
+BENT, NARROW = 8, 2.0
+"""Column of the state of a path that is at least this number for a path of half of the width."""
 MOST_POINTS = 10_000
 """Largest number of points of a path."""
 
@@ -44,21 +46,24 @@ class _EqualWalls:
 
 
 @functools.lru_cache(maxsize=16)
-def _shared(equal: _EqualWalls, radius: float, margin: float) -> PathPlanner:
-    return PathPlanner.of(equal.walls, radius, margin)
+def _shared(equal: _EqualWalls, radius: float, margin: float, half_width: float | None) -> PathPlanner:
+    return PathPlanner.of(equal.walls, radius, margin, half_width)
 
 
 @dataclass(frozen=True, eq=False)
 class PathPlanner:
-    """Shortest paths for the centre of a disc among walls, computed once for a stage; see :meth:`of`.
+    """Shortest paths for a robot among walls, computed once for a stage; see :meth:`of`.
 
     Paths consist of straight lines between points near the corners of walls (visibility graph). People are no
-    obstacles: avoiding them is the task of the navigator.
+    obstacles: avoiding them is the task of the navigator. Where the circumscribed disc of the robot has no path, the
+    path keeps half of the width of the robot from the walls: the outline passes along a straight line, and the
+    navigator checks its turns.
 
     Fields:
         radius: radius of the robot [m].
         margin: distance between a robot on its path and the walls [m].
         walls: the walls.
+        half_width: half of the width of the robot across its forward axis [m]; ``radius`` for a disc.
 
     >>> planner = PathPlanner.of([[(2.0, -3.0), (2.0, 1.0)]], radius=0.3, margin=0.1)
     >>> planner.waypoints((0.0, 0.0), (4.0, 0.0)).round(2).tolist()
@@ -69,9 +74,13 @@ class PathPlanner:
     margin: float
     walls: Walls = field(repr=False)
     _router: Router = field(repr=False)
+    half_width: float
+    _narrow: Router | None = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, walls: Walls | ArrayLike, radius: float, margin: float = MARGIN) -> PathPlanner:
+    def of(
+        cls, walls: Walls | ArrayLike, radius: float, margin: float = MARGIN, half_width: float | None = None
+    ) -> PathPlanner:
         """Create the planner of a robot from walls (anything that :meth:`crowdbot.core.Walls.of` takes).
 
         Raises:
@@ -80,11 +89,21 @@ class PathPlanner:
         check_number("PathPlanner", "radius", radius, "m", exclusive_min=0.0)
         check_number("PathPlanner", "margin", margin, "m", min=0.0)
         rings = Walls.of(walls)  # type: ignore[arg-type]
-        return cls(radius, margin, rings, Router.of(rings, radius + margin))
+        half_width = radius if half_width is None else half_width
+        check_number("PathPlanner", "half_width", half_width, "m", exclusive_min=0.0)
+        if half_width >= radius:
+            return cls(radius, margin, rings, Router.of(rings, radius + margin), radius)
+        narrow = Router.of(rings, half_width + margin)
+        try:
+            return cls(radius, margin, rings, Router.of(rings, radius + margin), half_width, narrow)
+        except InputError:  # the disc fits nowhere
+            return cls(radius, margin, rings, narrow, half_width)
 
     @classmethod
-    def for_stage(cls, walls: Walls, radius: float, margin: float = MARGIN) -> PathPlanner:
-        """Return the planner of :meth:`of`, computed once for equal walls, radius and margin.
+    def for_stage(
+        cls, walls: Walls, radius: float, margin: float = MARGIN, half_width: float | None = None
+    ) -> PathPlanner:
+        """Return the planner of :meth:`of`, computed once for equal walls, radius, margin and half of the width.
 
         Raises:
             InputError: as :meth:`of`.
@@ -94,7 +113,7 @@ class PathPlanner:
         True
         """
         edges = (walls.start, walls.end, walls.previous, walls.next, walls.convex)
-        return _shared(_EqualWalls(tuple(part.tobytes() for part in edges), walls), radius, margin)
+        return _shared(_EqualWalls(tuple(part.tobytes() for part in edges), walls), radius, margin, half_width)
 
     def waypoints(self, position: ArrayLike, goal: ArrayLike) -> Floats:
         """Return the points ``[K, 2]`` [m] of the shortest path after the position; the last point is the goal.
@@ -148,17 +167,43 @@ class PathPlanner:
     def _follow(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
         if not (np.all(np.isfinite(place)) and np.all(np.isfinite(aim))):
             raise InputError(f"PathPlanner: a position or goal is not finite: {place.tolist()} to {aim.tolist()}")
-        ways = self._router.follow(place[:, None], aim[:, None], None if path is None else path[:, None])
-        return Waypoints(ways.subgoal[:, 0], ways.way[:, 0], {})
+        narrow = np.zeros(len(place), np.bool_) if path is None else path[:, BENT] >= NARROW
+        if self._narrow is None or not narrow.any():
+            ways = self._router.follow(place[:, None], aim[:, None], None if path is None else path[:, None])
+            return Waypoints(ways.subgoal[:, 0], ways.way[:, 0], {})
+        if not narrow.all():
+            return self._follow_each(place, aim, path)
+        return self._follow_narrow(place, aim, path)
+
+    def _follow_narrow(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
+        """Follow paths on which half of the width of the robot fits."""
+        assert self._narrow is not None
+        known = None
+        if path is not None:
+            known = path.copy()
+            known[:, BENT] -= NARROW
+        ways = self._narrow.follow(place[:, None], aim[:, None], None if known is None else known[:, None])
+        rows = ways.way[:, 0].copy()
+        rows[:, BENT] += NARROW
+        return Waypoints(ways.subgoal[:, 0], rows, {})
 
     def _follow_each(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
-        """Follow the paths one by one, since one of them fails."""
+        """Follow the paths one by one, since one of them fails, or some are narrow."""
         N = len(place)
         found = Waypoints(np.full((N, 2), np.nan), np.full((N, COLUMNS), np.nan) if path is None else path.copy(), {})
         for k in range(N):
             try:
-                one = self._follow(place[k : k + 1], aim[k : k + 1], None if path is None else path[k : k + 1])
+                one = self._follow_one(place[k : k + 1], aim[k : k + 1], None if path is None else path[k : k + 1])
                 found.point[k], found.path[k] = one.point[0], one.path[0]
             except InputError as error:
                 found.failures[k] = InputError(f"PathPlanner: no path: {error}")
         return found
+
+    def _follow_one(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
+        """Follow a path ``[1, ...]``: of the disc, or where it has none, of half of the width."""
+        try:
+            return self._follow(place, aim, path)
+        except InputError:
+            if self._narrow is None or (path is not None and path[0, BENT] >= NARROW):
+                raise
+            return self._follow_narrow(place, aim, None)

@@ -13,7 +13,8 @@ Working memory of the search with S steps, which the kernels share:
 * ``miss [TURNS, FORWARD]``: difference from the desired velocity [m/s], inf for candidates that were tried;
 * ``passing [S, A, 6]`` and ``count [S]``: people within reach in each step, see :func:`_list_people`;
 * ``wall [M, 4]``: walls within reach, relative to the robot [m];
-* ``fades [S]``: weight of each step.
+* ``fades [S]``: weight of each step;
+* ``bearing [TURNS, S + 1]``: heading before each step and after the last one [rad].
 
 They are passed one by one, without slices and tuples: each access to an array of a tuple counts references.
 """
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.outlines import wall_gap
 
 __all__ = ["FORWARD", "MATCH", "SIGHT", "STEP", "TURNS", "WINDOW", "choose_twists"]
 
@@ -81,13 +83,16 @@ def _accelerate(forwards: Floats, forward: float, change: float, speeds: Floats)
 
 
 @kernel(inline=True)
-def _extend(j: int, steps: int, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats) -> None:
+def _extend(
+    j: int, steps: int, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats, bearing: Floats
+) -> None:
     """Compute the positions of all speeds at turn rate j, up to a number of steps."""
     heading, w, turn = course[j, 0], course[j, 1], turns[j]
     for k in range(int(course[j, 2]), steps):
         w += min(max(turn - w, -change), change)
         cos, sin = math.cos(heading + 0.5 * w * STEP), math.sin(heading + 0.5 * w * STEP)
         heading += w * STEP
+        bearing[j, k + 1] = heading
         for i in range(FORWARD):  # vector instructions: one number for each speed
             path[j, k + 1, 0, i] = path[j, k, 0, i] + speeds[k, i] * cos * STEP
             path[j, k + 1, 1, i] = path[j, k, 1, i] + speeds[k, i] * sin * STEP
@@ -96,8 +101,9 @@ def _extend(j: int, steps: int, turns: Floats, speeds: Floats, change: float, co
 
 @kernel
 def _begin(
-    heading: float, rate: float, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats
-) -> None:
+    heading: float, rate: float, turns: Floats, speeds: Floats, change: float, course: Floats, path: Floats,
+    bearing: Floats,
+) -> None:  # fmt: skip
     """Compute the positions of all candidates in the first :data:`MATCH` steps, from a heading and a turn rate.
 
     As long as two turn rates are out of reach on the same side, their courses are equal.
@@ -111,6 +117,7 @@ def _begin(
             if w != last or start != origin:
                 cos, sin, last, origin = math.cos(start + 0.5 * w * STEP), math.sin(start + 0.5 * w * STEP), w, start
             course[j, 0], course[j, 1] = start + w * STEP, w
+            bearing[j, k + 1] = course[j, 0]
             for i in range(FORWARD):
                 path[j, k + 1, 0, i] = path[j, k, 0, i] + speeds[k, i] * cos * STEP
                 path[j, k + 1, 1, i] = path[j, k, 1, i] + speeds[k, i] * sin * STEP
@@ -221,6 +228,7 @@ def _clearance(i: int, j: int, k: int, n: int, radius: float, passing: Floats, p
 def _search(
     turns: Floats, speeds: Floats, change: float, radius: float, weights: Floats, prune: bool, fades: Floats,
     passing: Floats, count: Counts, wall: Floats, walls: int, course: Floats, path: Floats, miss: Floats,
+    bearing: Floats, outline: Floats,
 ) -> tuple[int, int]:  # fmt: skip
     """Return speed and turn rate of the first candidate with the smallest cost, -1 if no cost is finite.
 
@@ -255,7 +263,7 @@ def _search(
         near, contact, touch, total = 0.0, 0.0, 0.0, difference
         if step >= 0:
             if course[j, 2] <= step:
-                _extend(j, step + 1, turns, speeds, change, course, path)
+                _extend(j, step + 1, turns, speeds, change, course, path, bearing)
             gap = _clearance(i, j, step, person, radius, passing, path)
             if gap < margin:
                 near = fades[step] * (margin - gap) / margin
@@ -265,7 +273,7 @@ def _search(
             if total > bound:
                 continue
         if course[j, 2] < steps:
-            _extend(j, steps, turns, speeds, change, course, path)
+            _extend(j, steps, turns, speeds, change, course, path, bearing)
         for k in range(steps):
             changed = False
             reach = margin * (1.0 - near / fades[k]) + SLACK
@@ -287,6 +295,12 @@ def _search(
                 nx, ny = nearest_on_segment(x, y, wall[n, 0], wall[n, 1], wall[n, 2], wall[n, 3])
                 gap = math.sqrt((nx - x) ** 2 + (ny - y) ** 2) - radius
                 excess = (wall_margin - gap) / wall_margin
+                if excess > touch and len(outline) > 0:  # the disc comes closer than the outline
+                    gap = wall_gap(
+                        x, y, bearing[j, k + 1], outline, 0, len(outline),
+                        wall[n, 0], wall[n, 1], wall[n, 2], wall[n, 3],
+                    )  # fmt: skip
+                    excess = (wall_margin - gap) / wall_margin
                 if excess > touch:
                     touch, changed = excess, True
             if changed:
@@ -302,7 +316,7 @@ def _search(
 def choose_twists(
     asking: NDArray[np.bool_], pose: Floats, twist: Floats, radius: Floats, wish: Floats,
     position: Floats, velocity: Floats, size: Floats, seen: NDArray[np.bool_], segments: Floats,
-    limits: Floats, weights: Floats, steps: int, prune: bool, out: Floats,
+    limits: Floats, weights: Floats, steps: int, prune: bool, outline: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Write the cheapest twists ``[N, 3]``.
 
@@ -316,12 +330,13 @@ def choose_twists(
         weights: seven weights of the cost.
         steps: number of simulated steps.
         prune: whether no weight is negative.
+        outline: ``[K, 2]`` corners of the robots towards walls [m]; without corners they are discs.
         out: ``[N, 3]``.
     """
     A = size.shape[1]
     forwards, turns, fades = np.empty(FORWARD), np.empty(TURNS), np.empty(steps)
     speeds, course, miss = np.empty((steps, FORWARD)), np.empty((TURNS, 3)), np.empty((TURNS, FORWARD))
-    path = np.zeros((TURNS, steps + 1, 2, FORWARD))
+    path, bearing = np.zeros((TURNS, steps + 1, 2, FORWARD)), np.empty((TURNS, steps + 1))
     passing, count, wall = np.empty((steps, A, 6)), np.empty(steps, np.int64), np.empty((len(segments), 4))
     for k in range(steps):
         fades[k] = 1.0 - k / steps
@@ -334,7 +349,7 @@ def choose_twists(
         _fill(forwards, _larger(0.0, _smaller(low, top)), _smaller(top, high))
         _fill(turns, _larger(-most, turn - spin * WINDOW), _smaller(most, turn + spin * WINDOW))
         _accelerate(forwards, forward, push * STEP, speeds)
-        _begin(pose[e, 2], turn, turns, speeds, spin * STEP, course, path)
+        _begin(pose[e, 2], turn, turns, speeds, spin * STEP, course, path, bearing)
         _compare(wish[e, 0], wish[e, 1], weights[FACING], course, path, miss)
         fastest = max(abs(forward), forwards[0], forwards[FORWARD - 1])
         reach = max(weights[MARGIN], weights[SKIN])
@@ -345,7 +360,7 @@ def choose_twists(
         walls = _list_walls(x, y, wall_reach if prune else math.inf, segments, wall)
         i, j = _search(
             turns, speeds, spin * STEP, radius[e], weights, prune, fades, passing, count, wall, walls, course, path,
-            miss,
+            miss, bearing, outline,
         )  # fmt: skip
         out[e, 0] = forwards[i] if i >= 0 else 0.0
         out[e, 1] = turns[j] if j >= 0 else 0.0

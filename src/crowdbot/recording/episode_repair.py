@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
+from crowdbot.core.outlines import outline_of
 from crowdbot.data import MCAP_MAGIC, McapReader, has_summary
 from crowdbot.messages import ContactEventRecord, FallRecord
 from crowdbot.metrics import NavigationMetrics, fall_metrics, impact_metrics
@@ -43,7 +44,7 @@ class EpisodeEnd:
                 float(one["tolerance"]),
                 walls=walls,
                 ghost=bool(one.get("ghost")),
-                footprint=np.array(one["footprint"], dtype=np.float64) if one.get("footprint") else None,
+                outline=outline_of(one["footprint"]) if one.get("footprint") else None,
                 ignored=[ghost for ghost in ghosts if ghost != int(one["id"])],
             )
             for one in self.robots

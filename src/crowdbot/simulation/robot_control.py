@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls, tree
 from crowdbot.navigation import (
+    DISC,
     AgentsInView,
     DriveLimits,
     ExternalNavigator,
@@ -259,6 +260,7 @@ class RobotControl:
             predictor=None if self.robot.predictor is None else self.robot.predictor.build(),
             predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),
+            outline=DISC if self.robot.body.outline is None else self.robot.body.outline,
         )
         if perceived:
             batch = dataclasses.replace(batch, people=view_tracks(perceived, world.times[environments]))
@@ -416,7 +418,7 @@ def next_waypoints(
         return planner.next_waypoints(place, goal, path), goal
     lines = doors.path_lines()
     walls = add_rings(planner.walls, lines) if lines else planner.walls
-    found = PathPlanner.for_stage(walls, planner.radius, planner.margin).next_waypoints(place, goal)
+    found = PathPlanner.for_stage(walls, planner.radius, planner.margin, planner.half_width).next_waypoints(place, goal)
     if not any(doors.blocked) or not found.failures:
         return found, goal
     point, own = found.point.copy(), goal.copy()

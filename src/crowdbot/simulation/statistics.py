@@ -148,7 +148,7 @@ def new_metrics(trial: Trial, ids: Sequence[int]) -> list[NavigationMetrics]:
             robot.goal.tolerance,
             walls=walls,
             ghost=robot.ghost,
-            footprint=robot.body.footprint if robot.type else None,
+            outline=robot.body.outline,
             ignored=[ghost for ghost in ghosts if ghost != own],
         )
         for own, robot in zip(ids, trial.robots, strict=True)

@@ -111,15 +111,17 @@ class WorldTemplate:
         first = len(people.first)
         spare = self._spare(seeds, first)
         scene = start_scenes(self.trial, people, spare, self._walls)
-        shape, robots = scene.shape[1], self._robots(first)
+        agents, robots = scene.shape[1], self._robots(first)
         drives = {agent: robot.drive for agent, robot in robots.items()}
         latency = {agent: robot.latency for agent, robot in robots.items()}
         ghosts = [agent for agent, robot in robots.items() if robot.ghost]
-        how = self._parameters(people.first, shape)
+        outlines = {agent: shape for agent, robot in robots.items() if (shape := robot.body.outline) is not None}
+        how = self._parameters(people.first, agents)
         slots = first + len(robots) + spare
         models = self._models(people, slots, seeds)
         seed = list(seeds) if len(seeds) > 1 else seeds[0]
-        world = planar_world(scene, models, slots, drives=drives, latency=latency, ghosts=ghosts, seed=seed, **how)
+        bodies = {"drives": drives, "latency": latency, "ghosts": ghosts, "outlines": outlines}
+        world = planar_world(scene, models, slots, seed=seed, **bodies, **how)
         self._set_off(world, people)
         return world
 

@@ -416,7 +416,9 @@ class RobotSpec:
         Raises:
             InputError: no space between the walls is wide enough for the robot.
         """
-        return None if self.planner is None else PathPlanner.for_stage(walls, self.radius, self.planner.margin)
+        if self.planner is None:
+            return None
+        return PathPlanner.for_stage(walls, self.radius, self.planner.margin, self.body.half_width)
 
     def stage_planner(self, stage: Any) -> PathPlanner | None:
         """Return the path planner of :meth:`path_planner` on a stage, around ground that the robot cannot pass."""

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, SpatialPose, Storage, Twist, Walls
-from crowdbot.metrics import step_wall_clearance
+from crowdbot.core.outlines import Outlines
+from crowdbot.metrics import step_outline_wall_clearance, step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 from crowdbot.world.robots.drives.drive import Drive, Twists
@@ -83,7 +84,7 @@ CHANGEABLE = (
 
 @dataclass
 class PlanarWorld(World):
-    """People and robots as discs in the plane, E environments at once.
+    """People as discs and robots as discs or convex outlines in the plane, E environments at once.
 
     People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
     crowd model, robots are external agents. Without ``contact`` there are no forces between bodies: overlaps are
@@ -117,6 +118,8 @@ class PlanarWorld(World):
         avatars: people and robots whose pose comes from outside; to the crowd model they are external.
         reactions: reactions of people to robots, on top of the crowd model.
         doors: doors, whose leaves are walls; E = 1.
+        outlines: convex outline ``[K, 2]`` [m] of robots in their frame, by agent, see :attr:`Robot.outline`; for
+            contacts with people, robots and walls. Others are discs. To the crowd model every robot is a disc.
 
     Attributes:
         environment_time: time of each environment, with the clock.
@@ -166,6 +169,7 @@ class PlanarWorld(World):
     avatars: Avatars | None = None
     reactions: RobotReactions | None = None
     doors: Doors | None = None
+    outlines: Mapping[int, Floats] = field(default_factory=dict)
     environment_time: EnvironmentTime = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -173,7 +177,7 @@ class PlanarWorld(World):
         constants=(
             "model", "drives", "dt", "seed", "leave_radius", "robot_margin", "router", "contact", "limits",
             "journeys", "sources", "exits", "portals", "script", "heading_jitter", "substeps", "latency", "ghosts",
-            "reactions", "joined", "_models", "_segments", "_surfaces", "_plain_router",
+            "reactions", "joined", "outlines", "_models", "_segments", "_surfaces", "_plain_router", "_outline_table",
         ),
     )  # fmt: skip
 
@@ -200,6 +204,7 @@ class PlanarWorld(World):
         self._segments: tuple[Walls, Floats] | None = None
         self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
         self._plain_router = self.router
+        self._outline_table: Outlines | None = None
         if self.doors is not None:
             show_doors(self)
 
@@ -296,7 +301,20 @@ class PlanarWorld(World):
         if self._segments is None or self._segments[0] is not walls:
             self._segments = (walls, walls.segments())
         before, now = self._previous.position[:, robot], self.scene.position[:, robot]
-        return step_wall_clearance(before, now, self.scene.radius[:, robot], self._segments[1])
+        radius = self.scene.radius[:, robot]
+        if robot not in self.outlines:
+            return step_wall_clearance(before, now, radius, self._segments[1])
+        turn, turned = self._previous.heading[:, robot], self.scene.heading[:, robot]
+        return step_outline_wall_clearance(before, turn, now, turned, radius, self.outlines[robot], self._segments[1])
+
+    def _agent_outlines(self) -> Outlines | None:
+        """Return the outlines of the agents for kernels; None if all are discs."""
+        if not self.outlines:
+            return None
+        agents = self.scene.shape[1]
+        if self._outline_table is None or len(self._outline_table.first) != agents + 1:
+            self._outline_table = Outlines.of(self.outlines, agents)
+        return self._outline_table
 
     def plane_scene(self, environment: int | None = None) -> Scene:
         """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
@@ -401,7 +419,8 @@ class PlanarWorld(World):
         if self.contact is None:
             return after
         self._surfaces = contact_surfaces(after, self._surfaces)
-        return resolve_overlaps(earlier, after, self.contact, self.dt / self.substeps, self._surfaces)
+        dt, outlines = self.dt / self.substeps, self._agent_outlines()
+        return resolve_overlaps(earlier, after, self.contact, dt, self._surfaces, outlines)
 
     def _check(self) -> None:
         check_arguments(
@@ -435,7 +454,7 @@ class PlanarWorld(World):
         return scene
 
     def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
-        return find_contacts(before, after, list(self.twists), self.ghosts)
+        return find_contacts(before, after, list(self.twists), self.ghosts, self._agent_outlines())
 
     def _push_people(self, earlier: Scene, crowd: Scene) -> Scene:
         """Return the scene after the motion by pushes in a step of the crowd."""

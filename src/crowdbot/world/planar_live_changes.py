@@ -38,6 +38,7 @@ __all__ = [
     "without_last",
 ]
 
+Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 FARTHEST = 1e6
 """Largest coordinate [m] of a robot."""
@@ -94,13 +95,16 @@ def widen(world: Any, agents: int) -> None:
         people.grow(agents)
 
 
-def absent_robot(world: Any, agent: int, drive: Drive, latency: float) -> None:
+def absent_robot(world: Any, agent: int, drive: Drive, latency: float, outline: Floats | None) -> None:
     """Make an agent without a body an absent robot in all environments."""
     widen(world, agent + 1)
     world.slots[:] = np.maximum(world.slots, agent + 1)
     world.drives, world.latency = {**world.drives, agent: drive}, {**world.latency, agent: latency}
     world.twists = {**world.twists, agent: Twists.of(Twist(), len(world.slots))}
     world.added_robots = world.added_robots | {agent}
+    if outline is not None:
+        world.outlines = {**world.outlines, agent: outline}
+        world._outline_table = None
     external = world.scene.external.copy()
     external[:, agent] = True
     world.scene = world.scene.replace(external=external)
@@ -110,7 +114,7 @@ def put_robot_at(
     world: Any, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
 ) -> None:
     """Make an agent a robot, at rest at a place x, y [m], heading [rad] in some environments, absent in the others."""
-    absent_robot(world, agent, robot.drive, robot.latency)
+    absent_robot(world, agent, robot.drive, robot.latency, robot.outline)
     x, y, heading = place
     flow, rows = world._traffic, list(environments)
     if rows:
@@ -157,7 +161,7 @@ def match_robots(world: Any, other: Any) -> None:
         for agent in sorted(one.added_robots - two.added_robots):
             if agent < two.scene.shape[1] and two.scene.active[:, agent].any():
                 raise InputError(f"agent {agent} is a robot in one environment and a person in another")
-            absent_robot(two, agent, one.drives[agent], one.latency.get(agent, 0.0))
+            absent_robot(two, agent, one.drives[agent], one.latency.get(agent, 0.0), one.outlines.get(agent))
 
 
 def keep_added_robots(world: Any, how: dict[str, Any]) -> dict[str, Any]:

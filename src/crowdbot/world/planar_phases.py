@@ -10,7 +10,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, Twist
-from crowdbot.metrics import step_clearance
+from crowdbot.core.outlines import Outlines
+from crowdbot.metrics import step_clearance, step_outline_clearance
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.contact import ContactModel
 from crowdbot.world.crowd.environment_rows import stack_scenes
@@ -105,10 +106,15 @@ def contact_surfaces(scene: Scene, known: ContactSurfaces | None) -> ContactSurf
 
 
 def resolve_overlaps(
-    earlier: Scene, after: Scene, contact: ContactModel, dt: float, surfaces: ContactSurfaces
+    earlier: Scene,
+    after: Scene,
+    contact: ContactModel,
+    dt: float,
+    surfaces: ContactSurfaces,
+    outlines: Outlines | None = None,
 ) -> Scene:
     """Return the scene with overlaps of people resolved, after a substep of ``dt`` [s]."""
-    return contact.resolve_overlaps(earlier, after, dt, surfaces)
+    return contact.resolve_overlaps(earlier, after, dt, surfaces, outlines)
 
 
 def initial_twist(scene: Scene, robot: int) -> Twists:
@@ -171,8 +177,12 @@ def move_robots(
     return after.replace(position=position, velocity=velocity, heading=heading), new
 
 
-def find_contacts(before: Scene, after: Scene, robots: Sequence[int], ghosts: Collection[int]) -> tuple[Contact, ...]:
+def find_contacts(
+    before: Scene, after: Scene, robots: Sequence[int], ghosts: Collection[int], outlines: Outlines | None = None
+) -> tuple[Contact, ...]:
     """Return the pairs of a robot and another agent with negative clearance during a step, each once, in order.
+
+    Agents without ``outlines`` are discs.
 
     >>> start = Scene.of([[0.0, 0.0], [1.0, 0.0]], radius=0.3)
     >>> find_contacts(start, start.replace(position=[[[0.5, 0.0], [1.0, 0.0]]]), [0], ())[0].other
@@ -180,7 +190,13 @@ def find_contacts(before: Scene, after: Scene, robots: Sequence[int], ghosts: Co
     """
     found: list[Contact] = []
     for number, robot in enumerate(robots):
-        gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
+        if outlines is None:
+            gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
+        else:
+            gap, least = step_outline_clearance(
+                before.position, before.heading, after.position, after.heading, after.radius, after.active, robot,
+                outlines,
+            )  # fmt: skip
         if least < 0.0 and robot not in ghosts:
             gap[:, list(robots[: number + 1])] = math.inf
             found += [Contact(e, robot, a, float(gap[e, a])) for e, a in np.argwhere(gap < 0.0).tolist()]

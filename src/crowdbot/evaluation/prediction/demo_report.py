@@ -124,9 +124,9 @@ def _prediction_table(predicted: Sequence[PredictionResult], future: Windows) ->
 
 
 def _navigation_table(episode: Episode) -> str:
-    from crowdbot.metrics import FALL_METRICS, FOOTPRINT_METRICS, IMPACT_METRICS, NAVIGATION_METRICS
+    from crowdbot.metrics import FALL_METRICS, IMPACT_METRICS, NAVIGATION_METRICS
 
-    known = NAVIGATION_METRICS | IMPACT_METRICS | FALL_METRICS | FOOTPRINT_METRICS
+    known = NAVIGATION_METRICS | IMPACT_METRICS | FALL_METRICS
     rows = "".join(
         f"<tr><td>{html.escape(name.replace('_', ' '))}</td><td>{_format_value(value)}</td><td>{html.escape(unit)}</td>"
         f"<td>{html.escape(words)}</td></tr>"

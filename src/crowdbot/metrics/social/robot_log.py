@@ -14,6 +14,7 @@ from crowdbot.core import InputError
 from crowdbot.metrics.agent_states import AgentLog
 from crowdbot.metrics.contacts import ContactEvent, contact_events
 from crowdbot.metrics.motion import STALL_SPEED
+from crowdbot.metrics.outline_clearance import OutlineClearance, outline_clearance
 from crowdbot.metrics.proximity import clearance, swept_clearance, time_to_collision
 from crowdbot.typing import Bools, Floats
 
@@ -45,6 +46,7 @@ class RobotLog:
         mass, height: of the robot [kg], [m]; NaN if unknown.
         groups: indices of the members of each group; None to detect them.
         regions: limits of body regions by name.
+        outline: corners ``[K, 2]`` of the robot in its frame [m], for clearances to people and walls; None for a disc.
 
     Raises:
         InputError: shapes do not match, times do not increase, or a value of the robot is not finite.
@@ -77,6 +79,7 @@ class RobotLog:
     height: float = math.nan
     groups: Sequence[Sequence[int]] | None = None
     regions: Mapping[str, BodyRegion] = dataclasses.field(default_factory=dict)
+    outline: Floats | None = None
 
     def __post_init__(self) -> None:
         count, people = len(self.times), self.present.shape[1:]
@@ -166,16 +169,30 @@ class RobotLog:
         )
 
     @functools.cached_property
+    def _clearances(self) -> OutlineClearance:
+        """Clearances and times to collision of each person ``[T, P]``; infinite if absent."""
+        position, velocity, radius, active = self.all_positions
+        own = len(radius) - 1
+        if self.outline is None:
+            rows = (
+                swept_clearance(self.times, position, radius, active, own),
+                np.asarray(clearance(position, radius, active, own)),
+                time_to_collision(position, velocity, radius, active, own),
+            )
+        else:
+            sizes = np.broadcast_to(radius, active.shape)
+            rows = outline_clearance(self.times, position, velocity, self.heading, sizes, active, own, self.outline)
+        return OutlineClearance(*(row[:, :-1] for row in rows))
+
+    @functools.cached_property
     def gap(self) -> Floats:
         """Clearance of each person ``[T, P]`` [m], infinite if absent."""
-        position, _, radius, active = self.all_positions
-        return np.asarray(clearance(position, radius, active, len(radius) - 1)[:, :-1])
+        return self._clearances.gap
 
     @functools.cached_property
     def least_gap(self) -> Floats:
         """Smallest clearance of each person since the sample before ``[T, P]`` [m], infinite if absent."""
-        position, _, radius, active = self.all_positions
-        return swept_clearance(self.times, position, radius, active, len(radius) - 1)[:, :-1]
+        return self._clearances.swept
 
     @functools.cached_property
     def nearest(self) -> Floats:
@@ -185,8 +202,7 @@ class RobotLog:
     @functools.cached_property
     def ttc(self) -> Floats:
         """Time to collision with each person ``[T, P]`` [s]; infinite without a collision."""
-        position, velocity, radius, active = self.all_positions
-        return time_to_collision(position, velocity, radius, active, len(radius) - 1)[:, :-1]
+        return self._clearances.ttc
 
     @functools.cached_property
     def contacts(self) -> tuple[ContactEvent, ...]:
@@ -196,8 +212,9 @@ class RobotLog:
         if len(met) == 1:
             return ()
         found = contact_events(
-            self.times, position[:, met], velocity[:, met], radius[met], active[:, met], len(met) - 1
-        )
+            self.times, position[:, met], velocity[:, met], radius[met], active[:, met], len(met) - 1,
+            self.heading, self.outline,
+        )  # fmt: skip
         return tuple(dataclasses.replace(one, person=int(met[one.person])) for one in found)
 
     @functools.cached_property

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.metrics.contacts import contact_stretches
 from crowdbot.metrics.proximity import swept_distance, wall_clearance
-from crowdbot.metrics.step_clearance import step_wall_clearance
+from crowdbot.metrics.step_clearance import step_outline_wall_clearance, step_wall_clearance
 from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
@@ -58,13 +58,27 @@ def count_failures_to_progress(times: Floats, distance: Floats) -> float:
 
 
 def _wall_distance(log: RobotLog) -> Floats:
+    if log.outline is not None:
+        return _outline_distance(log, np.arange(len(log.times)))
     return step_wall_clearance(log.position, log.position, np.full(len(log.times), log.radius), log.walls)
+
+
+def _outline_distance(log: RobotLog, before: NDArray[np.int64]) -> Floats:
+    """Return the clearance of the outline to walls from the rows ``before`` to all rows ``[T]`` [m]."""
+    size, outline = np.full(len(log.times), log.radius), log.outline
+    assert outline is not None
+    return step_outline_wall_clearance(
+        log.position[before], log.heading[before], log.position, log.heading, size, outline, log.walls
+    )
 
 
 def _wall_contacts(log: RobotLog) -> float:
     if not len(log.walls):
         return 0.0
-    swept = wall_clearance(log.position, log.radius, log.walls)
+    if log.outline is None:
+        swept = wall_clearance(log.position, log.radius, log.walls)
+    else:
+        swept = _outline_distance(log, np.maximum(np.arange(len(log.times)) - 1, 0))
     return float(len(contact_stretches(log.times, swept, _wall_distance(log))))
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Twist
+from crowdbot.core import Twist, kernel
+from crowdbot.core.outlines import wall_gap
 from crowdbot.navigation.batch_rows import drive_numbers
 from crowdbot.navigation.dynamic_window import dynamic_window_twist
 from crowdbot.navigation.goal_motion import holonomic_twists
 from crowdbot.navigation.observation import Observation
 
-__all__ = ["move_with", "vectors_from_walls", "wall_gaps"]
+__all__ = ["move_with", "robot_wall_gaps", "vectors_from_walls", "wall_gaps"]
 
 Floats = NDArray[np.float64]
 
@@ -42,6 +43,35 @@ def wall_gaps(points: Floats, segments: Floats, radius: float) -> Floats:
         return np.full(len(points), np.inf)
     away = vectors_from_walls(points, segments)
     return np.asarray(np.hypot(away[..., 0], away[..., 1]).min(axis=1) - radius)
+
+
+def robot_wall_gaps(observation: Observation, points: Floats, heading: Floats, segments: Floats) -> Floats:
+    """Return the clearance ``[P]`` [m] of the robot, a disc or an outline, to the nearest wall; inf without walls.
+
+    Args:
+        observation: what the robot knows.
+        points, heading: poses ``[P, 2]`` [m], ``[P]`` [rad].
+        segments: ``[M, 4]`` x, y, x, y [m].
+    """
+    if not len(observation.outline) or not len(segments):
+        return wall_gaps(points, segments, observation.radius)
+    out = np.empty(len(points))
+    arrays = map(np.ascontiguousarray, (points, heading, segments, observation.outline))
+    place, turn, walls, outline = arrays
+    _outline_gaps(place, turn, walls, outline, out)
+    return out
+
+
+@kernel
+def _outline_gaps(place: Floats, turn: Floats, walls: Floats, outline: Floats, out: Floats) -> None:
+    for p in range(len(place)):
+        out[p] = np.inf
+        for m in range(len(walls)):
+            gap = wall_gap(
+                place[p, 0], place[p, 1], turn[p], outline, 0, len(outline),
+                walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3],
+            )  # fmt: skip
+            out[p] = min(out[p], gap)
 
 
 def move_with(observation: Observation, wish: Floats, speed: float) -> Twist:

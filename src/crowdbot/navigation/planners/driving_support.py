@@ -49,7 +49,7 @@ class RDSNavigator(Navigator):
         wall_horizon: the same for walls [s].
         margin: clearance that is kept [m].
         front, rear: ends of the axis of the capsule, ahead of and behind the centre [m].
-        width: diameter of the capsule [m]; 0 takes that of the robot's bounding disc.
+        width: diameter of the capsule [m]; 0 takes the capsule, or the disc, of the robot's own shape.
         lead: distance of the reference point ahead of the centre [m].
 
     Source: Gonon, Paez-Granados, Billard 2021, doi:10.1109/LRA.2021.3068660. There the bounding shape is any convex
@@ -101,8 +101,12 @@ class RDSNavigator(Navigator):
         moving = people.velocity @ frame.T
         walls = ((segments.reshape(-1, 2) - (x, y)) @ frame.T).reshape(-1, 4)
         twist, lead = observation.twist, 0.0 if limits.holonomic else self.lead
-        radius = (0.5 * self.width or observation.radius) + self.margin
-        shape = np.array([-self.rear, self.front, radius, lead])
+        rear, front, radius = self.rear, self.front, 0.5 * self.width or observation.wall_radius
+        if not self.width and len(observation.outline):
+            rear = max(0.0, -float(observation.outline[:, 0].min()) - radius)
+            front = max(0.0, float(observation.outline[:, 0].max()) - radius)
+        radius += self.margin
+        shape = np.array([-rear, front, radius, lead])
         times = np.array([self.horizon, self.wall_horizon, max(observation.dt, OVERLAP_TIME)])
         now = np.array([twist.forward, twist.turn, twist.left])
         wish = self._wish(observation, top, lead)

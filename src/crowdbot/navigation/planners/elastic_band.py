@@ -133,7 +133,7 @@ class TimeElasticBandNavigator(Navigator):
             np.ascontiguousarray(people.velocity[near]),
             np.ascontiguousarray(reach[near]),
             np.ascontiguousarray(segments - np.tile(here, 2)),
-            float(observation.radius + self.wall_margin),
+            float(observation.wall_radius + self.wall_margin),
             weights,
         )
 
@@ -143,9 +143,9 @@ class TimeElasticBandNavigator(Navigator):
         times = interval * np.arange(1, POINTS + 1)
         away = band[1:, None] + here - people.position - times[:, None, None] * people.velocity
         meets = (np.hypot(away[..., 0], away[..., 1]) < people.radius + observation.radius).any(axis=1)
-        inside = float(wall_gaps(here[None], wall_arrays(observation.walls).segments, observation.radius)[0]) < 0.0
+        inside = float(wall_gaps(here[None], wall_arrays(observation.walls).segments, observation.wall_radius)[0]) < 0.0
         if not inside:
-            gap = wall_gaps(band[1:] + here, wall_arrays(observation.walls).segments, observation.radius)
+            gap = wall_gaps(band[1:] + here, wall_arrays(observation.walls).segments, observation.wall_radius)
             meets |= gap < 0.0
         if not meets.any():
             return math.inf

@@ -13,7 +13,7 @@ from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
 
-from .clearance import wall_gaps
+from .clearance import robot_wall_gaps, wall_gaps
 from .plan_costs import contact_probability, progress_cost, space_lack
 from .rollout import roll_out
 
@@ -98,7 +98,7 @@ class MPCNavigator(Navigator):
         rollout = roll_out(observation, self.speed, steps, STEP)
         cost = progress_cost(rollout, min(self.speed, observation.limits.max_speed), self.smoothness)
         cost += self._people(observation, rollout.position)
-        cost += self._walls(observation, rollout.position)
+        cost += self._walls(observation, rollout.position, rollout.heading)
         return Twist(*rollout.first[int(np.argmin(cost))].tolist())
 
     def _people(self, observation: Observation, position: Floats) -> Floats:
@@ -140,12 +140,13 @@ class MPCNavigator(Navigator):
         pace = np.minimum(np.hypot(*people.velocity[near].T) / WALKING, 1.0)
         return places[:, :, near], people.radius[near], weight, pace
 
-    def _walls(self, observation: Observation, position: Floats) -> Floats:
-        """Return the cost ``[C]`` of paths ``[C, T, 2]`` in walls or in their margin."""
+    def _walls(self, observation: Observation, position: Floats, heading: Floats) -> Floats:
+        """Return the cost ``[C]`` of paths ``[C, T, 2]`` with headings ``[C, T]`` in walls or in their margin."""
         segments, here = wall_arrays(observation.walls).segments, observation.position[None]
         reach = self.speed * self.horizon + self.wall_margin
         near = [wall_gaps(here, row[None], observation.radius)[0] < reach for row in segments]
-        gap = wall_gaps(position.reshape(-1, 2), segments[np.array(near, dtype=np.bool_)], observation.radius)
+        reached = segments[np.array(near, dtype=np.bool_)]
+        gap = robot_wall_gaps(observation, position.reshape(-1, 2), heading.reshape(-1), reached)
         if not math.isfinite(gap[0]):
             return np.zeros(len(position))
         depth = np.maximum(self.wall_margin - gap, 0.0).reshape(position.shape[:2])

@@ -89,7 +89,7 @@ class PotentialFieldNavigator(Navigator):
             observation.position - people.position, people.radius + observation.radius, self.influence
         )
         away = vectors_from_walls(observation.position[None], walls)[0]
-        force += self._repulsion(away, np.full(len(away), observation.radius), self.wall_influence)
+        force += self._repulsion(away, np.full(len(away), observation.wall_radius), self.wall_influence)
         return np.asarray(towards * (top / max(float(np.hypot(*towards)), TINY)) + force / self.damping)
 
     def _repulsion(self, away: Floats, size: Floats, influence: float) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose, Twist, check_number, kernel
+from crowdbot.core.outlines import point_to_outline
 from crowdbot.navigation.action import Action
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
@@ -112,6 +113,10 @@ class PredictedOccupancyNavigator(Navigator):
         sigma: Floats = self.uncertainty + self.growth * STEP * np.arange(1.0, steps + 1.0)
         for ranges, share in zip(forecast.ranges, forecast.weight.tolist(), strict=True):
             gap = _gaps(places, np.ascontiguousarray(ranges), ray, origin, reach) - observation.radius
+            if len(observation.outline):
+                corner = np.ascontiguousarray(observation.outline)
+                turns = np.ascontiguousarray(rollout.heading)
+                _outline_gaps(places, turns, np.ascontiguousarray(ranges), ray, origin, reach, corner, gap)
             meets, lack = contact_probability(gap, self.margin, sigma), space_lack(gap, self.space)
             cost += share * (self.risk * meets + self.comfort * lack.mean(axis=1))
         return Twist(*rollout.first[int(np.argmin(cost))].tolist())
@@ -144,3 +149,27 @@ def _gaps(places: Floats, ranges: Floats, ray: Floats, origin: Floats, reach: fl
                 least = min(least, (x[k] - places[c, t, 0]) ** 2 + (y[k] - places[c, t, 1]) ** 2)
             gap[c, t] = math.sqrt(least)
     return gap
+
+
+@kernel
+def _outline_gaps(
+    places: Floats, turns: Floats, ranges: Floats, ray: Floats, origin: Floats, reach: float, corner: Floats,
+    gap: Floats,
+) -> None:  # fmt: skip
+    """Write the distance ``[C, T]`` [m] of an outline at places with headings ``[C, T]``; see :func:`_gaps`."""
+    radius = 0.0
+    for k in range(len(corner)):
+        radius = max(radius, math.hypot(corner[k, 0], corner[k, 1]))
+    gap[:] = np.inf
+    for t in range(places.shape[1]):
+        for r in range(len(ray)):
+            if ranges[t, r] > reach:
+                continue
+            x, y = origin[0] + ranges[t, r] * ray[r, 0], origin[1] + ranges[t, r] * ray[r, 1]
+            for c in range(len(places)):
+                dx, dy = x - places[c, t, 0], y - places[c, t, 1]
+                far = gap[c, t] + radius
+                if dx * dx + dy * dy < far * far:
+                    cos, sin = math.cos(turns[c, t]), math.sin(turns[c, t])
+                    px, py = cos * dx + sin * dy, cos * dy - sin * dx
+                    gap[c, t] = min(gap[c, t], point_to_outline(px, py, corner, 0, len(corner))[0])

@@ -36,6 +36,8 @@ class PlanMotions(NamedTuple):
     """``[C, 3]`` forward, turn, left that the plan begins with."""
     position: Floats
     """``[C, T, 2]`` [m]."""
+    heading: Floats
+    """``[C, T]`` [rad]."""
     remaining: Floats
     """``[C, T]`` length of the path to the goal that is left [m]."""
     change: Floats
@@ -74,6 +76,7 @@ def roll_out(observation: Observation, speed: float, steps: int, step: float) ->
     way, goal = np.array(observation.waypoint), np.array(observation.goal)
     passed = np.full(C, math.dist(observation.waypoint, observation.goal) == 0.0)
     beyond = math.dist(observation.waypoint, observation.goal)
+    headings = np.empty((C, steps))
     position, remaining, first, change = np.empty((C, steps, 2)), np.empty((C, steps)), np.empty((C, 3)), np.zeros(C)
     for k in range(steps):
         towards = np.where(passed[:, None], goal, way) - place
@@ -92,8 +95,8 @@ def roll_out(observation: Observation, speed: float, steps: int, step: float) ->
         distance = np.hypot(*ahead.T)
         remaining[:, k] = distance + np.where(passed, 0.0, beyond)
         passed = passed | (distance < PASSED)
-        position[:, k] = place
-    return PlanMotions(first, position, remaining, change)
+        position[:, k], headings[:, k] = place, heading
+    return PlanMotions(first, position, headings, remaining, change)
 
 
 def _motion(observation: Observation) -> Floats:

@@ -121,5 +121,5 @@ class SocialForceNavigator(Navigator):
         """Return the acceleration ``[2]`` by walls [m/s2]."""
         away = vectors_from_walls(observation.position[None], wall_arrays(observation.walls).segments)[0]
         near = np.maximum(np.hypot(*away.T), TINY)
-        steep = np.minimum((observation.radius - near) / self.wall_range, STEEPEST)
+        steep = np.minimum((observation.wall_radius - near) / self.wall_range, STEEPEST)
         return np.asarray(((self.wall_strength * np.exp(steep) / near)[:, None] * away).sum(axis=0))

@@ -15,7 +15,7 @@ from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import DriveLimits, Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
 
-from .clearance import wall_gaps
+from .clearance import robot_wall_gaps, wall_gaps
 
 __all__ = ["DynamicWindowNavigator"]
 
@@ -92,7 +92,8 @@ class DynamicWindowNavigator(Navigator):
         top = min(self.speed, limits.max_speed)
         twists = window_twists(now, limits, top, self.window)
         points, angle = _arcs(observation, twists, max(2, round(self.look / STEP)))
-        free = self._free_times(observation, points)
+        heading = observation.heading + twists[:, 1, None] * STEP * np.arange(1, points.shape[1] + 1)
+        free = self._free_times(observation, points, heading)
         size = np.hypot(twists[:, 0], twists[:, 2])
         braking = min(limits.max_acceleration, EAGER)
         stops = size <= 2.0 * braking * np.maximum(free - STEP, 0.0)
@@ -112,8 +113,8 @@ class DynamicWindowNavigator(Navigator):
             turn = observation.turn_by(observation.direction_to(observation.waypoint)) if size[best] > 0.05 else 0.0
         return Twist(forward, turn, left)
 
-    def _free_times(self, observation: Observation, points: Floats) -> Floats:
-        """Return the times ``[C]`` [s] to the first contact on paths ``[C, T, 2]``; inf without contact."""
+    def _free_times(self, observation: Observation, points: Floats, heading: Floats) -> Floats:
+        """Return the times ``[C]`` [s] to the first contact on paths ``[C, T, 2]`` with headings ``[C, T]``, or inf."""
         people, (C, T) = observation.people, points.shape[:2]
         times = STEP * np.arange(1, T + 1)
         there = people.position + times[:, None, None] * people.velocity
@@ -121,8 +122,8 @@ class DynamicWindowNavigator(Navigator):
         gap = np.hypot(away[..., 0], away[..., 1]) - people.radius - observation.radius
         meets = (gap < np.minimum(self.margin, np.maximum(observation.clearances, 0.0))).any(axis=2)
         near = _near_walls(observation, self.look)
-        walls = wall_gaps(points.reshape(-1, 2), near, observation.radius).reshape(C, T)
-        now = float(wall_gaps(observation.position[None], near, observation.radius)[0])
+        walls = robot_wall_gaps(observation, points.reshape(-1, 2), heading.reshape(-1), near).reshape(C, T)
+        now = float(robot_wall_gaps(observation, observation.position[None], np.array([observation.heading]), near)[0])
         meets |= walls < min(self.wall_margin, max(now - 1e-6, -observation.radius))
         return np.where(meets.any(axis=1), times[np.argmax(meets, axis=1)], np.inf)
 

@@ -77,6 +77,7 @@ def encode_observation(observation: Observation) -> dict[str, Any]:
         "goal": list(observation.goal),
         "waypoint": list(observation.waypoint),
         "radius": observation.radius,
+        "outline": encode_array(observation.outline),
         "limits": [_number(value) for value in observation.limits],
         "dt": observation.dt,
         "time": observation.time,
@@ -106,6 +107,7 @@ def decode_observation(values: Mapping[str, Any]) -> Observation:
         goal=(values["goal"][0], values["goal"][1]),
         waypoint=(values["waypoint"][0], values["waypoint"][1]),
         radius=values["radius"],
+        outline=decode_array(values["outline"]),
         limits=DriveLimits(
             _limit(speed), _limit(turn), _limit(acceleration), _limit(turn_acceleration), bool(holonomic)
         ),

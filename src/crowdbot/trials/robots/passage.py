@@ -1,10 +1,8 @@
-"""Passages that are too narrow for the disc of a robot, but wide enough for its outline."""
+"""Passages that are too narrow for a robot."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from crowdbot.core import InputError, Walls
 from crowdbot.navigation import PathPlanner
@@ -16,17 +14,18 @@ if TYPE_CHECKING:
 
 PRECISION = 0.001
 """Precision [m] of the width of a passage."""
+SMALLEST = 0.05
+"""Half of the width [m] of the smallest passage that counts."""
 
 
 def passage_remarks(trial: Trial) -> tuple[str, ...]:
-    """Return a sentence for each robot of a trial that cannot reach its goal although its outline fits.
+    """Return a sentence for each robot of a trial that is wider than the narrowest passage on its way.
 
-    The planar world treats a robot as a disc. If walls leave the disc no path from start to goal, but a disc as wide as
-    the outline of the robot has one, the narrowest passage on the way of the robot is the reason.
+    The width is that of the outline across the forward axis of the robot, which drives forward through a passage.
 
     >>> from crowdbot.trials import load_trial
-    >>> [line[:71] for line in passage_remarks(load_trial("doorway", {"robot/type": "wheelchair"}))]
-    ['the narrowest passage on the way of the robot is 0.95 m wide: less than']
+    >>> passage_remarks(load_trial("doorway", {"robot/type": "wheelchair"}))
+    ()
     """
     robots = [robot for robot in trial.robots if robot.type and not robot.ghost and robot.mirror is None]
     if trial.world != "planar" or not robots:
@@ -39,16 +38,15 @@ def passage_remarks(trial: Trial) -> tuple[str, ...]:
             continue
         name = "the robot" if len(trial.robots) == 1 else f"robot {robot.name!r}"
         found.append(
-            f"the narrowest passage on the way of {name} is {width:.2f} m wide: less than the diameter of its disc,"
-            f" {2.0 * robot.radius:.2f} m, and more than the width of its outline, {_outline(robot):.2f} m. In the"
-            " planar world a robot is a disc, so it cannot reach its goal, although its outline fits through."
+            f"the narrowest passage on the way of {name} is {width:.2f} m wide: less than the width of the robot,"
+            f" {2.0 * robot.body.half_width:.2f} m, so it cannot reach its goal."
         )
     return tuple(found)
 
 
 def _narrowest(trial: Trial, walls: Walls, robot: RobotSpec) -> float | None:
-    """Return the width [m] of the passage that the outline of a robot fits and its disc does not, or None."""
-    fits, fails = 0.5 * _outline(robot), robot.radius
+    """Return the width [m] of a passage that is too narrow for a robot, or None."""
+    fits, fails = SMALLEST, robot.body.half_width
     if fits >= fails or _has_path(walls, robot, fails) or not _has_path(walls, robot, fits):
         return None
     while fails - fits > 0.5 * PRECISION:
@@ -56,11 +54,6 @@ def _narrowest(trial: Trial, walls: Walls, robot: RobotSpec) -> float | None:
         fits, fails = (middle, fails) if _has_path(walls, robot, middle) else (fits, middle)
     beside = float(trial.stage.clearance([robot.position, robot.goal.position]).min()) - PRECISION
     return None if fits > beside else 2.0 * fits  # a wall beside start or goal is no passage
-
-
-def _outline(robot: RobotSpec) -> float:
-    """Return the width [m] of the outline of a robot."""
-    return float(np.ptp(robot.body.footprint[:, 1]))
 
 
 def _has_path(walls: Walls, robot: RobotSpec, radius: float) -> bool:

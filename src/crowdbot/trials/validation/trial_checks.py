@@ -404,7 +404,7 @@ def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
         return
     try:
         walls = stage.driving_walls(robot.body.max_step, robot.body.max_slope)
-        planner = PathPlanner.for_stage(walls, robot.radius, robot.planner.margin)
+        planner = PathPlanner.for_stage(walls, robot.radius, robot.planner.margin, robot.body.half_width)
         planner.waypoints(robot.position, robot.goal.position)
     except InputError as error:
         reason = str(error).removeprefix("PathPlanner: ").removeprefix("no path: ").removeprefix("Router: ")

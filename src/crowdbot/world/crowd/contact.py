@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, did_you_mean, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.outlines import Outlines, point_to_outline, to_frame
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .contact_bodies import gather_bodies, shift_bodies
@@ -23,6 +24,7 @@ __all__ = ["ContactModel"]
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Rows = NDArray[np.int32]
+Ints = NDArray[np.int64]
 
 VARIANTS = ("position", "force")
 MOST = 24
@@ -42,6 +44,10 @@ class _Bodies(NamedTuple):
     radius: Floats
     pushed: Bools
     """Whether a push can move the agent."""
+    heading: Floats
+    corner: Floats
+    first: Ints
+    """Outlines by index in an environment, see :class:`Outlines`."""
 
 
 @kernel(parallel=True)
@@ -93,7 +99,7 @@ def _push_part(
     begin: int, end: int, bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float,
     place: Floats, moved: Bools, out: Floats, moves: Bools,
 ) -> None:  # fmt: skip
-    before, chosen, radius, pushed = bodies
+    before, chosen, radius, pushed, heading, corner, first_corner = bodies
     agent, number, order = near
     wall, first, member, frame = cells
     A = agent.shape[1]
@@ -107,7 +113,11 @@ def _push_part(
             anew = anew or moved[row - a + agent[e, a, n]]
         if not pushed[row] or not anew:  # unchanged since the last iteration
             continue
-        px, py, count = _push_sum(row, agent[e, a, : number[e, a]], row - a, place, before, radius, pushed, gain)
+        near_row = agent[e, a, : number[e, a]]
+        px, py, count = _push_sum(row, near_row, row - a, place, before, radius, pushed, first_corner, gain)
+        if len(corner) > 0:
+            ox, oy, more = _push_off_outlines(row, near_row, row - a, place, radius, heading, corner, first_corner)
+            px, py, count = px + ox, py + oy, count + more
         if count > 0:
             x, y = _apply_push(x, y, px, py, count, gain, chosen[row, 0], chosen[row, 1], r)
         if len(wall) > 0:
@@ -118,16 +128,17 @@ def _push_part(
 
 @kernel
 def _push_sum(
-    row: int, near: Rows, begin: int, place: Floats, before: Floats, radius: Floats, pushed: Bools, gain: float
-) -> tuple[float, float, int]:
-    """Return the sum of the pushes of the neighbors, and their number."""
+    row: int, near: Rows, begin: int, place: Floats, before: Floats, radius: Floats, pushed: Bools, first: Ints,
+    gain: float,
+) -> tuple[float, float, int]:  # fmt: skip
+    """Return the sum of the pushes of the neighbors that are discs, and their number."""
     px, py, count = 0.0, 0.0, 0
     for n in range(len(near)):
         other = begin + near[n]
         reach = radius[row] + radius[other]
         dx, dy = place[row, 0] - place[other, 0], place[row, 1] - place[other, 1]
         d2 = dx * dx + dy * dy
-        if d2 >= (reach * TOUCH) ** 2:
+        if d2 >= (reach * TOUCH) ** 2 or first[near[n] + 1] > first[near[n]]:
             continue
         distance = math.sqrt(d2)
         if d2 == 0.0:
@@ -137,6 +148,31 @@ def _push_sum(
         px += share * (reach - distance) * dx / length
         py += share * (reach - distance) * dy / length
         count += 1
+    return px, py, count
+
+
+@kernel
+def _push_off_outlines(
+    row: int, near: Rows, begin: int, place: Floats, radius: Floats, heading: Floats, corner: Floats, first: Ints
+) -> tuple[float, float, int]:
+    """Return the sum of the pushes of the neighbors with an outline, which are never pushed, and their number."""
+    px, py, count = 0.0, 0.0, 0
+    for n in range(len(near)):
+        other = begin + near[n]
+        if first[near[n] + 1] == first[near[n]]:
+            continue
+        cos, sin = math.cos(heading[other]), math.sin(heading[other])
+        x, y = to_frame(place[row, 0], place[row, 1], place[other, 0], place[other, 1], cos, sin)
+        gap, bx, by = point_to_outline(x, y, corner, first[near[n]], first[near[n] + 1])
+        if gap >= radius[row] * TOUCH:
+            continue
+        dx, dy = (x - bx, y - by) if gap > 0.0 else (bx - x, by - y)
+        length = math.sqrt(dx * dx + dy * dy)
+        if length == 0.0:  # on the border
+            dx, dy = x, y
+            length = max(math.sqrt(dx * dx + dy * dy), 1e-300)
+        share = (radius[row] - gap) / length
+        px, py, count = px + share * (cos * dx - sin * dy), py + share * (sin * dx + cos * dy), count + 1
     return px, py, count
 
 
@@ -236,9 +272,21 @@ class ContactModel:
             raise InputError(f"ContactModel: iterations = {self.iterations} must be from 1 to 1000")
 
     def resolve_overlaps(
-        self, before: Scene, after: Scene, dt: float, surfaces: ContactSurfaces | None = None
+        self,
+        before: Scene,
+        after: Scene,
+        dt: float,
+        surfaces: ContactSurfaces | None = None,
+        outlines: Outlines | None = None,
     ) -> Scene:
-        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with overlaps resolved."""
+        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with overlaps resolved.
+
+        Args:
+            before, after: scenes before and after the step.
+            dt: time step [s].
+            surfaces: surfaces of the walls; None: of the walls of ``after``.
+            outlines: outlines of external agents; others are discs.
+        """
         shape = after.shape
         pairs, position = (*shape, 2), dense(after.position, (*shape, 2), FLOAT)
         start, place, radius, reach = np.empty(pairs), np.empty(pairs), np.empty(shape), np.empty(shape)
@@ -256,7 +304,9 @@ class ContactModel:
             surfaces = ContactSurfaces.of(after.walls, float(radius.max(initial=0.0)))
         near = find_close_bodies(position, reach, MOST, seen, pushed)
         now = place.reshape(-1, 2)
-        bodies = _Bodies(start.reshape(-1, 2), now.copy(), radius.reshape(-1), pushed.reshape(-1))
+        heading = dense(after.heading, shape, FLOAT).reshape(-1)
+        shapes = Outlines.of({}, shape[1]) if outlines is None else outlines
+        bodies = _Bodies(start.reshape(-1, 2), now.copy(), radius.reshape(-1), pushed.reshape(-1), heading, *shapes)
         gain = self.stiffness * dt * dt if self.variant == "force" else 0.0
         now = _resolve(bodies, near, surfaces, gain, self.iterations if gain == 0.0 else 1, now)
         where, pace = np.empty(pairs), np.empty(pairs)

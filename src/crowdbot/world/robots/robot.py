@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
+from crowdbot.core.outlines import outline_of
 from crowdbot.world.robots.drives.drive import Drive
 from crowdbot.world.robots.drives.servo import CommandDelay
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
@@ -95,6 +96,10 @@ class Robot:
                 f"Robot: the footprint of {self.name} must be at least 3 points x, y [m]; its model has {has}"
             )
         object.__setattr__(self, "footprint", shape)
+        try:
+            outline_of(shape)
+        except InputError as error:
+            raise InputError(f"Robot: {self.name}: {error}") from None
         self.model.positions(self.posture)
         for link in self.links:
             if problem := link_problem(link, self.model):
@@ -178,6 +183,25 @@ class Robot:
     def radius(self) -> float:
         """Radius [m] of the disc around the origin that contains the footprint."""
         return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
+
+    @functools.cached_property
+    def outline(self) -> Floats | None:
+        """Convex outline ``[K, 2]`` [m] of the footprint, counter-clockwise, in the robot frame; None for a disc.
+
+        A footprint is a disc if its inscribed radius is at least 0.98 of its circumscribed radius.
+
+        >>> Robot.load("cuybot").outline.tolist()
+        [[-0.2865, -0.266], [0.2865, -0.266], [0.2865, 0.266], [-0.2865, 0.266]]
+        """
+        found = outline_of(self.footprint)
+        if found is not None:
+            found.flags.writeable = False
+        return found
+
+    @property
+    def half_width(self) -> float:
+        """Largest distance [m] of the outline from its forward axis: the smallest radius of a straight passage."""
+        return self.radius if self.outline is None else float(np.abs(self.outline[:, 1]).max())
 
     @functools.cached_property
     def posture_poses(self) -> Mapping[str, Floats]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, did_you_mean
+from crowdbot.core.outlines import convex_hull
 
 from .shapes import Shape
 from .transforms import across, axis_rotation, frame, from_quaternion, transform_points
@@ -271,7 +272,7 @@ class RobotModel:
         >>> read_urdf(f'<robot name="r"><link name="b">{box}</link></robot>').footprint().tolist()
         [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]]
         """
-        return outline(self.points(positions)[:, :2])
+        return convex_hull(self.points(positions)[:, :2])
 
 
 def _joined(bodies: list[tuple[LinkInertia, Floats]]) -> LinkInertia:
@@ -286,23 +287,3 @@ def _joined(bodies: list[tuple[LinkInertia, Floats]]) -> LinkInertia:
         tensor += rotation @ inertial.tensor @ rotation.T
         tensor += inertial.mass * (np.eye(3) * (shift @ shift) - np.outer(shift, shift))
     return LinkInertia(mass, center, tensor)
-
-
-def outline(points: Floats) -> Floats:
-    """Return the convex hull ``[M, 2]`` of points ``[N, 2]``, counter-clockwise from the lowest leftmost point."""
-    rows = sorted({(round(float(x), 9), round(float(y), 9)) for x, y in points})
-    if len(rows) < 3:
-        return np.array(rows).reshape(-1, 2)
-    halves = []
-    for order in (rows, rows[::-1]):
-        chain: list[tuple[float, float]] = []
-        for p in order:
-            while len(chain) > 1 and _left(chain[-2], chain[-1], p) <= 1e-12:
-                chain.pop()
-            chain.append(p)
-        halves.append(chain[:-1])
-    return np.array(halves[0] + halves[1])
-
-
-def _left(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,0 +1,138 @@
+"""Clearances of people to a robot whose outline is not a disc, at each row of a log."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import kernel
+from crowdbot.core.outlines import body_gap, swept_gap, time_to_outline
+
+from .proximity import JUMP
+
+__all__ = ["OutlineClearance", "outline_clearance", "outline_touch"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+PARTS, HALVINGS = 64, 30
+"""Intervals of a step in which the first contact is searched, and halvings of the interval that has it."""
+
+
+class OutlineClearance(NamedTuple):
+    """Clearances of each agent to a robot, ``[T, A]``; infinite for the robot and for absent agents.
+
+    Fields:
+        swept: smallest clearance since the row before [m].
+        gap: clearance at the row [m].
+        ttc: time to collision at constant velocities and constant heading of the robot [s].
+    """
+
+    swept: Floats
+    gap: Floats
+    ttc: Floats
+
+
+@kernel
+def _measure(
+    jump: Floats, place: Floats, velocity: Floats, heading: Floats, radius: Floats, active: Bools, own: int,
+    corner: Floats, swept: Floats, gap: Floats, ttc: Floats,
+) -> None:  # fmt: skip
+    for t in range(len(place)):
+        b = max(t - 1, 0)
+        x, y, r = place[t, own, 0], place[t, own, 1], radius[t, own]
+        bx, by = place[b, own, 0], place[b, own, 1]
+        last = len(corner) if math.isfinite(heading[t]) else 0
+        turn = heading[t] if last > 0 else 0.0
+        before = heading[b] if math.isfinite(heading[b]) else turn
+        moves = t > 0 and active[b, own] and math.hypot(x - bx, y - by) <= jump[t]
+        for n in range(place.shape[1]):
+            swept[t, n] = gap[t, n] = ttc[t, n] = math.inf
+            if n == own or not active[t, n] or not active[t, own]:
+                continue
+            px, py, size = place[t, n, 0], place[t, n, 1], radius[t, n]
+            gap[t, n] = body_gap(x, y, turn, r, 0, last, px, py, 0.0, size, 0, 0, corner)
+            swept[t, n] = gap[t, n]
+            if moves and active[b, n]:
+                qx, qy = place[b, n, 0], place[b, n, 1]
+                if math.hypot(px - qx, py - qy) <= jump[t]:
+                    swept[t, n] = swept_gap(
+                        bx, by, before, x, y, turn, r, 0, last, qx, qy, 0.0, px, py, 0.0, size, 0, 0, corner, math.inf
+                    )
+            wx, wy = velocity[t, n, 0] - velocity[t, own, 0], velocity[t, n, 1] - velocity[t, own, 1]
+            ttc[t, n] = time_to_outline(px - x, py - y, wx, wy, size, turn, r, corner, 0, last)
+
+
+def outline_clearance(
+    times: Floats, position: Floats, velocity: Floats, heading: Floats, radius: Floats, active: Bools, robot: int,
+    outline: Floats,
+) -> OutlineClearance:  # fmt: skip
+    """Return the clearances of all agents, as discs, to a robot; where its heading is unknown, it is a disc.
+
+    Args:
+        times: ``[T]`` [s].
+        position, velocity: ``[T, A, 2]`` [m], [m/s].
+        heading: ``[T]`` of the robot [rad], NaN if unknown.
+        radius: ``[T, A]`` [m]; that of the robot is its circumscribed disc.
+        active: ``[T, A]`` who is present.
+        robot: index of the robot.
+        outline: corners ``[K, 2]`` in the frame of the robot [m].
+
+    >>> box = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
+    >>> place, still, turned = np.array([[[0.0, 0.0], [0.0, 2.0]]]), np.zeros((1, 2, 2)), np.array([np.pi / 2])
+    >>> there = outline_clearance(
+    ...     np.zeros(1), place, still, turned, np.array([[0.54, 0.3]]), np.ones((1, 2), bool), 0, box)
+    >>> there.gap.round(3).tolist()
+    [[inf, 1.2]]
+    """
+    found = OutlineClearance(*(np.empty(active.shape) for _ in range(3)))
+    jump = JUMP * np.diff(times, prepend=-math.inf)
+    arrays = map(np.ascontiguousarray, (jump, position, velocity, heading, radius, active))
+    everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *found)
+    _measure(*everything)
+    return found
+
+
+def outline_touch(
+    position: Floats, heading: tuple[float, float], radius: tuple[float, float], outline: Floats
+) -> tuple[float, Floats]:
+    """Return the share of a step at which a person first touches a robot, and the normal from the robot to them.
+
+    Without contact, it is the share with the smallest clearance.
+
+    Args:
+        position: positions ``[2, 2, 2]`` of the robot and the person at the start and the end of the step [m].
+        heading: headings of the robot at these times [rad].
+        radius: of the circumscribed disc of the robot and of the person [m].
+        outline: corners ``[K, 2]`` in the frame of the robot [m].
+
+    >>> box = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
+    >>> path = np.array([[[0.0, 0.0], [0.0, 0.9]], [[0.0, 0.0], [0.0, 0.1]]])
+    >>> share, normal = outline_touch(path, (0.0, 0.0), (0.54, 0.3), box)
+    >>> round(share, 6), normal.round(6).tolist()
+    (0.5, [0.0, 1.0])
+    """
+    corner = np.ascontiguousarray(outline)
+    spin = math.remainder(heading[1] - heading[0], 2.0 * math.pi)
+
+    def gap(share: float, dx: float = 0.0, dy: float = 0.0) -> float:
+        (x, y), (px, py) = ((1.0 - share) * position[0] + share * position[1]).tolist()
+        turn = heading[0] + share * spin
+        return float(body_gap(x, y, turn, radius[0], 0, len(corner), px + dx, py + dy, 0.0, radius[1], 0, 0, corner))
+
+    gaps = [gap(k / PARTS) for k in range(PARTS + 1)]
+    k = next((k for k, value in enumerate(gaps) if value < 0.0), -1)
+    share = k / PARTS if k >= 0 else int(np.argmin(gaps)) / PARTS
+    if k > 0:
+        low, high = (k - 1) / PARTS, share
+        for _ in range(HALVINGS):
+            share = 0.5 * (low + high)
+            low, high = (low, share) if gap(share) < 0.0 else (share, high)
+    # the gradient of the clearance is the unit vector from the nearest point of the outline
+    h = 1e-6
+    slope = np.array([gap(share, h) - gap(share, -h), gap(share, 0.0, h) - gap(share, 0.0, -h)])
+    length = math.hypot(slope[0], slope[1])
+    return share, slope / length if length > 0.0 else np.array([1.0, 0.0])
