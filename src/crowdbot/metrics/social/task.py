@@ -9,7 +9,7 @@ import numpy as np
 from crowdbot.metrics.contacts import contact_stretches
 from crowdbot.metrics.proximity import swept_distance, wall_clearance
 from crowdbot.metrics.step_clearance import step_outline_wall_clearance, step_wall_clearance
-from crowdbot.typing import Floats
+from crowdbot.typing import Floats, Ints
 
 from .robot_log import RobotLog
 
@@ -63,7 +63,7 @@ def _wall_distance(log: RobotLog) -> Floats:
     return step_wall_clearance(log.position, log.position, np.full(len(log.times), log.radius), log.walls)
 
 
-def _outline_distance(log: RobotLog, before: NDArray[np.int64]) -> Floats:
+def _outline_distance(log: RobotLog, before: Ints) -> Floats:
     """Return the clearance of the outline to walls from the rows ``before`` to all rows ``[T]`` [m]."""
     size, outline = np.full(len(log.times), log.radius), log.outline
     assert outline is not None
