@@ -168,7 +168,8 @@ def test_it_reaches_its_goal_alone(limits: DriveLimits) -> None:
 def test_the_shipped_weights_have_a_card() -> None:
     assert policy_file().stat().st_size < 1_000_000
     _, card = PolicyWeights.read(policy_file())
-    assert {"plan", "rounds", "command", "score"} <= set(card)
+    assert {"plan", "rounds", "origin", "score"} == set(card)
+    assert "examples/train_navigator.py" in card["origin"]
 
 
 def test_wrong_files_of_weights_are_refused(tmp_path: Path) -> None:
