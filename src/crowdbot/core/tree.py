@@ -205,11 +205,14 @@ class _Fields(NamedTuple):
 def _fields(tree: Any) -> _Fields | None:
     """Fields of a dataclass or of an object with a :class:`Storage`; None for another class."""
     kind: Any = type(tree)
-    storage = _storage(tree)
-    if storage is None:
-        return _fields_of(kind)
+    return _fields_of(kind) if _storage(tree) is None else _fields_of_object(kind, tuple(vars(tree)))
+
+
+@functools.cache
+def _fields_of_object(kind: Any, names: tuple[str, ...]) -> _Fields:
+    storage = _storage_of(kind) or Storage()
     alike = {*storage.constants, *storage.shared}.difference(storage.environments)
-    return _Fields(tuple(sorted(vars(tree).keys() - alike)), tuple(vars(tree)), True, storage.environments)
+    return _Fields(tuple(sorted({*names} - alike)), names, True, storage.environments)
 
 
 @functools.cache

@@ -143,7 +143,7 @@ class TrackBatch(Sequence[TrackHistory]):
     def put(self, environments: Ints, other: TrackBatch) -> TrackBatch:
         """Return the histories with some environments replaced by those of another batch of the same length."""
         people = max(self.ids.shape[1], other.ids.shape[1])
-        return tree.put(self._padded(people), environments, other._padded(people))
+        return tree.put(self._padded(people), environments, other._padded(people), len(self))
 
     def _padded(self, people: int) -> TrackBatch:
         """Return the histories with places for a number of people."""

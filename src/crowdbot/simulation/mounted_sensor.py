@@ -311,7 +311,9 @@ class MountedSensor:
         if any(sensor.moved is not None for sensor in both):
             for sensor in both:
                 sensor.move(slice(None), sensor.placed if sensor.moved is None else sensor.moved)
-        vars(self).update(vars(tree.put(self, environments, other)) | {"state": state, "waiting": waiting})
+        vars(self).update(
+            vars(tree.put(self, environments, other, len(self.rngs))) | {"state": state, "waiting": waiting}
+        )
 
 
 def needs_bodies(trial: Trial) -> bool:

@@ -375,7 +375,7 @@ class RobotControl:
 
     def put(self, environments: Ints, other: RobotControl) -> None:
         """Replace the state of some environments."""
-        vars(self).update(vars(tree.put(self, environments, other)))
+        vars(self).update(vars(tree.put(self, environments, other, len(self.begun))))
         for mine, new in zip(self.sensors, other.sensors, strict=True):
             mine.put(environments, new)
         for k, e in enumerate(environments.tolist()):

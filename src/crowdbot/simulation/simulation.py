@@ -332,7 +332,7 @@ class Simulation:
     def put(self, environments: Sequence[int] | Ints, other: Simulation) -> None:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
         index = environment_index(environments, self.count, other.count)
-        vars(self).update(vars(tree.put(self, index, other)))
+        vars(self).update(vars(tree.put(self, index, other, self.count)))
         self._take_template(self._template.with_environments(index, other._template))
         self.world = put_environments(self.world, index, other.world)
         self._set_around()

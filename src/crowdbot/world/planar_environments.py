@@ -111,7 +111,7 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
             world._bodies[e] = other._bodies[k]
     changed = any(model is not world.model for model in models)
     whole, rows = _states([world, other])
-    _set_state(world, tree.put(whole, index, rows), models if changed else None)
+    _set_state(world, tree.put(whole, index, rows, len(world.slots)), models if changed else None)
 
 
 def undo_point(world: PlanarWorld) -> Callable[[], None]:
