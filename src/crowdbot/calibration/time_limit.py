@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from crowdbot.core import InputError
 
-__all__ = ["TimeLimit"]
-
 
 @dataclass(frozen=True)
 class TimeLimit:

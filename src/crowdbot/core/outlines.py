@@ -16,31 +16,13 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from crowdbot.typing import Floats, Ints
 
 from .errors import InputError
 from .geometry import nearest_on_segment, time_to_contact, time_to_segment
 from .kernels import kernel
-
-__all__ = [
-    "ROUND",
-    "Outlines",
-    "body_gap",
-    "convex_hull",
-    "inscribed_radius",
-    "outline_of",
-    "outline_to_outline",
-    "point_to_outline",
-    "segment_to_outline",
-    "swept_gap",
-    "swept_wall_gap",
-    "time_to_outline",
-    "to_frame",
-    "wall_gap",
-]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ROUND = 0.98
 """Smallest ratio of inscribed to circumscribed radius at which a polygon stands for a disc."""

@@ -6,8 +6,6 @@ import hashlib
 
 import numpy as np
 
-__all__ = ["stream", "stream_text"]
-
 
 def stream(seed: int, *path: str | int) -> np.random.Generator:
     """Return the random generator of ``seed`` and ``path``.

@@ -8,19 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Bytes, Floats, Ints, Words
 
 from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
 from .kernels import kernel
 from .random import stream, stream_text
 from .tree import Storage, objects
-
-__all__ = ["RandomStreams", "draw_uniform", "next_uniform", "stream_states"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bytes = NDArray[np.uint8]
-Words = NDArray[np.uint64]
 
 PLACES = 24
 """Bytes reserved for the seed at the beginning of a text."""

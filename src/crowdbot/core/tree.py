@@ -21,26 +21,10 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.typing import Ints
+
 from .errors import InputError
 
-__all__ = [
-    "StateError",
-    "StateMark",
-    "Storage",
-    "check",
-    "count",
-    "environment_index",
-    "flatten",
-    "join",
-    "objects",
-    "put",
-    "resize",
-    "storable",
-    "take",
-    "unflatten",
-]
-
-Ints = NDArray[np.int64]
 Tree = TypeVar("Tree")
 NUMBERS = (bool, int, float, np.bool_, np.number)
 LEAVES = (type(None), str, bytes, complex, enum.Enum, *NUMBERS)

@@ -6,17 +6,12 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.core.outlines import body_gap, swept_gap, time_to_outline
+from crowdbot.typing import Bools, Floats
 
 from .proximity import JUMP
-
-__all__ = ["OutlineClearance", "outline_clearance", "outline_touch"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 PARTS, HALVINGS = 64, 30
 """Intervals of a step in which the first contact is searched, and halvings of the interval that has it."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 from crowdbot.core import Twist
 
-__all__ = ["Action"]
-
 
 @dataclass(frozen=True)
 class Action:

@@ -13,8 +13,6 @@ from .goal_motion import regular_rows
 from .observation import DriveLimits
 from .observation_batch import ObservationBatch
 
-__all__ = ["drive_numbers", "rows_for_kernels", "share_time"]
-
 
 def rows_for_kernels(batch: ObservationBatch, with_people: bool) -> NDArray[np.bool_]:
     """Return the environments ``[N]`` with regular values, which kernels decide.

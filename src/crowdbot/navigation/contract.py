@@ -11,8 +11,6 @@ from .navigator import Navigator
 from .navigator_memory import copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
 
-__all__ = ["check_navigator"]
-
 
 def check_navigator(navigator: Navigator) -> None:
     """Check that a navigator keeps its contract in a small scene with and without people.

@@ -13,8 +13,6 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any, TypeVar
 
-__all__ = ["HungNavigatorError", "call_within"]
-
 T = TypeVar("T")
 Answers = queue.SimpleQueue[tuple[bool, Any]]
 

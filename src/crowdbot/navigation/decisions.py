@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["Decisions", "checked_joints"]
-
 
 def checked_joints(joints: Any, name: str) -> dict[str, float]:
     """Return the joint targets of a navigator, by the name of the joint.

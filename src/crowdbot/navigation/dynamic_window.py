@@ -14,15 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Twist
+from crowdbot.typing import Floats
 
 from .observation import DriveLimits, Observation
 from .observation_batch import ObservationBatch
 from .wall_arrays import wall_arrays
 from .window_search import MATCH, STEP, choose_twists
-
-__all__ = ["WindowCosts", "dynamic_window_twist", "dynamic_window_twists"]
-
-Floats = NDArray[np.float64]
 
 EAGER = 100.0
 """Value for unknown accelerations [m/s2], [rad/s2]."""

@@ -13,8 +13,6 @@ from crowdbot.core import Twist, check_number
 from .navigator import Navigator
 from .observation import Observation
 
-__all__ = ["ExternalNavigator"]
-
 
 @dataclass(frozen=True)
 class ExternalNavigator(Navigator):

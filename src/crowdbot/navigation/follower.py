@@ -14,8 +14,6 @@ from .action import Action
 from .navigator import Navigator
 from .observation import Observation
 
-__all__ = ["FollowerNavigator"]
-
 HEADING_GAIN = 2.0
 """Gain of the correction of the heading [1/s]."""
 

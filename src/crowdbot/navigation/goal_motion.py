@@ -8,21 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
-
-__all__ = [
-    "SLOWING_TIME",
-    "TURN_GAIN",
-    "braking_speed",
-    "direction_to",
-    "exact_distance",
-    "holonomic_twists",
-    "regular_rows",
-    "slow_speed",
-    "twists_towards",
-    "velocities_towards",
-]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 TURN_GAIN = 3.0
 """Turn rate [rad/s] per rad of heading error."""

@@ -19,8 +19,6 @@ from .navigator_memory import copy_memory
 from .observation import Observation
 from .observation_batch import ObservationBatch
 
-__all__ = ["Navigator"]
-
 
 @dataclass(frozen=True)
 class Navigator(ABC):

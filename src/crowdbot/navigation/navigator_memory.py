@@ -8,8 +8,6 @@ from typing import Any
 
 from crowdbot.core import InputError
 
-__all__ = ["copy_memory"]
-
 DEEPEST = 20
 """Largest depth at which the part that cannot be copied is searched."""
 

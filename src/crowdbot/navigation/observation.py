@@ -14,13 +14,10 @@ from crowdbot.core import InputError, Scene, Twist, Walls, wrap_angle
 from crowdbot.data import Forecast
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Odometry, Reading, main_scan
+from crowdbot.typing import Floats
 
 from .goal_motion import SLOWING_TIME, TURN_GAIN
 from .track_history import HORIZON, TrackHistory, choose_predictor
-
-__all__ = ["DISC", "DriveLimits", "Observation", "VisiblePeople", "wall_radius"]
-
-Floats = NDArray[np.float64]
 
 BY_INDEX: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 """Default of ids: people are numbered by their index."""

@@ -15,15 +15,12 @@ from crowdbot.core import InputError, Scene, Twist, Walls, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
+from crowdbot.typing import Bools, Floats
 
 from .observation import DISC, DriveLimits, Observation, VisiblePeople
 from .track_batch import TrackBatch
 from .track_history import HORIZON, SAME, TrackHistory, choose_predictor, forecast_problem
 
-__all__ = ["AgentsInView", "ObservationBatch", "reading_of"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 TYPES: dict[str, Any] = {"seen": np.bool_, "ids": np.int64}
 SEEDS = 2**63
 """Predictors draw the seed of each window below this number; see ``crowdbot.prediction.window_streams``."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
+from crowdbot.typing import Floats
 
 from .batch_rows import drive_numbers, rows_for_kernels, share_time
 from .decisions import Decisions
@@ -23,10 +24,6 @@ from .observation import Observation, wall_radius
 from .observation_batch import ObservationBatch
 from .orca_search import choose_velocities
 from .wall_arrays import wall_arrays
-
-__all__ = ["ORCANavigator"]
-
-Floats = NDArray[np.float64]
 
 UNITS = {
     "speed": "m/s",

@@ -13,12 +13,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.models.velocity_obstacles import linear_program, orca_lines
+from crowdbot.typing import Floats
 
 from .goal_motion import exact_distance, slow_speed
 
-__all__ = ["NUMBERS", "Edges", "choose_velocities", "edges_of"]
-
-Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 NUMBERS = (

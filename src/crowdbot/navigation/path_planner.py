@@ -7,14 +7,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, Walls, check_number
+from crowdbot.typing import Floats
 from crowdbot.world import Router
-
-__all__ = ["PathPlanner", "Waypoints"]
-
-Floats = NDArray[np.float64]
 
 MARGIN = 0.1
 """Default distance [m] between a robot on its path and the walls."""

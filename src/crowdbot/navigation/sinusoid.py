@@ -12,8 +12,6 @@ from .action import Action
 from .navigator import Navigator
 from .observation import Observation
 
-__all__ = ["SinusoidNavigator"]
-
 POSITION_GAIN = 2.0
 """Gain of the correction of the position along the line [1/s]."""
 HEADING_GAIN = 2.0

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Twist, check_number
+from crowdbot.typing import Floats
 
 from .batch_rows import drive_numbers, rows_for_kernels, share_time
 from .decisions import Decisions
@@ -17,10 +18,6 @@ from .goal_motion import holonomic_twists, twists_towards, velocities_towards
 from .navigator import Navigator
 from .observation import Observation
 from .observation_batch import ObservationBatch
-
-__all__ = ["Straight"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,11 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, kernel, storable, tree
+from crowdbot.typing import Bools, Floats, Ints
 
 from .track_history import LENGTH, TrackHistory
-
-__all__ = ["TrackBatch"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @storable

@@ -11,10 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Walls, storable, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
-
-__all__ = ["HORIZON", "TrackHistory", "choose_predictor", "forecast_problem"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 LENGTH = 40
 """Default number of rows: 4 s at 10 Hz."""

@@ -12,8 +12,6 @@ from crowdbot.core import Walls
 
 from .orca_search import Edges, edges_of
 
-__all__ = ["WallArrays", "wall_arrays"]
-
 KNOWN: dict[int, tuple[weakref.ref[Walls], WallArrays]] = {}
 """Arrays of the walls in use, by identity."""
 

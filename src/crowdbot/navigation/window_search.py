@@ -29,10 +29,8 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.outlines import wall_gap
+from crowdbot.typing import Floats
 
-__all__ = ["FORWARD", "MATCH", "SIGHT", "STEP", "TURNS", "WINDOW", "choose_twists"]
-
-Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 STEP = 0.1

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from crowdbot.core import InputError
 
-__all__ = ["LiveReport", "parse_seconds"]
-
 UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
 """Units of durations [s]."""
 

@@ -6,16 +6,12 @@ from collections import deque
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import PEOPLE_TYPES, Frames, frame_name, stamp_of
+from crowdbot.typing import Floats
 
 from .tracker_frame import TrackerFrame
-
-__all__ = ["TrackerMessages"]
-
-Floats = NDArray[np.float64]
 
 SECOND = 1_000_000_000
 ODOMETRY = "nav_msgs/msg/Odometry"

@@ -6,25 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.core.windows import hull_in_view, hull_levels, hull_width
-
-__all__ = [
-    "TURN",
-    "Beams",
-    "cell_columns",
-    "cone_directions",
-    "first_cells",
-    "hull_cells",
-    "sees_hull",
-    "sort_beams",
-    "unit_vectors",
-]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from crowdbot.typing import Floats, Ints
 
 PER_CELL = 2.0
 """Mean number of beams per cell."""

@@ -9,16 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, storable
+from crowdbot.typing import Floats, Ints
 
 from .noise import Randomness, apply_noise
 from .ray_shapes import NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose, spatial_pose
 from .view import SensorView
 
-__all__ = ["Bumper", "BumperReading"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
 MOST_SECTORS = 100_000
 

@@ -16,8 +16,6 @@ from .sensor import Reading, Sensor
 from .state_rows import measure_rows, put_state_rows, take_state_rows
 from .view import SensorView
 
-__all__ = ["check_sensor"]
-
 STEPS = (((0, 1), ()), ((1,), ()), ((0, 1), ()), ((0, 1), (0,)), ((0,), ()))
 """Environments that measure in each step of a batch, and those that start again before it."""
 STARTS = (0.0, 5.0)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number, storable
+from crowdbot.typing import Floats, Ints
 
 from .beams import Beams, sort_beams
 from .lens import ImageSource, Lens, pixel_directions, stereo_depth
@@ -21,11 +22,6 @@ from .ray_casting import cast_rays
 from .ray_shapes import NOTHING
 from .sensor import Reading, Sensor, spatial_pose
 from .view import SensorView
-
-__all__ = ["DepthCamera", "DepthImage"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @storable

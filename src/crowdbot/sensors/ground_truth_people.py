@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number, dense, kernel, storable
+from crowdbot.typing import Bools, Floats
 
 from .lidar import Lidar2D
 from .noise import Randomness, apply_noise
@@ -17,10 +18,6 @@ from .ranging import MOST_BEAMS
 from .sensor import Reading, Sensor, planar_pose
 from .view import SensorView
 
-__all__ = ["GroundTruthPeople", "TrackedPeople"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 FLOAT, BOOL = np.dtype(np.float64), np.dtype(np.bool_)
 
 

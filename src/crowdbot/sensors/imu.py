@@ -6,17 +6,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number, product, storable
+from crowdbot.typing import Floats
 
 from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, spatial_pose
 from .view import SensorView
-
-__all__ = ["GRAVITY", "IMU", "ImuReading", "ImuState"]
-
-Floats = NDArray[np.float64]
 
 GRAVITY = 9.80665
 """Standard gravity [m/s^2]."""

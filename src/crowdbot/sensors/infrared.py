@@ -8,19 +8,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
 from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
 from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
-
-__all__ = ["Infrared"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

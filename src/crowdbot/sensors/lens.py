@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose, check_number
+from crowdbot.typing import Floats
 
 from .noise import Randomness, normals
 
-__all__ = ["ImageSource", "Lens", "distort_image", "pixel_directions", "stereo_depth"]
-
-Floats = NDArray[np.float64]
 MOST_PIXELS = 1 << 24
 """Largest number of pixels of an image."""
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange, storable
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.typing import Floats
 
 from .beams import Beams, sort_beams, unit_vectors
 from .noise import Randomness
@@ -25,7 +26,6 @@ from .view import SensorView
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan", "cast_plane", "main_scan", "main_scanner"]
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 TURN = 2.0 * math.pi

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, storable
+from crowdbot.typing import Floats, Ints
 
 from .beams import Beams, sort_beams, unit_vectors
 from .lidar import visible_agents
@@ -20,10 +21,6 @@ from .ray_casting import cast_rays
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 
-__all__ = ["Lidar3D", "PointCloud"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
 SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16))
 

@@ -11,24 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number, did_you_mean, kebab_case
+from crowdbot.typing import Floats
 
-__all__ = [
-    "Dropout",
-    "Gaussian",
-    "Noise",
-    "Offset",
-    "Peak",
-    "Quantised",
-    "Randomness",
-    "add_noise",
-    "apply_noise",
-    "normals",
-]
-
-Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
 """A generator for all environments, or one per environment, which gives equal results alone and in a batch."""
 

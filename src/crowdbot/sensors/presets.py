@@ -19,8 +19,6 @@ from .realism.pulsed_lidar import PulsedLidar2D
 from .sensor import Sensor
 from .ultrasound import SLIM, Ultrasound
 
-__all__ = ["PRESETS", "SensorPreset", "preset"]
-
 ASSUMED = "assumed: "
 """Prefix of the source of an assumed value."""
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose, Scene, SpatialPose, storable
+from crowdbot.typing import Floats, Ints
 
 from .beams import Beams
 from .noise import Randomness
@@ -15,11 +15,6 @@ from .ranging import Ranging, apply_limits
 from .ray_casting import cast_rays
 from .ray_shapes import NOTHING
 from .sensor import Reading, spatial_pose
-
-__all__ = ["RangeReading", "nearest"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @storable

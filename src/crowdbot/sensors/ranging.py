@@ -7,18 +7,14 @@ import math
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose, check_number, kernel
+from crowdbot.typing import Floats, Ints
 
 from .noise import Randomness, add_noise
 from .ray_shapes import NOTHING
 from .sensor import Sensor
 
-__all__ = ["Ranging", "apply_limits", "end_points", "incidence_of", "settle_ranges"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 MOST_BEAMS = 1_000_000
 """Largest number of beams of a sensor."""
 

@@ -36,15 +36,12 @@ from crowdbot.core.windows import (
     rod_levels,
     rod_width,
 )
+from crowdbot.typing import Floats, Ints
 
 from .beams import TURN, Beams, cell_columns, first_cells, hull_cells, sees_hull
 from .ray_shapes import FLOOR, NOTHING, PROP, RayShapes, collect_shapes
 from .skins.skin_casting import SkinCasting, skin_casting
 
-__all__ = ["RayHits", "cast_rays"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 SKIN = -2
 """Index of the shape of the first triangle of skins; those of the others are below."""
 NOBODY = np.zeros(0, dtype=np.int64)

@@ -7,16 +7,10 @@ import weakref
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, Scene, Skins, SpatialPose, Walls, kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, WALL, WIDTH
-
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments", "wall_segments"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from crowdbot.typing import Bools, Floats, Ints
 
 NOTHING = -1
 """Value of ``hit`` without a return."""

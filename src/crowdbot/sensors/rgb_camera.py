@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, SpatialPose, storable
+from crowdbot.typing import Floats, Ints
 
 from .depth_camera import pixel_beams
 from .lens import Lens, distort_image
@@ -19,10 +20,6 @@ from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, spatial_pose
 from .view import SensorView
 
-__all__ = ["RENDERERS", "SAMPLE_COUNTS", "RGBCamera", "RgbImage", "check_renderer"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 COLORS = {NOTHING: (204, 222, 240), WALLS: (219, 214, 204), FLOOR: (190, 190, 186), PROP: (204, 158, 97)}
 """Colours of shapes without a renderer."""
 PEOPLE = ((196, 78, 82), (76, 114, 176), (85, 168, 104), (129, 114, 178), (221, 132, 82), (100, 181, 205))

@@ -10,12 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, TickSchedule, whole_ticks
+from crowdbot.typing import Ints
 
 from .sensor import Sensor
-
-__all__ = ["SensorSchedule"]
-
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,6 @@ from .lens import ImageSource
 from .noise import Noise, Randomness
 from .view import SensorView
 
-__all__ = ["Reading", "Sensor", "join_readings"]
-
 ReadingKind = TypeVar("ReadingKind", bound="Reading")
 Reading_co = TypeVar("Reading_co", bound="Reading", covariant=True)
 

@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, storable, tree
+from crowdbot.typing import Ints
 
 from .noise import Randomness
 from .sensor import Reading, Sensor, join_readings
 from .view import SensorView
-
-__all__ = ["StateGroups", "measure_rows", "put_state_rows", "take_state_rows"]
-
-Ints = NDArray[np.int64]
 
 
 @storable

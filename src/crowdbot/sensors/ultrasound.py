@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import check_number
+from crowdbot.typing import Floats
 
 from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
@@ -18,9 +18,6 @@ from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
 
-__all__ = ["Ultrasound", "teardrop"]
-
-Floats = NDArray[np.float64]
 SLIM = 16.0 / (3.0 * math.sqrt(3.0))
 """Radius of the zone over its widest radius is ``SLIM u sqrt(u (1 - u))`` at the share u of its length."""
 

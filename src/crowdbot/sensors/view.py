@@ -14,8 +14,6 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, tree
 from .lens import ImageSource
 from .odometry.wheel_rotation import WheelRotation
 
-__all__ = ["SensorView"]
-
 
 @dataclass(frozen=True)
 class SensorView:

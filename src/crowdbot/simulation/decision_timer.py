@@ -23,14 +23,10 @@ from crowdbot.navigation import (
     copy_memory,
 )
 from crowdbot.trials import RobotSpec
+from crowdbot.typing import Bools, Ints
 
 from .failure import RunFailure
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
-
-__all__ = ["DecisionTimer", "decision_times"]
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 NEVER = -1
 """Tick of the latest decision of a kind before there is one."""

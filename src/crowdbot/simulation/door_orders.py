@@ -13,8 +13,6 @@ from crowdbot.world import worlds_of
 
 from .orders.order import Order
 
-__all__ = ["DoorOrder", "check_doors", "order_doors"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class DoorOrder(Order):

@@ -16,15 +16,12 @@ from crowdbot.data import Trajectories
 from crowdbot.metrics import AgentLog, PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial, floor_plan
+from crowdbot.typing import Floats
 from crowdbot.world import BodyContactEvent, ContactForce, Fall
 
 from .failure import RunFailure
 from .orders.order import Order
 from .step_record import RobotContact
-
-__all__ = ["Episode", "ScanRow", "log_of", "scan_row", "tracks_of"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

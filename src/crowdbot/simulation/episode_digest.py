@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose, StateError
 from crowdbot.sensors import Reading, TrackedPeople
+from crowdbot.typing import Bytes
 
 from .mounted_sensor import SensorReadings
 from .orders.order import Order, write_order
@@ -22,10 +23,6 @@ from .step_record import StepRecord
 
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent, ContactForce, Fall
-
-__all__ = ["EpisodeDigest", "add_batch", "present"]
-
-Bytes = NDArray[np.uint8]
 
 
 class EpisodeDigest:

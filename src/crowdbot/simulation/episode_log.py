@@ -13,6 +13,7 @@ from crowdbot.core import FreeClock
 from crowdbot.metrics import AgentLog, NavigationMetrics
 from crowdbot.sensors import Reading
 from crowdbot.trials import Trial
+from crowdbot.typing import Floats, Ints
 from crowdbot.world import BodyContactEvent, ContactForce, reaction_codes
 
 from .episode import Episode
@@ -24,11 +25,6 @@ from .orders.order import Order
 from .statistics import EpisodeStatistics, new_metrics
 from .step_batch import StepBatch
 from .step_record import RobotContact, StepRecord
-
-__all__ = ["EpisodeLog", "EpisodeLogs"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class _Frame(NamedTuple):

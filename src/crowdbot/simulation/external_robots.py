@@ -14,8 +14,6 @@ from crowdbot.trials import Trial
 if TYPE_CHECKING:
     from .orders.order import Order
 
-__all__ = ["OwnSource", "UncommandedRobotWarning", "has_own_source", "open_own_sources", "warn_of_missing_source"]
-
 
 @runtime_checkable
 class OwnSource(Protocol):

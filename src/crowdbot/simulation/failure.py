@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 from crowdbot.core import storable
 
-__all__ = ["RunEnd", "RunFailure", "RunFailureWarning"]
-
 PACKAGE = Path(__file__).resolve().parents[1]
 INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib")]
 

@@ -22,16 +22,12 @@ from crowdbot.sensors import (
     take_state_rows,
 )
 from crowdbot.trials import Mount, RobotSpec, Trial
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import MountPlacement, PlanarWorld, World, wheel_geometry, wheel_rotation
 
 from .world_view import WorldView
 
-__all__ = ["MountedSensor", "SensorReadings", "mounted_sensors", "needs_bodies", "spatial"]
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 LEVEL = 1e-9
-Floats = NDArray[np.float64]
 
 
 @storable

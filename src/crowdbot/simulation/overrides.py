@@ -21,8 +21,6 @@ from .robot_joints import restore_joints
 from .simulation import NONE, SUCCESS, Simulation
 from .world_builder import limits_of, own_walls
 
-__all__ = ["apply_overrides", "check_overrides"]
-
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "avatars", "journeys")
 """Values of a trial that cannot change during a run."""
 START = ("name", "type", "x", "y", "heading", "pose")

@@ -26,6 +26,7 @@ from crowdbot.navigation import (
 from crowdbot.perception import CloudClusters, Detector, GlobalNearestNeighbor, LidarClusters, Tracks
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import Doors, Twists, World, add_rings, free_joints
 
 from .decision_timer import DecisionTimer
@@ -33,12 +34,6 @@ from .faults.fault_state import FaultState
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
-
-__all__ = ["RobotControl", "decision_schedule"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""

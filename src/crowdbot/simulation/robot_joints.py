@@ -15,8 +15,6 @@ from crowdbot.world import World, check_joint, free_joints, move_joint
 from .mounted_sensor import LEVEL
 from .robot_control import RobotControl
 
-__all__ = ["follow_joint_targets", "move_robot_joint", "move_wanted_joints", "restore_joints", "tilt_problem"]
-
 
 def move_robot_joint(control: RobotControl, world: World, environment: int, joint: str, position: float) -> None:
     """Set the target of a joint [rad or m] in one environment; it passes the checks."""

@@ -21,8 +21,6 @@ from .simulation import Simulation
 from .simulation_run import OrderSource, SimulationRun, Sink, StopRequest
 from .variant_template import VariantTemplate
 
-__all__ = ["catch_interrupt", "run_to_end", "simulate", "simulate_seeds", "simulate_variants", "warn_of_failure"]
-
 Progress = Callable[[float], None]
 
 

@@ -40,6 +40,7 @@ from crowdbot.metrics import HOLD
 from crowdbot.navigation import Observation
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial, floor_plan
+from crowdbot.typing import Bools, Ints
 from crowdbot.world import World, put_environments, select_environments, step_environments
 
 from .failure import RunFailure
@@ -57,15 +58,11 @@ if TYPE_CHECKING:
 
     from .orders.order import Order
 
-__all__ = ["COLLISION", "NONE", "SUCCESS", "Simulation"]
-
 INSTANT = 1e-9
 """Tolerance of times [s]."""
 NONE, COLLISION, SUCCESS = 0, 1, 2
 """First event of an environment."""
 
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 Seeds = int | Sequence[int]
 RobotReadings = list[tuple[RobotControl, SensorReadings]]
 """Readings of several environments that arrived in one step, with their robots."""

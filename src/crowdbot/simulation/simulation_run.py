@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, PacedClock
+from crowdbot.typing import Bools, Ints
 
 from .decision_timer import decision_times
 from .external_robots import open_own_sources
@@ -22,10 +22,6 @@ from .simulation import Simulation
 from .step_batch import StepBatch
 from .step_record import StepRecord
 
-__all__ = ["KEYFRAMES", "BatchSink", "OrderSource", "RunSnapshot", "SimulationRun", "Sink", "StopRequest"]
-
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 KEYFRAMES = 5.0
 """Simulated time [s] between two keyframes: snapshots for :meth:`SimulationRun.seek`, and states in episode files."""
 

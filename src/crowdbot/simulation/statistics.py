@@ -18,8 +18,6 @@ from .failure import RunFailure
 from .orders.goal_order import GoalOrder
 from .step_record import StepRecord
 
-__all__ = ["EpisodeStatistics", "RunSummary", "new_metrics", "robot_metrics"]
-
 
 @dataclass(frozen=True)
 class RunSummary:

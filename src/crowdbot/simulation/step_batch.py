@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.trials import Mount, RobotSpec
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import reaction_codes
 
 from .mounted_sensor import SensorReadings
@@ -20,12 +21,6 @@ if TYPE_CHECKING:
 
     from .orders.order import Order
     from .simulation import Simulation
-
-__all__ = ["BatchReadings", "StepBatch"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class BatchReadings(NamedTuple):

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from .orders.order import Order
 
-__all__ = ["WALL", "RobotContact", "StepRecord"]
-
 WALL = -2
 """Code of a wall instead of an agent id, as in scans."""
 

@@ -10,22 +10,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.trials import Agent, End, EndCondition, InitialPeople, Spawner, Trial, area
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import World
 
-__all__ = [
-    "FINISHED",
-    "arrivals_of",
-    "end_condition_numbers",
-    "goal_zones",
-    "leave_goal_zones",
-    "may_be_near",
-    "note_events",
-    "run_outcome",
-]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 GoalZone = tuple[Ints, Any, Any]
 """Indices of people, the zone of their goal, and its bounds."""
 

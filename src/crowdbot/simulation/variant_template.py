@@ -17,8 +17,6 @@ from crowdbot.world import World, join_worlds
 from .robot_control import RobotControl
 from .world_template import WorldTemplate
 
-__all__ = ["VariantTemplate"]
-
 OWN = ("name", "about", "seed")
 """Fields of a trial that each variant has for itself."""
 FREE = {

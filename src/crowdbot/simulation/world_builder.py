@@ -23,11 +23,6 @@ from crowdbot.trials import (
 )
 from crowdbot.world import Avatars, Doors, JourneyAssignment, ReplayedPeople, ReplayedTrack, Router
 
-__all__ = [
-    "avatars_of", "check_clock", "doors_of", "environment_index", "journeys_of", "limits_of", "model_of", "own_walls",
-    "people_at_rest", "script_of", "set_off", "start_scene", "start_scenes",
-]  # fmt: skip
-
 
 def environment_index(environments: Sequence[int] | NDArray[Any], count: int, new: int | None = None) -> Any:
     """Return indices of environments as an array.

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, TrialError
 from crowdbot.models import CrowdModel
@@ -29,6 +28,7 @@ from crowdbot.trials import (
     place,
     robot_reactions,
 )
+from crowdbot.typing import Ints
 from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
 
 from .mounted_sensor import needs_bodies
@@ -44,10 +44,6 @@ from .world_builder import (
     set_off,
     start_scenes,
 )
-
-__all__ = ["WorldTemplate"]
-
-Ints = NDArray[np.int64]
 
 
 class WorldTemplate:

@@ -14,8 +14,6 @@ from crowdbot.world import MountPlacement, World
 if TYPE_CHECKING:
     from crowdbot.world import Renderer
 
-__all__ = ["EnvironmentView", "WorldView"]
-
 SKIN = 1
 """Level of detail of skins for ray casting."""
 

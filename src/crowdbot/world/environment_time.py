@@ -6,14 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Clock, FreeClock, InputError, Storage
-
-__all__ = ["EnvironmentTime"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from crowdbot.typing import Floats, Ints
 
 
 @dataclass

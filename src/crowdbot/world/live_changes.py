@@ -17,19 +17,6 @@ from .planar_live_changes import rest_robot, widen
 from .pushes import PUSH, push_memory
 from .world import World
 
-__all__ = [
-    "add_person",
-    "check_goal",
-    "check_place",
-    "check_room",
-    "move_agent",
-    "next_person",
-    "push_person",
-    "redirect_person",
-    "remove_person",
-    "slot_of",
-]
-
 MOST = 20_000
 """Largest number of people and robots in an environment."""
 FARTHEST = 1e6

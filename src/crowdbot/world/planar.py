@@ -16,6 +16,7 @@ from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_outline_wall_clearance, step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
+from crowdbot.typing import Floats
 from crowdbot.world.robots.drives.drive import Drive, Twists
 from crowdbot.world.robots.drives.servo import CommandDelay, Pending
 
@@ -71,9 +72,6 @@ if TYPE_CHECKING:
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
-__all__ = ["PlanarWorld"]
-
-Floats = NDArray[np.float64]
 
 CHANGEABLE = (
     "model", "drives", "latency", "robot_margin", "router", "contact", "limits", "exits", "heading_jitter", "substeps",

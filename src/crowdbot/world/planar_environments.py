@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, MissingExtra, Scene, Twist, tree
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Ints
 from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.drives.servo import Pending
 
@@ -24,17 +24,6 @@ from .crowd.environment_rows import (
 )
 from .doors.motion import ONE_ENVIRONMENT
 from .planar import PlanarWorld
-
-__all__ = [
-    "join_worlds",
-    "planar_world",
-    "put_environments",
-    "select_environments",
-    "step_one_by_one",
-    "undo_point",
-]
-
-Ints = NDArray[np.int64]
 
 
 def join_worlds(worlds: Sequence[PlanarWorld]) -> PlanarWorld:

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Twist, Walls, did_you_mean
+from crowdbot.typing import Floats
 from crowdbot.world.robots.drives.drive import Drive, Twists
 
 from .crowd.environment_rows import pad_ids, resize_scene, set_models
@@ -19,27 +19,6 @@ from .robots.robot import Robot
 if TYPE_CHECKING:
     from .physics.people_motion import PeopleMotion
 
-__all__ = [
-    "check_robot_place",
-    "chosen_environments",
-    "keep_added_robots",
-    "live_prop_names",
-    "match_robots",
-    "new_prop_name",
-    "people_motions",
-    "prop_number",
-    "props_of",
-    "put_robot_at",
-    "remove_robot_at",
-    "replace_walls",
-    "rest_robot",
-    "robot_environments",
-    "widen",
-    "without_last",
-]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 FARTHEST = 1e6
 """Largest coordinate [m] of a robot."""
 

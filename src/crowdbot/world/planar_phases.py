@@ -13,6 +13,7 @@ from crowdbot.core import InputError, Pose, Scene, Twist
 from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_clearance, step_outline_clearance
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats
 from crowdbot.world.crowd.contact import ContactModel
 from crowdbot.world.crowd.environment_rows import stack_scenes
 from crowdbot.world.crowd.limits import CrowdLimits
@@ -25,12 +26,6 @@ from .crowd.waypoint import PolygonZone
 from .robots.drives.drive import Drive, Twists, put_robot
 from .world import Contact
 
-__all__ = [
-    "check_commands", "contact_surfaces", "exchange_people", "find_contacts", "initial_twist", "move_people",
-    "move_robots", "resolve_overlaps", "show_robots", "step_models",
-]  # fmt: skip
-
-Floats = NDArray[np.float64]
 STILL = Twist()
 
 

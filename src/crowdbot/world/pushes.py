@@ -10,16 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene
 from crowdbot.metrics import step_wall_clearance
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.physics.balance.recovery import CENTER, recovery_force
 
-__all__ = ["PUSH", "acting_pushes", "drift_people", "keep_pushes", "push_memory", "without_drift"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 PUSH = "push"
 """Name in the memory of a scene ``[E, A, 9]``; see the columns below. It is there from the first push on."""
 FORCE, LEFT, DRIFT, SINCE, WHO, MASS, CENTER_HEIGHT = slice(0, 2), 2, slice(3, 5), 5, 6, 7, 8

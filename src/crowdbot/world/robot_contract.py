@@ -13,8 +13,6 @@ from crowdbot.models import ORCA
 from .planar import PlanarWorld
 from .robots.robot import Robot
 
-__all__ = ["DriveTest", "check_robot", "drive_tests"]
-
 DT = 0.1
 SECONDS = 2.0
 """Duration of a drive test [s]."""

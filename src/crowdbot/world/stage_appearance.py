@@ -9,8 +9,6 @@ import numpy as np
 
 from crowdbot.core import InputError, UnknownName
 
-__all__ = ["FLOORS", "RANDOM", "SKIES", "WALL_SURFACES", "StageAppearance"]
-
 FLOORS = ("tiles", "checker", "wood", "concrete", "asphalt", "carpet", "grass", "paving", "plain")
 WALL_SURFACES = ("plaster", "brick", "concrete", "panels", "plain")
 SKIES = ("clear", "cloudy", "overcast", "dusk")

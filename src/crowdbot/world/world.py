@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
-__all__ = ["Contact", "World"]
-
 
 @storable
 class Contact(NamedTuple):

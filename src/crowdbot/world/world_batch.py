@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Storage, Twist, Walls, tree
+from crowdbot.typing import Ints
 from crowdbot.world import planar_environments as planar
 from crowdbot.world.crowd.environment_rows import pad_ids, resize_scene, stack_scenes
 from crowdbot.world.planar import PlanarWorld
@@ -32,17 +33,7 @@ if TYPE_CHECKING:
 
     from .physics.stage import PhysicsStage, PropBody
 
-__all__ = [
-    "WorldBatch",
-    "join_worlds",
-    "put_environments",
-    "select_environments",
-    "step_environments",
-    "worlds_of",
-]
-
 T = TypeVar("T")
-Ints = NDArray[np.int64]
 
 
 class WorldBatch(World):

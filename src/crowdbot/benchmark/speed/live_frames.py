@@ -15,8 +15,6 @@ from crowdbot.recording import run
 
 from .measurement import Gauge
 
-__all__ = ["LIVE_FRAMES", "live_frames"]
-
 PEOPLE = 30
 RATE = 0.1
 """Time between rows of the tracker [s]."""

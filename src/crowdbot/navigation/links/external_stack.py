@@ -8,8 +8,6 @@ from typing import ClassVar
 from crowdbot.core import InputError, check_number
 from crowdbot.navigation.external import ExternalNavigator
 
-__all__ = ["Ros2Navigator", "RosbridgeNavigator"]
-
 SOURCE = "crowdbot.bridges:open_stack"
 LAST_PORT, LAST_DOMAIN = 65535, 232
 """Largest TCP port, and the largest ROS domain whose ports exist on all systems."""

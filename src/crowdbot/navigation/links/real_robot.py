@@ -8,8 +8,6 @@ from typing import ClassVar
 from crowdbot.core import InputError, check_number
 from crowdbot.navigation.external import ExternalNavigator
 
-__all__ = ["RealRobotNavigator"]
-
 REHEARSAL = "simulated"
 """Bridge to a robot of this program, which needs no area."""
 

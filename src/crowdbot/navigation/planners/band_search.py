@@ -10,10 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.navigation import window_search
-
-__all__ = ["POINTS", "BandScene", "optimize_bands"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 nearest_on_segment = window_search.nearest_on_segment  # type: ignore[attr-defined]
 

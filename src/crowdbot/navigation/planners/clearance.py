@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Twist, kernel
 from crowdbot.core.outlines import wall_gap
@@ -11,10 +10,7 @@ from crowdbot.navigation.batch_rows import drive_numbers
 from crowdbot.navigation.dynamic_window import dynamic_window_twist
 from crowdbot.navigation.goal_motion import holonomic_twists
 from crowdbot.navigation.observation import Observation
-
-__all__ = ["move_with", "robot_wall_gaps", "vectors_from_walls", "wall_gaps"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 TINY = 1e-9
 """Smallest length [m] by which a vector is divided."""

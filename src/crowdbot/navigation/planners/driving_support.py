@@ -7,19 +7,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number, kernel
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.orca_search import avoid_agent, best_velocity
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .clearance import move_with
-
-__all__ = ["RDSNavigator"]
-
-Floats = NDArray[np.float64]
 
 EAGER = 100.0
 """Value for unknown accelerations [m/s2], [rad/s2]."""

@@ -7,20 +7,16 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number
 from crowdbot.navigation.goal_motion import slow_speed
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .band_search import POINTS, BandScene, optimize_bands
 from .clearance import TINY, move_with, wall_gaps
-
-__all__ = ["TimeElasticBandNavigator"]
-
-Floats = NDArray[np.float64]
 
 EAGER = 100.0
 """Value for unknown accelerations [m/s2]."""

@@ -18,13 +18,10 @@ from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.observation_batch import AgentsInView, ObservationBatch
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_network, avoid_contacts, limit_velocities, write_inputs
 from .policy_weights import read_policy
-
-__all__ = ["PolicyInputs", "PolicyNavigator", "policy_inputs"]
-
-Floats = NDArray[np.float64]
 
 MOST_PEOPLE = 20
 """Number of nearest people that the policy knows."""

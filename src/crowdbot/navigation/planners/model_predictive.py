@@ -6,20 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Twist, check_number
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .clearance import robot_wall_gaps, wall_gaps
 from .plan_costs import contact_probability, progress_cost, space_lack
 from .rollout import roll_out
-
-__all__ = ["MPCNavigator"]
-
-Floats = NDArray[np.float64]
 
 STEP = 0.2
 """Time step of plans [s]."""

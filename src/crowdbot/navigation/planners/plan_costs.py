@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .rollout import PlanMotions
-
-__all__ = ["contact_probability", "progress_cost", "space_lack"]
-
-Floats = NDArray[np.float64]
 
 LOGISTIC = 1.702
 """Factor with which the logistic function is within 0.01 of the normal distribution."""

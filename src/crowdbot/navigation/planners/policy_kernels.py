@@ -13,18 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.navigation.goal_motion import exact_distance, slow_speed
-
-__all__ = [
-    "OWN_VALUES",
-    "PERSON_VALUES",
-    "SIGHT",
-    "apply_network",
-    "avoid_contacts",
-    "limit_velocities",
-    "write_inputs",
-]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 OWN_VALUES = ("waypoint_distance", "goal_distance", "vx", "vy", "max_speed", "radius")
 """Inputs about the robot; distances are divided by SCALE and cut off at SIGHT."""

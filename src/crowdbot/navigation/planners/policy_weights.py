@@ -17,8 +17,6 @@ from crowdbot.core import InputError
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES
 
-__all__ = ["LAYERS", "PolicyWeights", "policy_file", "read_policy"]
-
 Singles = NDArray[np.float32]
 
 LAYERS = (64, 64, 128)

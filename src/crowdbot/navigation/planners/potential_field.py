@@ -6,19 +6,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number
 from crowdbot.navigation.goal_motion import slow_speed
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .clearance import TINY, move_with, vectors_from_walls
-
-__all__ = ["PotentialFieldNavigator"]
-
-Floats = NDArray[np.float64]
 
 UNITS = {"speed": "m/s", "damping": "1/s", "influence": "m", "wall_influence": "m", "closest": "m"}
 """Fields that must be positive."""

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose, Twist, check_number, kernel
 from crowdbot.core.outlines import point_to_outline
@@ -16,13 +15,10 @@ from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.perception import ScanForecast, TrackedScene
 from crowdbot.sensors import Scan, planar_pose
+from crowdbot.typing import Floats
 
 from .plan_costs import contact_probability, progress_cost, space_lack
 from .rollout import roll_out
-
-__all__ = ["PredictedOccupancyNavigator"]
-
-Floats = NDArray[np.float64]
 
 STEP = 0.2
 """Time step of plans [s]."""

@@ -10,10 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.navigation.goal_motion import SLOWING_TIME, TURN_GAIN
 from crowdbot.navigation.observation import Observation
-
-__all__ = ["PlanMotions", "roll_out"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 EAGER = 100.0
 """Value for unknown accelerations [m/s2], [rad/s2]."""

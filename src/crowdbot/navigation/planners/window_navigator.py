@@ -7,19 +7,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number
 from crowdbot.navigation.goal_motion import SLOWING_TIME
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import DriveLimits, Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
+from crowdbot.typing import Floats
 
 from .clearance import robot_wall_gaps, wall_gaps
-
-__all__ = ["DynamicWindowNavigator"]
-
-Floats = NDArray[np.float64]
 
 STEP = 0.1
 """Time step of the simulated arcs [s]."""

@@ -21,8 +21,6 @@ from crowdbot.core import InputError, check_programs, refuse_system
 
 from .messages import LONGEST_LINE
 
-__all__ = ["ChildProcess", "check_pipes", "child_process"]
-
 START = 60.0
 """Longest time until a process is ready: it imports its libraries [s]."""
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "PYTHONPATH", "SYSTEMROOT", "VIRTUAL_ENV")

@@ -28,8 +28,6 @@ from .messages import (
 )
 from .sandbox import enter_sandbox
 
-__all__ = ["answer", "serve"]
-
 
 def answer(navigator: Navigator, request: dict[str, Any]) -> dict[str, Any]:
     """Return the answer to a request; an exception becomes ``error``.

@@ -19,8 +19,6 @@ from crowdbot.core import InputError
 
 assert sys.platform == "linux"
 
-__all__ = ["kernel_problem", "restrict_process"]
-
 NO_NEW_PRIVILEGES, SET_SECCOMP, FILTER = 38, 22, 2
 CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446
 EXECUTE, WRITE, READ, READ_DIRECTORY = 1 << 0, 1 << 1, 1 << 2, 1 << 3

@@ -24,16 +24,6 @@ from crowdbot.navigation.observation import DriveLimits, Observation, VisiblePeo
 from crowdbot.navigation.track_history import TrackHistory
 from crowdbot.sensors import Reading
 
-__all__ = [
-    "LONGEST_LINE",
-    "decode_action",
-    "decode_memory",
-    "decode_observation",
-    "encode_action",
-    "encode_memory",
-    "encode_observation",
-]
-
 LONGEST_LINE = 64_000_000
 """Largest size of a message [bytes]."""
 TRUTH = ("hit", "part", "direction", "velocity", "acceleration_bias", "turn_bias")

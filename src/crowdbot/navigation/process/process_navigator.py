@@ -19,8 +19,6 @@ from .child_process import ChildProcess, check_pipes, child_process
 from .messages import decode_action, encode_observation
 from .sandbox import sandbox_problem
 
-__all__ = ["ProcessNavigator"]
-
 
 @dataclass(frozen=True)
 class ProcessNavigator(Navigator):

@@ -13,8 +13,6 @@ from pathlib import Path
 
 from crowdbot.core import InputError, system_name
 
-__all__ = ["enter_sandbox", "sandbox_problem"]
-
 
 def sandbox_problem() -> str | None:
     """Return why there is no sandbox on this system, None if there is one."""

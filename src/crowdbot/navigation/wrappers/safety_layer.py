@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Twist, check_number
 from crowdbot.navigation.action import Action
@@ -17,10 +16,7 @@ from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.observation_batch import ObservationBatch
 from crowdbot.navigation.wall_arrays import wall_arrays
-
-__all__ = ["SafetyLayer", "SafetyState"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 TINY = 1e-9
 FIELDS = {

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls, check_number, did_you_mean, kernel
 from crowdbot.navigation.action import Action
@@ -18,10 +17,7 @@ from crowdbot.navigation.orca import ORCANavigator
 from crowdbot.navigation.planners.elastic_band import TimeElasticBandNavigator
 from crowdbot.navigation.planners.potential_field import PotentialFieldNavigator
 from crowdbot.navigation.planners.window_navigator import DynamicWindowNavigator
-
-__all__ = ["ScanMapNavigator"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 PLANNERS: dict[str, Any] = {
     "dynamic-window": DynamicWindowNavigator,

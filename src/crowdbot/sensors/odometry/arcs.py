@@ -5,13 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-
-__all__ = ["along_arc", "arc_between"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 
 def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:

@@ -14,13 +14,11 @@ from crowdbot.sensors.imu import elapsed_time
 from crowdbot.sensors.noise import Randomness, apply_noise, normals
 from crowdbot.sensors.sensor import Reading, Sensor, finite_or_nan, planar_pose
 from crowdbot.sensors.view import SensorView
+from crowdbot.typing import Floats
 
 from .arcs import along_arc, arc_between
 from .wheel_rotation import WheelGeometry, WheelRotation
 
-__all__ = ["Odometry", "OdometryState", "WheelOdometry"]
-
-Floats = NDArray[np.float64]
 TRACK, RADIUS = 0.4, 0.1
 """Track and radius of wheels [m] of robots whose wheels are not known."""
 SAME = 1e-9

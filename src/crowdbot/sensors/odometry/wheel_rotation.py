@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.typing import Floats
 
-__all__ = ["WheelGeometry", "WheelRotation"]
-
-Floats = NDArray[np.float64]
 MIDDLE = 1e-6
 """Distance [m] from the middle of the robot below which a wheel is neither left nor right."""
 

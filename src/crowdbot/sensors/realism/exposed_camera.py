@@ -6,19 +6,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number
 from crowdbot.sensors.noise import Randomness, apply_noise, normals
 from crowdbot.sensors.rgb_camera import RGBCamera, RgbImage
 from crowdbot.sensors.sensor import planar_pose, spatial_pose
 from crowdbot.sensors.view import SensorView
+from crowdbot.typing import Floats
 
 from .moving_scene import SweepState, move_scene, sensor_motion
-
-__all__ = ["ExposedCamera"]
-
-Floats = NDArray[np.float64]
 
 BANDS = 8
 """Number of bands of rows of a rolling shutter."""

@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Pose, Scene, SpatialPose, storable
 from crowdbot.sensors.sensor import planar_pose
-
-__all__ = ["SweepState", "move_scene", "sensor_motion"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 LONGEST = 1.0
 """Time between two measurements [s] above which the sensor counts as at rest."""

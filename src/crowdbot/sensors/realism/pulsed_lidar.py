@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Walls, check_number, storable
 from crowdbot.sensors.beams import sort_beams, unit_vectors
@@ -19,13 +18,9 @@ from crowdbot.sensors.ray_shapes import FLOOR, NOTHING, PROP
 from crowdbot.sensors.ray_shapes import WALLS as WALL
 from crowdbot.sensors.sensor import spatial_pose
 from crowdbot.sensors.view import SensorView
+from crowdbot.typing import Floats, Ints
 
 from .moving_scene import SweepState, move_scene, sensor_motion
-
-__all__ = ["PulsedLidar2D", "PulsedScan"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 BLOCKS = 36
 """Number of instants at which the scene is sampled during a scan."""

@@ -10,13 +10,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
 from crowdbot.sensors.beams import TURN, Beams, hull_cells, sees_hull
+from crowdbot.typing import Floats, Ints
 
 from .skin_tree import SkinTree
-
-__all__ = ["ABSENT", "EDGE_ON", "SkinBoxes", "fit_boxes"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PAD = 4e-6
 """Margin of boxes as a share of the largest coordinate of their triangles."""

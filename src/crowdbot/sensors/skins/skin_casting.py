@@ -5,20 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Skins, kernel, prange
 from crowdbot.core.rays import ray_to_triangle
 from crowdbot.sensors.beams import Beams, cell_columns, hull_cells, sees_hull
+from crowdbot.typing import Bools, Floats, Ints
 
 from .skin_boxes import EDGE_ON, SkinBoxes, fit_boxes
 from .skin_tree import SkinTree, plant_tree, sort_triangles
-
-__all__ = ["SkinCasting", "skin_casting"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 BLOCK = 256
 """Number of beams that a thread casts at a time."""

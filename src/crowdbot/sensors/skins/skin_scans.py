@@ -12,8 +12,6 @@ from crowdbot.sensors.lidar3d import Lidar3D
 
 from .skin_casting import skin_casting
 
-__all__ = ["triangles_one_by_one"]
-
 
 def triangles_one_by_one(lidar: Lidar3D, scene: Scene, pose: SpatialPose) -> Callable[[], int]:
     """Return a benchmark workload: a scan of the skins of ``scene`` without their trees; it counts the hits.

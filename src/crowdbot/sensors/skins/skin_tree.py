@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Skins, kernel, prange
+from crowdbot.typing import Floats, Ints
 
-__all__ = ["SkinTree", "plant_tree", "sort_triangles"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 MOST = 6
 """Largest number of triangles of a leaf."""
 

@@ -8,8 +8,6 @@ from crowdbot.core import InputError
 from crowdbot.simulation.orders.decision_orders import DecisionOrder
 from crowdbot.simulation.orders.order import OrderTarget
 
-__all__ = ["FaultOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class FaultOrder(DecisionOrder):

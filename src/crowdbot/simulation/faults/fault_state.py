@@ -8,21 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import RandomStreams, Storage, kebab_case, stream
 from crowdbot.navigation import ObservationBatch
 from crowdbot.simulation.mounted_sensor import MountedSensor
 from crowdbot.trials import BlindSensor, Fault, FrozenSensor, LateSensor, RobotSpec, SensorFault
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import World
 
 from .fault_order import FaultOrder
 
-__all__ = ["FaultState"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 COLUMNS = 8
 """Largest number of numbers of a fault."""
 INSTANT = 1e-9

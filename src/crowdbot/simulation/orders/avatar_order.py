@@ -14,8 +14,6 @@ from crowdbot.world import give_pose
 
 from .order import Order, OrderTarget
 
-__all__ = ["AvatarOrder"]
-
 AHEAD = 10.0
 """Longest time [s] by which a sample can be ahead of the current time."""
 LATEST = 1e7

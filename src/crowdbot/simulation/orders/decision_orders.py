@@ -10,8 +10,6 @@ from crowdbot.core import InputError
 
 from .order import Order, OrderTarget
 
-__all__ = ["DecisionOrder", "HungDecisionOrder", "MissedDecisionOrder", "RecordedDecisions"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class DecisionOrder(Order):

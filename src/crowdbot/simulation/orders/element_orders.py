@@ -11,8 +11,6 @@ from crowdbot.trials import Trial, add_element, needs_trust, remove_element
 
 from .trial_order import TrialOrder
 
-__all__ = ["AddElementOrder", "RemoveElementOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class AddElementOrder(TrialOrder):

@@ -13,8 +13,6 @@ from crowdbot.world import check_place, redirect_person
 
 from .order import Order
 
-__all__ = ["GoalOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class GoalOrder(Order):

@@ -11,8 +11,6 @@ from crowdbot.world import check_joint
 
 from .order import Order
 
-__all__ = ["JointOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class JointOrder(Order):

@@ -15,8 +15,6 @@ from crowdbot.core import InputError, Twist, did_you_mean, kebab_case
 from crowdbot.trials import Trial
 from crowdbot.world import World
 
-__all__ = ["Order", "OrderTarget", "VelocityOrder", "order_kinds", "read_order", "write_order"]
-
 MOST_TEXT = 1_000_000
 """Largest size of an order [characters]."""
 

@@ -15,8 +15,6 @@ from .order import Order, read_order
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
 
-__all__ = ["OrderSchedule"]
-
 LARGEST = 1 << 26
 """Largest file [bytes]."""
 

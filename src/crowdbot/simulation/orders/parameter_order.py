@@ -9,8 +9,6 @@ from crowdbot.trials import Trial, apply_values
 
 from .trial_order import TrialOrder
 
-__all__ = ["ParameterOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class ParameterOrder(TrialOrder):

@@ -18,8 +18,6 @@ from crowdbot.world import (
 
 from .order import Order, OrderTarget
 
-__all__ = ["AddPersonOrder", "MoveOrder", "RedirectOrder", "RemoveOrder", "check_person", "is_present"]
-
 FASTEST, WIDEST = 20.0, 5.0
 """Largest preferred speed [m/s] and radius [m] of a person."""
 

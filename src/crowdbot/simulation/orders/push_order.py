@@ -16,8 +16,6 @@ from crowdbot.world import push_person, slot_of
 from .order import Order
 from .people_orders import check_person, is_present
 
-__all__ = ["PushOrder"]
-
 STRONGEST, LONGEST, LARGEST = 5000.0, 10.0, 500.0
 """Largest force [N], duration [s] and impulse [N s]; the latter makes an adult about 7 m/s faster."""
 

@@ -12,8 +12,6 @@ from crowdbot.world import give_pose
 from .avatar_order import check_time
 from .order import Order
 
-__all__ = ["RobotPoseOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class RobotPoseOrder(Order):

@@ -12,8 +12,6 @@ from crowdbot.trials import Trial
 
 from .order import Order, OrderTarget
 
-__all__ = ["TrialOrder"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class TrialOrder(Order):

@@ -12,8 +12,6 @@ import numpy as np
 
 from crowdbot.core import HASH_BLOCK, InputError, hash_blocks, hash_start
 
-__all__ = ["ResumableHash"]
-
 WAITING = 1 << 16
 """Bytes that wait for the next call of the kernel at most."""
 SIZE = 16

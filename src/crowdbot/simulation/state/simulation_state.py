@@ -18,8 +18,6 @@ from crowdbot.world import show_doors, widen, worlds_of
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
 
-__all__ = ["restore_state", "state_of"]
-
 MOST_AGENTS = 1_000_000
 
 

@@ -15,8 +15,6 @@ import numpy as np
 
 from crowdbot.core import StateError, StateMark, tree
 
-__all__ = ["decode_state", "encode_state"]
-
 MARK = b"crowdbot state 1\n"
 LARGEST = 1 << 28
 """Largest decompressed state [bytes]; a damaged header can claim any size."""

@@ -10,15 +10,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import GltfFile, InputError, read_gltf
 from crowdbot.humans import material_picture
+from crowdbot.typing import Bytes, Floats
 
-__all__ = ["Building", "BuildingDoor", "BuildingPart", "read_building"]
-
-Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
 MOST_TRIANGLES, MOST_MATERIALS = 300_000, 200
 SIDE = 512
 """Side [pixels] of the texture of a material."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, RandomStreams, Scene, Storage, draw_uniform, stream_states
 from crowdbot.models.mixture import MODEL
+from crowdbot.typing import Bools, Floats, Words
 
 from .agent_arrays import BOOL, dense
 from .entry_queue import BLOCK, DONE, NO_BODY, enter, fill
@@ -19,12 +20,7 @@ from .entry_room import find_busy
 from .journey import JOURNEY
 from .source import TOP, PeopleSource
 
-__all__ = ["Arrivals", "arrival_counts"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Words = NDArray[np.uint64]
 
 
 @dataclass

@@ -7,20 +7,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Storage, tree
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.planar_live_changes import people_motions
 from crowdbot.world.robots.drives.drive import Twists
 
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion
 
-__all__ = ["Avatars", "give_pose"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 JUMP = 8.0
 """A change of position in a step that needs a higher speed [m/s] is a teleport: nothing on the way is touched."""

@@ -7,24 +7,17 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, did_you_mean, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.outlines import Outlines, point_to_outline, to_frame
+from crowdbot.typing import Bools, Floats, Ints, Rows
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .contact_bodies import gather_bodies, shift_bodies
 from .contact_search import find_close_bodies
 from .wall_cells import WallCells
 from .wall_crossing import PASSES, ContactSurfaces, cell_index, first_crossing, project_off_wall
-
-__all__ = ["ContactModel"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Rows = NDArray[np.int32]
-Ints = NDArray[np.int64]
 
 VARIANTS = ("position", "force")
 MOST = 24

@@ -4,15 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import kernel
-
-__all__ = ["gather_bodies", "shift_bodies"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from crowdbot.typing import Bools, Floats
 
 SPARE = 0.25
 """Margin of the neighbor search, in radii; pushes change positions."""

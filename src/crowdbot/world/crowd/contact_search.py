@@ -5,16 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import SMALL, Neighbors, kernel, prange
 from crowdbot.core.neighbors import nearest
-
-__all__ = ["find_close_bodies"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Rows = NDArray[np.int32]
+from crowdbot.typing import Bools, Floats, Rows
 
 
 def find_close_bodies(position: Floats, reach: Floats, most: int, seen: Bools, asking: Bools) -> Neighbors:

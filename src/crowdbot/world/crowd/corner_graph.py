@@ -5,16 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
+from crowdbot.typing import Floats, Rows
 
 from .wall_cells import WallCells, sees
-
-__all__ = ["corner_graph"]
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int32]
 
 
 @kernel(parallel=True)

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, kernel
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .waypoint import PolygonZone, is_inside
-
-__all__ = ["leave_at_goals", "leave_in_zone"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 def leave_at_goals(scene: Scene, radius: float) -> Scene:

@@ -9,14 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel, next_uniform
+from crowdbot.typing import Bools, Floats
 
 from .entry_room import first_free, free_slot
 
-__all__ = ["BLOCK", "DONE", "NO_BODY", "WRONG_BODY", "enter", "fill"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 BLOCK = 16
 """Random numbers that are drawn together for a queue."""

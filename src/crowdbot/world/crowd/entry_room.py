@@ -6,14 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats
 
 from .waypoint import is_inside
 
-__all__ = ["find_busy", "first_free", "free_slot"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 GAP = 0.01
 """Smallest distance [m] between bodies at entry."""

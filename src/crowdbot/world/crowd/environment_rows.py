@@ -12,17 +12,6 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene, tree
 from crowdbot.models import CrowdModel, Mixture
 
-__all__ = [
-    "align_scenes",
-    "join_models",
-    "pad_ids",
-    "resize_scene",
-    "set_models",
-    "stack_scenes",
-    "with_common_time",
-    "works_in_batches",
-]
-
 FILLS = {"radius": 0.25, "group": -1, "external": True, "visible": True}
 """Values of the slots that pad a scene. They are external, so that nobody enters in them."""
 

@@ -6,16 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Walls
+from crowdbot.typing import Floats
 
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["corners", "inside", "room_for"]
-
-Floats = NDArray[np.float64]
 
 SHARPEST = math.pi / 4.0
 """Largest turn [rad] at one point of a path around a corner."""

@@ -7,8 +7,6 @@ from typing import Any
 
 from crowdbot.core import Scene
 
-__all__ = ["hide_ghosts", "show_ghosts"]
-
 
 def hide_ghosts(scene: Scene, ghosts: Sequence[int]) -> Scene:
     """Return the scene as everybody perceives it: ghosts, given by agent index, are absent.

@@ -11,16 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, did_you_mean
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .waypoint import PersonRandom, Waypoint
 from .waypoint_table import ASKS, LEAVES, TURNS, WaypointTable, advance_waypoints, routing_mask
 
-__all__ = ["JOURNEY", "STOP", "JourneyAssignment", "WaypointSequence"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 JOURNEY, STOP = "journey", "stop"
 """Names in the memory of a scene ``[E, A]``: index of the journey (-1 for none) and number of the current waypoint,

@@ -6,16 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, PerAgent, Scene, kernel, per_agent
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
-
-__all__ = ["CrowdLimits"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

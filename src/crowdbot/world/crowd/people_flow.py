@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, Storage, kernel
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .arrivals import Arrivals
@@ -20,11 +21,7 @@ from .person_random import uniform
 from .routing import WAY, Router, fresh
 from .source import PeopleSource
 
-__all__ = ["PeopleFlow", "environment_seeds"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass

@@ -11,15 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, kernel
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .waypoint import PolygonZone, is_inside
 
-__all__ = ["PortalTransfer", "apply_portals"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 GAP = 0.01
 """Minimum clearance [m] to other bodies at the exit."""

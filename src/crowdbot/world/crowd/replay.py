@@ -11,12 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, kernel
+from crowdbot.typing import Bools, Floats
 
-__all__ = ["SCRIPT", "ReplayedPeople", "ReplayedTrack"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 SCRIPT = "script"
 """Name in the memory of a scene ``[E, A]``: one of the states below."""

@@ -10,16 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import CHUNK, SMALL, InputError, Scene, Walls, did_you_mean, kernel, prange
+from crowdbot.typing import Floats, Rows
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .corner_graph import corner_graph
 from .free_space import corners, room_for
 from .wall_cells import distance2, sees, wall_cells
-
-__all__ = ["WAY", "Router", "Ways"]
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int32]
 
 WAY = "way"
 """Name in the memory of a scene ``[E, A, 9]``: the path of each agent."""

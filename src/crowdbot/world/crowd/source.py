@@ -10,15 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
+from crowdbot.typing import Floats
 
 from .journey import WaypointSequence
 from .waypoint import PolygonZone
 
-__all__ = ["PeopleSource", "Sampler"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 TIMINGS = ("poisson", "regular")
 TOP = 1.3

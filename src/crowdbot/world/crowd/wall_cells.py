@@ -6,15 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
-
-__all__ = ["WallCells", "distance2", "sees", "wall_cells"]
-
-Floats = NDArray[np.float64]
-Rows = NDArray[np.int32]
+from crowdbot.typing import Floats, Rows
 
 CELLS_A_WALL = 8
 MOST_CELLS = 1 << 18

@@ -10,20 +10,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Walls, kernel
 from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.typing import Bools, Floats, Rows
 
 from .agent_arrays import BOOL, FLOAT, dense
 from .contact_bodies import shift_bodies
 from .wall_cells import WallCells, distance2, wall_cells
-
-__all__ = ["PASSES", "ContactSurfaces", "cell_index", "first_crossing", "project_off_wall", "stop_at_walls"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Rows = NDArray[np.int32]
 
 PASSES = 4
 """Maximum number of walls that move a person one after the other."""

@@ -12,15 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, kernel
+from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import FLOAT, dense
 from .person_random import uniform
 
-__all__ = ["HeadingWaypoint", "PersonRandom", "PointWaypoint", "PolygonZone", "Waypoint", "is_inside", "nearest_point"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 AHEAD = 1000.0
 """Distance [m] of the goal of a heading waypoint."""

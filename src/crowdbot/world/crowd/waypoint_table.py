@@ -9,14 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Bools, Floats
 
 from .waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint, is_inside, nearest_point
 
-__all__ = ["ASKS", "LEAVES", "TURNS", "WaypointTable", "advance_waypoints", "routing_mask"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 POINT, HEADING, NEAREST, RANDOM, OTHER = 0, 1, 2, 3, 4
 """Kinds of waypoints: the goal of ``RANDOM`` and ``OTHER`` is not computed by kernels, nor the arrival of ``OTHER``."""

@@ -7,17 +7,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Storage, Walls
+from crowdbot.typing import Floats
 from crowdbot.world.crowd.routing import Router
 from crowdbot.world.physics.scenery import add_rings
 
 from .leaf import DoorLeaf
 
-__all__ = ["Doors"]
-
-Floats = NDArray[np.float64]
 SPARE = 0.05
 """Distance [m] that a moving leaf keeps from people and robots; it stops before."""
 TOUCH = 0.15

@@ -6,15 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError
+from crowdbot.typing import Floats
 from crowdbot.world.physics.layers import LEAF
 from crowdbot.world.urdf.geoms import row
 
-__all__ = ["KINDS", "OPENINGS", "DoorLeaf"]
-
-Floats = NDArray[np.float64]
 KINDS = ("hinged", "sliding")
 OPENINGS = ("order", "schedule", "approach", "push")
 THICK = 0.04

@@ -5,16 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
 from crowdbot.world.crowd.routing import WAY, Router, fresh
 
 from .doors import Doors
-
-__all__ = ["ONE_ENVIRONMENT", "move_doors", "read_leaves", "show_doors", "turn_leaves"]
-
-Floats = NDArray[np.float64]
-
 
 ONE_ENVIRONMENT = (
     "a planar world with doors has one environment, since its walls are those of all; join several worlds with"

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .part import GroundPart
 
-__all__ = ["PEOPLE_SLOPE", "PEOPLE_STEP", "barriers"]
-
-Floats = NDArray[np.float64]
 PEOPLE_STEP, PEOPLE_SLOPE = 0.25, 0.7
 """Largest step [m] and slope that people walk over (assumed; steps of stairs are 0.14 to 0.21 m high, EN 81-70 and
 DIN 18065)."""

@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, kernel
+from crowdbot.typing import Floats
 
 from .barriers import PEOPLE_SLOPE, PEOPLE_STEP, barriers
 from .part import GroundPart
 
-__all__ = ["Ground"]
-
-Floats = NDArray[np.float64]
 X, Y, COS, SIN, LENGTH, WIDTH, REAR, FRONT, STAIRS = range(9)
 """Columns of the table of parts: centre, axis, half sides, heights at both ends, whether it is a step of stairs."""
 STEEP = 1e9

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["GroundPart"]
-
 HIGHEST = 100.0
 """Largest height [m] of a part."""
 

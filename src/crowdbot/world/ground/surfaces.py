@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element
+from crowdbot.typing import Floats
 from crowdbot.world.urdf.geoms import row
 from crowdbot.world.urdf.transforms import axis_rotation, frame
 
 from .ground import Ground
 from .part import GroundPart
 
-__all__ = ["ground_boxes", "ground_geoms"]
-
-Floats = NDArray[np.float64]
 SLAB = 0.02
 """Least thickness [m] of the boxes below a slope."""
 LAYERS = 16

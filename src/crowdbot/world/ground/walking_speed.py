@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene
+from crowdbot.typing import Floats
 
 from .ground import Ground
 
-__all__ = ["DOWNSTAIRS", "UPSTAIRS", "slow_people", "walking_speed_factor"]
-
-Floats = NDArray[np.float64]
 LEVEL = 1.34
 UPSTAIRS, DOWNSTAIRS = 0.610 / LEVEL, 0.694 / LEVEL
 """Horizontal speed on stairs over that on level ground: 0.610 m/s up, 0.694 m/s down and 1.34 m/s (U. Weidmann,

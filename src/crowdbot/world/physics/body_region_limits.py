@@ -13,17 +13,6 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, Paper
 
-__all__ = [
-    "BODY_REGION_LIMITS",
-    "SOURCE",
-    "BodyRegionLimits",
-    "permitted_speed",
-    "reduced_mass",
-    "region_of",
-    "softness",
-    "two_body_force",
-]
-
 SOURCE = Paper(
     "ISO",
     2016,

@@ -4,17 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import storable
+from crowdbot.typing import Floats, Ints
 
 from .mjcf_model import LIMB_COUNT
-
-__all__ = ["BodyShapes"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @storable

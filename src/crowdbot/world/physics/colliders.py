@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.ground.surfaces import ground_boxes
 from crowdbot.world.rendering.carried_objects import carried_solids, has_things
@@ -22,10 +23,6 @@ from .people_motion import PeopleMotion
 from .rider import RIDER
 from .stage import PhysicsStage, PropBody
 
-__all__ = ["scene_bodies"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Frames = Mapping[str, Floats]
 UPRIGHT = math.cos(math.radians(5.0))
 """Cylinders tilted by less than this are upright."""

@@ -9,18 +9,15 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Storage, storable
 from crowdbot.humans import LIMBS
 from crowdbot.metrics import HOLD, cause_of
+from crowdbot.typing import Floats
 
 from .body_region_limits import BODY_REGION_LIMITS, region_of, two_body_force
 from .contacts import ContactBody, EngineContact
 
-__all__ = ["BodyContactEvent", "BodyContactTracker", "ContactForce"]
-
-Floats = NDArray[np.float64]
 CLAMPED = 0.5
 """Time under pressure [s] after which the force on a limb is quasi-static (ISO/TS 15066)."""
 WINDOW = 0.1

@@ -10,15 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import storable
+from crowdbot.typing import Floats
 
 from .body_region_limits import DAMPING, peak_share
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
 from .rider import RIDER
 
-__all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact", "GeomTable"]
-
-Floats = NDArray[np.float64]
 KINDS = ("robot", "person", "prop", "wall")
 NOTHING, ROBOT, PROP, PERSON, WALL = 0, 1, 2, 3, 4
 SLOW = 0.05

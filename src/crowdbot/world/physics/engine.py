@@ -6,8 +6,6 @@ from typing import Any
 
 from crowdbot.core import import_optional
 
-__all__ = ["engine"]
-
 
 def engine() -> Any:
     """Return the module ``mujoco``.

@@ -24,8 +24,6 @@ from .mjcf_model import MjcfModel, build_mjcf_model
 from .people_bodies import PeopleBodies
 from .stage import PhysicsStage
 
-__all__ = ["BodyDesign", "CompiledBodies", "RobotStart", "compile_bodies", "motors_of"]
-
 SETTLING = 1.0
 """Time [s] for which robots settle on the floor before the start."""
 KEPT = 8

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Storage, Walls
 from crowdbot.humans import People
+from crowdbot.typing import Ints
 from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.robot import Robot
 
@@ -20,10 +20,6 @@ from .stage import PhysicsStage
 
 if TYPE_CHECKING:
     from crowdbot.world.doors.doors import Doors
-
-__all__ = ["KinematicBodies"]
-
-Ints = NDArray[np.int64]
 
 
 class KinematicBodies:

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from crowdbot.humans import LIMBS
 
-__all__ = ["DYNAMIC", "GROUND", "LEAF", "LIMB", "PULLED", "RAISED", "ROBOT", "STANDING", "TRUNK", "write_layers"]
-
 _ROBOT, _STAGE, _PERSON, _MOVED, _FLOOR, _RAISED, _UNSTEADY = 1, 2, 4, 8, 16, 32, 64
 
 

@@ -5,18 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.humans import limb_chain
+from crowdbot.typing import Bools, Floats, Ints
 
 from .mjcf_model import LIMB_NAMES
-
-__all__ = ["chain_rows", "move_limbs"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 def chain_rows(limb: str) -> list[int]:

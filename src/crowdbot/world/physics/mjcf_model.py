@@ -24,8 +24,6 @@ from .layers import LIMB, PULLED, ROBOT, TRUNK
 from .scenery import scenery
 from .stage import PhysicsStage
 
-__all__ = ["PARKED", "MjcfModel", "build_mjcf_model"]
-
 PARKED = 60.0
 """Height [m] of the limbs of unused bodies."""
 PULL, SPIN = 4.0, 1.5

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Storage
+from crowdbot.typing import Bools, Floats, Ints
 
 from .balance.balance import Balance
 from .balance.force_pushes import ForcePushes
@@ -25,12 +25,6 @@ from .contacts import EngineContact
 from .layers import write_layers
 from .limb_poses import chain_rows, move_limbs
 from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
-
-__all__ = ["PeopleBodies"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 HOLD = 0.05
 """Time [s] after a contact for which limbs keep their pose relative to the body."""

@@ -25,12 +25,9 @@ from crowdbot.humans import (
     stand_on_ground,
     striking_mass,
 )
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.ground.ground import Ground
 
-__all__ = ["LimbCapsules", "PeopleMotion"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 NAMES = tuple(limb.name for limb in LIMBS)
 SOLE, STEEP = 0.06, 2.0
 """A foot stands on the highest ground within ``SOLE`` [m] of the ankle, and rises ahead of an edge with this slope."""

@@ -6,16 +6,13 @@ import dataclasses
 import functools
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.humans import LIMBS, WHEELCHAIR, Gait, People
+from crowdbot.typing import Floats
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.urdf import Capsule, Joint, Link, LinkInertia, LinkShape
 from crowdbot.world.urdf.transforms import frame
 
-__all__ = ["RIDER", "seat_rider"]
-
-Floats = NDArray[np.float64]
 RIDER = "rider/"
 """Prefix of the links of a rider, before the name of the limb."""
 

@@ -7,18 +7,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Storage
+from crowdbot.typing import Floats
 from crowdbot.world.physics.robots.link_forces import LinkForces
 from crowdbot.world.physics.robots.robot_body import RobotBody
 
 from .engine import engine
 from .engine_models import BodyDesign, compile_bodies
-
-__all__ = ["RigidBodies", "copy_state"]
-
-Floats = NDArray[np.float64]
 
 
 class RigidBodies:

@@ -8,15 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError, Walls
+from crowdbot.typing import Floats
 from crowdbot.world.ground.surfaces import ground_geoms
 from crowdbot.world.urdf.geoms import row
 
 from .layers import GROUND, RAISED, STANDING
 from .stage import AbsentProp, PhysicsStage, PropBody
 
-__all__ = ["add_rings", "outline_props", "prop_outline", "remove_ring", "scenery"]
-
-Floats = NDArray[np.float64]
 THIN, THICK = 0.01, 0.025
 """Half thickness [m] of thin walls and of the surfaces of non-convex solids."""
 SLIVER = 1e-3

@@ -7,9 +7,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError
+from crowdbot.typing import Floats
 from crowdbot.world.buildings.building import Building
 from crowdbot.world.doors.leaf import DoorLeaf
 from crowdbot.world.ground.ground import Ground
@@ -18,18 +18,6 @@ from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
 
-__all__ = [
-    "AbsentProp",
-    "CubeBody",
-    "LightSource",
-    "PhysicsStage",
-    "PropBody",
-    "TableBody",
-    "TreeBody",
-    "without_prop",
-]
-
-Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
 LEG = 0.05
 """Width of the legs and thickness of the top of a table [m]."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Storage, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.doors.doors import Doors
 from crowdbot.world.doors.motion import read_leaves, turn_leaves
@@ -60,11 +61,6 @@ from .world_bodies import WorldBodies
 if TYPE_CHECKING:
     from crowdbot.world.crowd.source import PeopleSource
 
-
-__all__ = ["PhysicsWorld"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEAR = 0.8
 """A person within this clearance [m] of a robot or a movable prop gets a body in the engine."""

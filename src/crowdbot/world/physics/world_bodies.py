@@ -17,8 +17,6 @@ from .people_bodies import PeopleBodies
 from .rigid_bodies import RigidBodies, update_frames
 from .stage import AbsentProp, PhysicsStage, PropBody
 
-__all__ = ["WorldBodies"]
-
 
 class WorldBodies:
     """Rigid bodies of robots, props and people near them.

@@ -13,8 +13,6 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, did_you_mean
 
-__all__ = ["REACTIONS", "REACTION_DEFAULTS", "ReactionDefaults", "RobotReaction"]
-
 REACTIONS = ("regular", "ignore", "impassive", "curious", "scared", "block", "follow", "give-way", "look")
 """Kinds of reactions. The index of a kind is its code in recordings; 0 means that no reaction is in force."""
 

@@ -14,14 +14,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 from crowdbot.core.geometry import ray_to_segment
+from crowdbot.typing import Bools, Floats
 
 from .reaction import REACTIONS
 
-__all__ = ["choose_motion", "update_states"]
-
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 IGNORE, IMPASSIVE, CURIOUS, SCARED, BLOCK, FOLLOW, GIVE_WAY, LOOK = range(1, len(REACTIONS))
 LOST = 1.0

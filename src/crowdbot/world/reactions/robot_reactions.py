@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
+from crowdbot.typing import Floats
 from crowdbot.world.crowd.agent_arrays import BOOL, FLOAT, dense
 from crowdbot.world.crowd.journey import JOURNEY
 from crowdbot.world.crowd.people_flow import PeopleFlow
@@ -20,9 +21,6 @@ from crowdbot.world.crowd.person_random import uniform
 from .reaction import REACTIONS, RobotReaction
 from .reaction_kernel import choose_motion, update_states
 
-__all__ = ["REACTION", "REACTION_STATE", "RobotReactions", "people_by_reaction", "reaction_codes"]
-
-Floats = NDArray[np.float64]
 Step = Callable[[Scene, float], Scene]
 
 REACTION, REACTION_STATE = "reaction", "reaction_state"

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose
 from crowdbot.sensors import Lens, check_renderer
+from crowdbot.typing import Floats
 
-__all__ = ["LARGEST", "CameraImages", "CameraView", "SceneCamera"]
-
-Floats = NDArray[np.float64]
 LARGEST = (1920, 1200)
 PointWaypoint = tuple[float, float, float]
 

@@ -9,16 +9,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import stream
 from crowdbot.humans import ACTIVITIES, People, Posture, rest_skeleton, shapes
+from crowdbot.typing import Floats
 
 from .shape_meshes import ShapeMesh, box_mesh, cylinder_mesh, ellipsoid_mesh
 
-__all__ = ["CarriedPart", "bag_of", "carried_parts", "carried_solids", "has_things", "holds"]
-
-Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
 COLORS = ((0.16, 0.20, 0.30), (0.45, 0.16, 0.14), (0.22, 0.26, 0.20), (0.10, 0.10, 0.11), (0.55, 0.42, 0.28))
 METAL, DARK, PAPER, CARDBOARD = (0.62, 0.63, 0.65), (0.07, 0.07, 0.08), (0.93, 0.91, 0.86), (0.66, 0.49, 0.32)

@@ -14,8 +14,6 @@ from typing import Any
 from crowdbot.core import InputError
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["backend", "close_gl_context", "create_gl_context", "graphics_library", "use_gl_context"]
-
 KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
 OPEN: list[Any] = []

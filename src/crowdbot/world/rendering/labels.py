@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "geom_code"]
-
 NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
 
 

@@ -13,11 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
+from crowdbot.typing import Floats, Ints
 
-__all__ = ["BAND", "bin_triangles", "cover", "place_shapes", "project", "start_depth", "vertex_normals"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Labels = NDArray[np.int32]
 Depths = NDArray[np.float32]
 BAND = 16

@@ -9,16 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Bytes, Floats, Ints
+
 from .camera import CameraView
 from .raster_kernels import BAND, bin_triangles, cover, project, start_depth
 from .shade_kernels import shade, soften
 from .shadow_kernels import BLOCK, cover_shadow, project_shadow, spread_limits
 
-__all__ = ["SAMPLES", "DrawList", "Illumination", "Rasterizer", "TexturePool", "pack_textures"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bytes = NDArray[np.uint8]
 SAMPLES = {
     1: ((0.5, 0.5),),
     2: ((0.25, 0.25), (0.75, 0.75)),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, SpatialPose, did_you_mean
 from crowdbot.humans import keypoint_places
 from crowdbot.sensors import Lens
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel, build_mjcf_model
 from crowdbot.world.physics.people_motion import PeopleMotion
@@ -22,9 +23,6 @@ from .camera import CameraImages, CameraView, SceneCamera
 from .software_visuals import SoftwareVisuals
 from .visuals import Visuals
 
-__all__ = ["Renderer"]
-
-Floats = NDArray[np.float64]
 BODY = 0.20
 """Largest distance [m] of a keypoint from the surface of the body in front of it."""
 CLOSEST = 0.02

@@ -6,14 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
+from crowdbot.typing import Bytes, Floats, Ints
 
 from .shadow_kernels import BLOCK
 
-__all__ = ["shade", "soften"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bytes = NDArray[np.uint8]
 Labels = NDArray[np.int32]
 Color = tuple[float, float, float]
 

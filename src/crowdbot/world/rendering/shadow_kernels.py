@@ -6,13 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel, prange
+from crowdbot.typing import Floats, Ints
 
 from .raster_kernels import BAND
 
-__all__ = ["BLOCK", "cover_shadow", "project_shadow", "spread_limits"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 BLOCK = 8
 """Side [pixels] of the blocks of the shadow map whose limits are known; at least the softest edge of a shadow."""
 

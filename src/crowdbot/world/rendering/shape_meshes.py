@@ -7,13 +7,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["ShapeMesh", "box_mesh", "cylinder_mesh", "ellipsoid_mesh", "flat_mesh", "geom_mesh"]
-
-Floats = NDArray[np.float64]
 AROUND, ALONG = 20, 6
 """Segments of round shapes around their axis, and of half a sphere along it."""
 

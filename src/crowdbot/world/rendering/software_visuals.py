@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import format_xml, stream
 from crowdbot.humans import LEVELS, People, RiggedBody, body_uv, paint_body, shapes, worn_parts
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion
@@ -24,10 +25,6 @@ from .rasterizer import DrawList, Illumination, Rasterizer, TexturePool, pack_te
 from .shape_meshes import ShapeMesh, box_mesh, flat_mesh, geom_mesh
 from .surfaces import FLOOR_SIZE, clouds, floor_texture, grain, wall_texture
 
-__all__ = ["SoftwareVisuals"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 PICTURES = (512, 256, 128)
 """Side [pixels] of the picture of a person, by level of detail."""
 EDGE = (0.22, 0.22, 0.24)

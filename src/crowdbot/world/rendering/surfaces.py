@@ -8,11 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.typing import Bytes, Floats
 
-__all__ = ["FLOOR_SIZE", "clouds", "floor_texture", "grain", "periodic_noise", "wall_texture"]
-
-Floats = NDArray[np.float64]
-Bytes = NDArray[np.uint8]
 SIZE = 512
 FLOOR_SIZE = 2.4
 """Width [m] of floor and that of wall that a texture covers."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import format_xml
 from crowdbot.humans import People, region_colors, shapes
+from crowdbot.typing import Floats
 from crowdbot.world.buildings.building import BuildingPart
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
@@ -20,9 +21,6 @@ from .camera import LARGEST, CameraImages, CameraView
 from .gl_context import close_gl_context, create_gl_context, use_gl_context
 from .labels import NOTHING, WALL, geom_code
 
-__all__ = ["Visuals"]
-
-Floats = NDArray[np.float64]
 SHAPES_MOST = 20_000
 HIDDEN = 5
 """Group of shapes that are not drawn."""

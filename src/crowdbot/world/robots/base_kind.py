@@ -7,15 +7,12 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
+from crowdbot.typing import Floats
 from crowdbot.world.urdf import Cylinder, Joint, RobotModel
 from crowdbot.world.urdf.transforms import transform_points
 
-__all__ = ["BASE_KINDS", "BaseKind", "FoundWheel", "recognize_base", "wheel_springs"]
-
-Floats = NDArray[np.float64]
 BASE_KINDS = (
     "differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional", "legged", "planar",
 )  # fmt: skip

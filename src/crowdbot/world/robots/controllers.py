@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 from crowdbot.core import Element, InputError, parse_number, parse_yaml, read_bytes
 from crowdbot.world.urdf import robot_folder
 
-__all__ = ["ControllerFile", "JointLimits", "find_controller_files", "read_controllers", "read_joint_limits"]
-
 MOST_BYTES = 300_000
 MOST_FILES = 60
 MOST_DEPTH = 12

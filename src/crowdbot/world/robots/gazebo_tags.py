@@ -10,8 +10,6 @@ from typing import NamedTuple
 
 from crowdbot.core import Element, InputError, parse_number
 
-__all__ = ["SAME", "DriveParameters", "FoundSensor", "find_sensors", "guess_sensors", "read_drive_parameters"]
-
 
 class FoundSensor(NamedTuple):
     """A sensor: name, link, attributes of ``<sensor>`` in robot.xml,

@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, did_you_mean, parse_number
 
-__all__ = ["DERIVED", "DOUBTFUL", "FILE", "GIVEN", "GUESS", "Guess", "GuessTable"]
-
 FILE, DERIVED, GUESS, GIVEN, DOUBTFUL = "file", "derived", "guess", "given", "doubtful"
 
 

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from .robot import Robot
 
-__all__ = ["check_joint", "free_joints", "move_joint"]
-
 
 def free_joints(robot: Robot) -> tuple[str, ...]:
     """Return the joints of a robot that can be moved to a position: all with one coordinate, except wheels.

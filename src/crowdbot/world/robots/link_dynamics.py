@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from crowdbot.core import InputError, attribute_problems, did_you_mean, from_attributes
 from crowdbot.world.urdf import RobotModel
 
-__all__ = ["LinkDynamics", "link_problem", "read_link"]
-
 
 @dataclass(frozen=True)
 class LinkDynamics:

@@ -6,16 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.core import InputError
 from crowdbot.sensors import Sensor
+from crowdbot.typing import Floats
 from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
-
-__all__ = ["MountPlacement", "SensorMount"]
-
-Floats = NDArray[np.float64]
 
 
 class MountPlacement(NamedTuple):

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
 from crowdbot.core.outlines import outline_of
+from crowdbot.typing import Floats
 from crowdbot.world.robots.drives.drive import Drive
 from crowdbot.world.robots.drives.servo import CommandDelay
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
@@ -24,9 +24,6 @@ from .mount import SensorMount
 from .robot_file import FILE, read_robot_file
 from .wheel import Wheel, weak_motor
 
-__all__ = ["Robot", "builtin_robots", "spatial"]
-
-Floats = NDArray[np.float64]
 SUNK = 2e-3
 """Depth [m] of colliders below the root above which the root is not on the ground."""
 CLEAR = 0.01

@@ -7,18 +7,14 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, format_xml
+from crowdbot.typing import Floats
 from crowdbot.world.urdf import Box, Cylinder, Joint, Link, LinkShape, Mesh, RobotModel, Sphere
 from crowdbot.world.urdf.shapes import Shape
 
 if TYPE_CHECKING:
     from .robot import Robot
-
-__all__ = ["robot_description"]
-
-Floats = NDArray[np.float64]
 
 
 def robot_description(robot: Robot) -> str:

@@ -35,8 +35,6 @@ from .link_dynamics import LinkDynamics, read_link
 from .mount import SensorMount
 from .wheel import Wheel
 
-__all__ = ["FILE", "read_robot_file"]
-
 FILE = "robot.xml"
 SHIPPED = Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots")))
 """Folder of the built-in robots."""

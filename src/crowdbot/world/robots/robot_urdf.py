@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element
+from crowdbot.typing import Floats
 from crowdbot.world.urdf import Cylinder, Joint, Link, LinkInertia, LinkShape, RobotModel, replacement_shape
 from crowdbot.world.urdf.transforms import across
 
@@ -19,17 +19,6 @@ from .base_kind import BaseKind, FoundWheel
 from .guess_table import DERIVED, FILE, GUESS, GuessTable
 from .wheel import resistance, weak_motor
 
-__all__ = [
-    "add_masses",
-    "add_motors",
-    "add_shapes",
-    "add_wheel_shapes",
-    "copy_elements",
-    "copy_meshes",
-    "format_number",
-]
-
-Floats = NDArray[np.float64]
 GRAVITY = 9.81
 WHEEL_NAMES = ("wheel", "whl")
 WHEEL_WIDTH = 0.4

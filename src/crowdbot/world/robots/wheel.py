@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from crowdbot.core import InputError
 from crowdbot.world.urdf import Joint
 
-__all__ = ["Wheel", "fastest", "resistance", "weak_motor"]
-
 MAX_ROLLERS = 1.4
 """Largest angle [rad] of rollers: at pi / 2 the wheel could not push."""
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Twist
 from crowdbot.sensors import WheelGeometry, WheelRotation
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
 
     from .robot import Robot
 
-__all__ = ["joint_states", "simulated_body", "wheel_geometry", "wheel_rotation"]
-
-Floats = NDArray[np.float64]
 TWISTS = (Twist(1.0, 0.0), Twist(0.0, 1.0), Twist(0.0, 0.0, 1.0))
 
 

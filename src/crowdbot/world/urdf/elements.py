@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError, RobotError, parse_number
+from crowdbot.typing import Floats
 
 from .folders import Folders
 from .mesh_files import MeshFiles
@@ -17,9 +17,6 @@ from .model import Remark
 from .shapes import Mesh
 from .transforms import frame, roll_pitch_yaw
 
-__all__ = ["LARGEST", "UrdfReader"]
-
-Floats = NDArray[np.float64]
 MOST_PROBLEMS = 100
 LARGEST = 1e6
 """Largest number of a row, and length [m] of a shape."""

@@ -10,8 +10,6 @@ from urllib.parse import unquote
 
 from crowdbot.core import InputError, parse_xml
 
-__all__ = ["Folders", "find_package", "robot_folder"]
-
 INNER = ("urdf", "robots")
 """Subfolders of a robot folder that contain the URDF, as in ROS packages."""
 MOST_PACKAGE_BYTES = 100_000

@@ -9,14 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Element
+from crowdbot.typing import Floats
 
 from .model import Link, LinkShape, RobotModel
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Texture
 from .transforms import across, quaternion, transform_points
 
-__all__ = ["Geoms", "row"]
-
-Floats = NDArray[np.float64]
 GREY = (0.7, 0.7, 0.72, 1.0)
 SMOOTH = 1e-3
 """Friction coefficients below this are treated as 0."""

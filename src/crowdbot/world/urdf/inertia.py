@@ -5,23 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crowdbot.typing import Floats
 
 from .model import LinkInertia, LinkShape
 from .shapes import Box, Solid, Sphere, together
 from .transforms import frame, transform_points
 
-__all__ = [
-    "DENSITY",
-    "default_inertia",
-    "find_inertia_problems",
-    "repair_inertia",
-    "replacement_shape",
-    "solid_of",
-    "unphysical",
-]
-
-Floats = NDArray[np.float64]
 DENSITY = 1000.0
 """Density [kg/m3] of water, for a mass without shape, and for shapes of a file without any mass."""
 SMALLEST = 1e-12

@@ -8,14 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats, Ints
+
 from .model import Link, LinkShape
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Texture
 from .transforms import transform_points
 
-__all__ = ["LinkSurface", "link_surface"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 AROUND, ALONG = 20, 8
 """Edges around a round shape, and from pole to pole of a ball."""
 PLAIN = (0.62, 0.65, 0.69, 1.0)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.core import Element
+from crowdbot.typing import Floats
 
-from .elements import LARGEST, Floats, UrdfReader
+from .elements import LARGEST, UrdfReader
 from .inertia import default_inertia, find_inertia_problems, repair_inertia
 from .materials import read_color
 from .model import Link, LinkInertia, LinkShape
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
-
-__all__ = ["read_link"]
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 THINNEST = 1e-9

@@ -7,8 +7,6 @@ from crowdbot.core import Element, InputError
 from .elements import Color, UrdfReader
 from .mesh_colors import mean_color
 
-__all__ = ["read_color", "read_materials"]
-
 
 def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
     """Return the colours of the materials of the robot and of named materials in visuals, by name."""

@@ -15,8 +15,6 @@ from crowdbot.core import InputError
 from .mesh_files import MOST_BYTES, MeshFiles
 from .shapes import Texture
 
-__all__ = ["PartColors", "join_colors", "mean_color", "take_colors"]
-
 MOST_PIXELS = 40_000_000
 MOST_SIDE = 2048
 """Largest side of a texture in pixels; larger images are reduced."""

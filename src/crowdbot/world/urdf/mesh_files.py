@@ -10,8 +10,6 @@ from crowdbot.core import InputError
 
 from .folders import Folders
 
-__all__ = ["MeshFiles"]
-
 MOST_BYTES = 32_000_000
 MOST_FILES = 100
 

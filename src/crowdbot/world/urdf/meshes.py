@@ -24,8 +24,6 @@ from .mesh_files import MeshFiles
 from .mesh_limits import MOST_PARTS, MOST_TRIANGLES, check_mesh_bytes
 from .shapes import ConvexPiece, Mesh
 
-__all__ = ["FORMATS", "read_mesh", "with_pieces"]
-
 FORMATS = ("stl", "dae", "obj", "ply", "glb")
 MOST_BYTES = 64_000_000
 MOST_PIECES = 16

@@ -13,18 +13,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError, did_you_mean, format_xml, import_optional
+from crowdbot.typing import Floats
 
 from .geoms import Geoms, row
 from .inertia import unphysical
 from .model import Joint, RobotModel
 from .transforms import across, axis_rotation, frame, quaternion
 
-__all__ = ["BASES", "BaseServo", "Mjcf", "mjcf"]
-
-Floats = NDArray[np.float64]
 BASES = ("free", "planar", "fixed", "kinematic")
 KINDS = ("position", "velocity", "effort")
 REACHED = 0.1

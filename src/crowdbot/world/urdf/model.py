@@ -9,17 +9,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.core.outlines import convex_hull
+from crowdbot.typing import Floats
 
 from .shapes import Shape
 from .transforms import across, axis_rotation, frame, from_quaternion, transform_points
 
-__all__ = ["JOINT_KINDS", "Joint", "Link", "LinkInertia", "LinkShape", "Mimic", "Motor", "Remark", "RobotModel"]
-
-Floats = NDArray[np.float64]
 JOINT_KINDS = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 7}
 """Joint types and their number of position coordinates."""
 

@@ -18,8 +18,6 @@ from .materials import read_materials
 from .model import JOINT_KINDS, Joint, Link, LinkInertia, Mimic, Motor, Remark, RobotModel
 from .robot_document import parse_robot_file
 
-__all__ = ["read_urdf"]
-
 MOST_LINKS = 2000
 TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
 """Inertial of a moving link without mass and shape: a ball of 1 gram with a diameter of 16 mm."""

@@ -11,8 +11,6 @@ import numpy as np
 from .model import RobotModel
 from .shapes import Mesh
 
-__all__ = ["describe"]
-
 
 def describe(model: RobotModel, positions: Mapping[str, float] | None = None) -> dict[str, Any]:
     """Return counts, mass, inertia, footprint and remarks of a robot.

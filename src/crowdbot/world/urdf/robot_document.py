@@ -15,8 +15,6 @@ from crowdbot.world.xacro import expand_xacro, is_xacro
 from .folders import Folders, robot_folder
 from .sdf import urdf_of_sdf
 
-__all__ = ["RobotDocument", "parse_robot_file"]
-
 ENDINGS = (".xacro", ".urdf", ".gazebo", ".xml")
 MOST_FILES = 200
 MOST_BYTES = 1_000_000

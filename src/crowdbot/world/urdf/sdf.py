@@ -10,16 +10,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_number
+from crowdbot.typing import Floats
 from crowdbot.world.xacro import SourceElement
 
 from .transforms import frame, roll_pitch_yaw
 
-__all__ = ["SdfConversion", "urdf_of_sdf"]
-
-Floats = NDArray[np.float64]
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 UNLIMITED = 1e10
 """Limits of a joint above this are no limits; SDF writes 1e16."""

@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
+
 from .transforms import transform_points
 
-__all__ = ["Box", "Capsule", "ConvexPiece", "Cylinder", "Mesh", "Shape", "Solid", "Sphere", "Texture", "together"]
-
-Floats = NDArray[np.float64]
 ROUND = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
 
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-__all__ = ["across", "axis_rotation", "frame", "from_quaternion", "quaternion", "roll_pitch_yaw", "transform_points"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 
 def roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Floats:

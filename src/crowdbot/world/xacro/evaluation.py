@@ -12,8 +12,6 @@ from crowdbot.core import InputError, did_you_mean
 from .expression import Tree
 from .functions import ATTRIBUTES, FUNCTIONS, MOST_ITEMS, format_text
 
-__all__ = ["Budget", "Names", "evaluate"]
-
 MOST_STEPS = 1_000_000
 LARGEST = 2.0**1000
 ARITHMETIC: dict[str, Callable[[Any, Any], Any]] = {

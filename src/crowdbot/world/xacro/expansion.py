@@ -14,8 +14,6 @@ from .files import FileSource, SourceElement, with_place
 from .scope import Scope, boolean
 from .texts import Texts
 
-__all__ = ["Expansion", "expand_xacro", "is_xacro"]
-
 MOST_ELEMENTS = 50_000
 MOST_CALLS = 30
 MOST_INCLUDES = 20

@@ -11,8 +11,6 @@ from crowdbot.core import InputError
 
 from .tokens import Token, tokens
 
-__all__ = ["Tree", "parse_expression"]
-
 Tree = tuple[Any, ...]
 MOST_DEPTH = 40
 """Maximum nesting of one expression."""

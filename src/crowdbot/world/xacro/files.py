@@ -8,8 +8,6 @@ from typing import Protocol
 
 from crowdbot.core import Element
 
-__all__ = ["FileSource", "SourceElement", "with_place"]
-
 
 class FileSource(Protocol):
     """Finds the files of a robot; nothing outside its folders is found."""

@@ -9,8 +9,6 @@ from typing import Any
 
 from crowdbot.core import InputError
 
-__all__ = ["ATTRIBUTES", "CONSTANTS", "FUNCTIONS", "MOST_ITEMS", "format_text"]
-
 MOST_ITEMS = 10_000
 """Maximum length of a string, list or range in an expression."""
 

@@ -7,8 +7,6 @@ from typing import Any
 
 from crowdbot.core import Element, InputError
 
-__all__ = ["Scope", "boolean", "literal"]
-
 Evaluate = Callable[[str, "Scope"], Any]
 
 

@@ -15,8 +15,6 @@ from .functions import TOKENIZE
 from .scope import Scope
 from .tokens import split_text
 
-__all__ = ["Texts"]
-
 MOST_TEXT = 100_000
 MOST_DEPTH = 20
 MOST_YAML_BYTES = 1_000_000

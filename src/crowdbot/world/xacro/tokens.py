@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError
 
-__all__ = ["TextPart", "Token", "split_text", "tokens"]
-
 MOST_CHARACTERS = 4000
 """Maximum length of one expression."""
 PATTERN = re.compile(

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crowdbot.core import Paper
 from crowdbot.humans import People
+from crowdbot.typing import Floats
 
-__all__ = ["GRAVITY", "RESPONSE", "BalanceAbility", "balance_ability", "maximum_lean"]
-
-Floats = NDArray[np.float64]
 GRAVITY = 9.81
 """Gravity [m/s2]."""
 CENTER = 0.56

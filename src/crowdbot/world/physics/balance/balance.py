@@ -15,13 +15,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Storage, kernel
 from crowdbot.humans import People
+from crowdbot.typing import Floats, Ints
 
 from .ability import RESPONSE, balance_ability
 
-__all__ = ["FALLING", "LYING_DOWN", "PUSHERS", "RISING", "STANDING", "STEPPING", "Balance"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 PUSHERS = ("robot", "prop", "person", "wall")
 """Kinds of bodies that push, by number."""
 STANDING, STEPPING, FALLING, LYING_DOWN, RISING = 0, 1, 2, 3, 4

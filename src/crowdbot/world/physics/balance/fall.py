@@ -7,17 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper, storable
 from crowdbot.humans import LIMBS, LYING, FallPose, People, Posture, fall_postures
 from crowdbot.metrics import HIC15_LIMIT
+from crowdbot.typing import Floats
 
 from .ability import GRAVITY
 
-__all__ = ["SOURCES", "Fall", "FallMotion", "direction_name", "head_probability", "impact_speeds"]
-
-Floats = NDArray[np.float64]
 ABSORBED = 0.7
 """Share of gravity that legs and arms absorb during a fall. Chosen so that hips and heads hit the floor as fast as in
 falls on video (Choi et al. 2015: 2.14 and 2.91 m/s on average)."""

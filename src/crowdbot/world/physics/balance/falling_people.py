@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Storage, stream
 from crowdbot.humans import LYING, FallPose, People, Posture
 from crowdbot.metrics import HIC15_LIMIT, fall_hic15
+from crowdbot.typing import Ints
 from crowdbot.world.physics.scenery import add_rings
 
 from .balance import FALLING, LYING_DOWN, PUSHERS, RISING, Balance
@@ -19,10 +19,6 @@ from .fall import Fall, FallMotion, direction_name, head_probability, impact_spe
 if TYPE_CHECKING:
     from crowdbot.world.physics.people_motion import PeopleMotion
 
-__all__ = ["FallingPeople"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 START = math.radians(25.0)
 """Largest tilt [rad] at the beginning of a fall: those who lean further are on their feet, with hips and knees bent
 (assumed)."""

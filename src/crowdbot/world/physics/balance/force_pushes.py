@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.pushes import FORCE, LEFT, PUSH, acting_pushes
 
 from .balance import Balance
-
-__all__ = ["ForcePushes"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class ForcePushes:

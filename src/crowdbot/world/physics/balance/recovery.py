@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Paper
-
-__all__ = ["BRACE", "CENTER", "GRIP", "REACTION", "SOURCE", "STEPPING", "recovery_force"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from crowdbot.typing import Bools, Floats
 
 SOURCE = Paper(
     "At L. Hof, Sjoerd M. Vermerris, Welmoed A. Gjaltema",

@@ -6,17 +6,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.robot import Robot
 
 from .wheel_servo import lag
 
-__all__ = ["BASE_MOTORS", "BaseForces", "release_base_motors"]
-
-Floats = NDArray[np.float64]
 BASE_MOTORS = ("base_forward", "base_left", "base_turn")
 """Actuators of a planar base."""
 

@@ -14,14 +14,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.robots.robot import Robot
 
-__all__ = ["rests_on_castors", "soften_castors"]
-
-Floats = NDArray[np.float64]
 TRAVEL = 0.08
 """Deflection of the springs if the castors carried the whole weight, relative to the largest distance of a castor from
 the middle of the robot (assumed)."""

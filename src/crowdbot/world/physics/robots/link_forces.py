@@ -7,15 +7,11 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.world.physics.engine import engine
 
 from .robot_body import RobotBody
 
-__all__ = ["LinkForces"]
-
-Floats = NDArray[np.float64]
 UNLIMITED = 10.0
 """Speed [m/s or rad/s] of a kinematic or held joint whose motor has no maximum speed (assumed)."""
 

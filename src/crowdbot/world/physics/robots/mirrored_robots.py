@@ -7,17 +7,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Scene, Twist
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.robots.drives.drive import Twists
 
 from .robot_body import RobotBody
 
-__all__ = ["MirroredRobots", "kinematic_bases"]
-
-Floats = NDArray[np.float64]
 STILL = 1e-12
 """Change of velocity [m/s or rad/s] that needs no correction."""
 

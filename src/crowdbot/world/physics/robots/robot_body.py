@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, Storage, Twist, did_you_mean
+from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.wheels.friction import WheelFriction
 from crowdbot.world.physics.wheels.skid_steering import SlipControl, SlipState
@@ -24,9 +24,6 @@ from crowdbot.world.robots.robot import Robot, spatial
 from .base_servo import BASE_MOTORS, BaseForces
 from .wheel_servo import lag
 
-__all__ = ["RobotBody"]
-
-Floats = NDArray[np.float64]
 STILL = Twist()
 
 

@@ -8,8 +8,6 @@ from crowdbot.core import Scene
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.robots.robot import Robot
 
-__all__ = ["base_height", "is_level", "stand_robot"]
-
 
 def base_height(ground: Ground | None, scene: Scene, agent: int, robot: Robot) -> float:
     """Return the height [m] of the root of a robot at its place in a scene, on the highest ground under it."""

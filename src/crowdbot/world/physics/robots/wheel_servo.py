@@ -6,13 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["LAG", "WheelServos"]
-
-Floats = NDArray[np.float64]
 LAG = 0.01
 """Time constant [s] of a wheel servo (assumed: a motor controller with a bandwidth of 16 Hz); at least two steps."""
 STIFF = (0.9999, 0.9999, 1.0, 0.5, 2.0)

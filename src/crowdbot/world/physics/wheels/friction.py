@@ -9,17 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.robots.wheel_servo import lag
 from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.wheel import fastest
-
-__all__ = ["WheelFriction"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SOFT = 0.005
 """Slip [m/s] below which the friction of a sliding tyre is proportional to its slip."""

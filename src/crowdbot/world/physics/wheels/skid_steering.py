@@ -6,17 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import Twist
+from crowdbot.typing import Floats
 from crowdbot.world.physics.robots.wheel_servo import lag
 from crowdbot.world.robots.drives.skid_slide import GRAVITY, rims_of
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
 
-__all__ = ["SlipControl", "SlipState"]
-
-Floats = NDArray[np.float64]
 RATE = 3.0
 """Rate [1/s] of the estimate of the slip."""
 RETURN = 0.025

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number, storable
+from crowdbot.typing import Floats
 
-from .drive import Drive, Floats, Twists, check_step, integrate_twist
-
-__all__ = ["AckermannDrive", "SteeredTwists"]
+from .drive import Drive, Twists, check_step, integrate_twist
 
 
 @storable

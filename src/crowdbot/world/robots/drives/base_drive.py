@@ -12,19 +12,6 @@ from crowdbot.world.urdf import RobotModel
 from .skid_slide import GRAVITY
 from .skid_steer import SHARE, slip_of
 
-__all__ = [
-    "RUBBER",
-    "SMOOTH",
-    "curve_limit",
-    "drive_type",
-    "mass_attributes",
-    "middle_angle",
-    "rollers_of",
-    "tire_friction",
-    "turns_wheels",
-    "wheel_attributes",
-]
-
 WHEELED = ("differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional")
 """Kinds whose wheels are turned by motors in the physics world; the others are moved as a planar base."""
 FASTEST = 3.0

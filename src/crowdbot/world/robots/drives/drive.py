@@ -10,10 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Twist, check_number, kernel, storable
-
-__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "integrate_twist"]
-
-Floats = NDArray[np.float64]
+from crowdbot.typing import Floats
 
 
 @kernel

@@ -11,8 +11,6 @@ from crowdbot.core import Pose, Twist, check_number
 from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 from .wheeled import limit_twists
 
-__all__ = ["LeggedDrive"]
-
 NO_WHEELS = np.zeros((0, 3))
 
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import check_number
+from crowdbot.typing import Floats
 
-from .wheeled import Floats, WheeledDrive
-
-__all__ = ["OmniWheelDrive"]
+from .wheeled import WheeledDrive
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Twist, check_number, kernel, storable
+from crowdbot.typing import Floats
 
 from .drive import Drive, Twists, check_limits, check_step, integrate_twist
-
-__all__ = ["CommandDelay", "Pending", "VelocityServo"]
-
-Floats = NDArray[np.float64]
 
 NEAR = 1e-9
 """Tolerance [m/s, rad/s] within which a velocity has reached its command."""

@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import kernel
+from crowdbot.typing import Floats
 
-__all__ = ["GRAVITY", "rims_of", "side_speeds", "slide_of"]
-
-Floats = NDArray[np.float64]
 GRAVITY = 9.81
 """Gravity [m/s2]."""
 SOFT = 0.02

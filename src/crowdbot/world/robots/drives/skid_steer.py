@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import Pose, Twist, check_number
+from crowdbot.typing import Floats
 
 from .drive import Twists, integrate_twist
 from .skid_slide import GRAVITY, side_speeds
-from .wheeled import Floats, WheeledDrive
-
-__all__ = ["SkidSteerDrive", "slip_of"]
+from .wheeled import WheeledDrive
 
 SHARE = 0.4
 """Largest product of speed and turn rate, as a share of friction coefficient times gravity: sliding wheels need the

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number
+from crowdbot.typing import Floats
 
 from .ackermann import SteeredTwists
-from .drive import Drive, Floats, Twists, check_step, integrate_twist
-
-__all__ = ["TricycleDrive"]
+from .drive import Drive, Twists, check_step, integrate_twist
 
 ACROSS = 1e-9
 """Smaller cosines of the steering angle are rounding errors: the wheel is across the base."""

@@ -6,15 +6,11 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Twist, check_number, kernel
+from crowdbot.typing import Floats
 
 from .drive import Drive, Twists, check_limits, check_step, integrate_twist
-
-__all__ = ["WheeledDrive", "limit_twists"]
-
-Floats = NDArray[np.float64]
 
 
 @kernel
