@@ -17,6 +17,7 @@ from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
 from .nearest_neighbor import nearest_neighbor_accuracy
+from .outline_clearance import outline_clearance
 from .people_rows import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
@@ -29,6 +30,7 @@ from .proximity import (
     time_to_collision,
     wall_clearance,
 )
+from .record_clearance import record_clearance
 from .score import Score, score
 from .social import (
     GAZE_HALF_ANGLE,
@@ -176,6 +178,7 @@ __all__ = [
     "occupancy_iou",
     "ospa",
     "outcome",
+    "outline_clearance",
     "path_efficiency",
     "path_length",
     "people_table",
@@ -184,6 +187,7 @@ __all__ = [
     "personal_space_compliance",
     "proxemic_shares",
     "range_error",
+    "record_clearance",
     "scan_time_to_collision",
     "score",
     "stalled_time",

@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.typing import Bools, Floats
 
 from .outline_clearance import outline_clearance, outline_touch
-from .proximity import JUMP, clearance, swept_clearance
+from .proximity import JUMP
 
 RELEASE = 0.05
 """A contact ends if the clearance stays above this [m] ..."""
@@ -75,12 +75,8 @@ def contact_events(
     >>> round(event.begin, 3), event.cause, round(event.impact_speed, 3), round(event.depth, 3)
     (0.05, 'person', 2.0, 0.1)
     """
-    if outline is None or heading is None:
-        swept = swept_clearance(times, position, radius, active, robot)
-        gap = clearance(position, radius, active, robot)
-    else:
-        sizes = np.broadcast_to(radius, active.shape)
-        swept, gap, _ = outline_clearance(times, position, velocity, heading, sizes, active, robot, outline)
+    turned, shape = (np.zeros(len(times)), None) if heading is None else (heading, outline)
+    swept, gap, _ = outline_clearance(times, position, velocity, turned, radius, active, robot, shape)
     found: list[ContactEvent] = []
     for person in np.flatnonzero(np.any(swept < 0.0, axis=0)):
         for first, last in contact_stretches(times, swept[:, person], gap[:, person]):

@@ -11,7 +11,7 @@ from crowdbot.core import kernel
 from crowdbot.core.outlines import body_gap, swept_gap, time_to_outline
 from crowdbot.typing import Bools, Floats
 
-from .proximity import JUMP
+from .proximity import JUMP, clearance, swept_clearance, time_to_collision
 
 PARTS, HALVINGS = 64, 30
 """Intervals of a step in which the first contact is searched, and halvings of the interval that has it."""
@@ -63,7 +63,7 @@ def _measure(
 
 def outline_clearance(
     times: Floats, position: Floats, velocity: Floats, heading: Floats, radius: Floats, active: Bools, robot: int,
-    outline: Floats,
+    outline: Floats | None,
 ) -> OutlineClearance:  # fmt: skip
     """Return the clearances of all agents, as discs, to a robot; where its heading is unknown, it is a disc.
 
@@ -71,10 +71,10 @@ def outline_clearance(
         times: ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s].
         heading: ``[T]`` of the robot [rad], NaN if unknown.
-        radius: ``[T, A]`` [m]; that of the robot is its circumscribed disc.
+        radius: ``[A]`` [m]; that of the robot is its circumscribed disc. With an outline also ``[T, A]``.
         active: ``[T, A]`` who is present.
         robot: index of the robot.
-        outline: corners ``[K, 2]`` in the frame of the robot [m].
+        outline: corners ``[K, 2]`` in the frame of the robot [m]; None for a disc.
 
     >>> box = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
     >>> place, still, turned = np.array([[[0.0, 0.0], [0.0, 2.0]]]), np.zeros((1, 2, 2)), np.array([np.pi / 2])
@@ -83,9 +83,16 @@ def outline_clearance(
     >>> there.gap.round(3).tolist()
     [[inf, 1.2]]
     """
+    if outline is None:
+        return OutlineClearance(
+            swept_clearance(times, position, radius, active, robot),
+            np.asarray(clearance(position, radius, active, robot)),
+            time_to_collision(position, velocity, radius, active, robot),
+        )
     found = OutlineClearance(*(np.empty(active.shape) for _ in range(3)))
     jump = JUMP * np.diff(times, prepend=-math.inf)
-    arrays = map(np.ascontiguousarray, (jump, position, velocity, heading, radius, active))
+    sizes = np.broadcast_to(radius, active.shape)
+    arrays = map(np.ascontiguousarray, (jump, position, velocity, heading, sizes, active))
     everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *found)
     _measure(*everything)
     return found

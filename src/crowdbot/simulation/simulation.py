@@ -533,12 +533,17 @@ def simulation_svg(simulation: Any, environment: int = 0) -> str:
     lines = floor_plan(stage, shares)
     lines += [Path2D(np.concatenate([ring, ring[:1]]), WALL_COLOR, 1.5) for ring in stage.rings]
     scene, discs = simulation.world.environment_scene(environment), list[Disc]()
-    robots = {robot.agent for robot in simulation.robots}
+    robots = {robot.agent: robot.robot.body.outline for robot in simulation.robots}
     for agent in np.flatnonzero(scene.active[0]).tolist():
         color = ROBOT_COLOR if agent in robots else PERSON_COLOR
         x, y = scene.position[0, agent].tolist()
         radius, heading = float(scene.radius[0, agent]), float(scene.heading[0, agent])
-        discs.append(Disc(x, y, radius, color))
+        outline = robots.get(agent)
+        if outline is None:
+            discs.append(Disc(x, y, radius, color))
+        else:
+            turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+            lines.append(Path2D(np.concatenate([outline, outline[:1]]) @ turn + (x, y), color, 1.5))
         ahead = radius * np.array([np.cos(heading), np.sin(heading)])
         lines.append(Path2D(np.array([[x, y], [x, y]]) + np.stack([ahead, 1.6 * ahead]), color, 1.5))
     seconds = float(simulation.world.times[environment])

@@ -15,7 +15,6 @@ from crowdbot.metrics.agent_states import AgentLog
 from crowdbot.metrics.contacts import ContactEvent, contact_events
 from crowdbot.metrics.motion import STALL_SPEED
 from crowdbot.metrics.outline_clearance import OutlineClearance, outline_clearance
-from crowdbot.metrics.proximity import clearance, swept_clearance, time_to_collision
 from crowdbot.typing import Bools, Floats
 
 from .body_region import BodyRegion
@@ -173,15 +172,7 @@ class RobotLog:
         """Clearances and times to collision of each person ``[T, P]``; infinite if absent."""
         position, velocity, radius, active = self.all_positions
         own = len(radius) - 1
-        if self.outline is None:
-            rows = (
-                swept_clearance(self.times, position, radius, active, own),
-                np.asarray(clearance(position, radius, active, own)),
-                time_to_collision(position, velocity, radius, active, own),
-            )
-        else:
-            sizes = np.broadcast_to(radius, active.shape)
-            rows = outline_clearance(self.times, position, velocity, self.heading, sizes, active, own, self.outline)
+        rows = outline_clearance(self.times, position, velocity, self.heading, radius, active, own, self.outline)
         return OutlineClearance(*(row[:, :-1] for row in rows))
 
     @functools.cached_property

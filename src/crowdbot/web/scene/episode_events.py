@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.metrics import swept_clearance
+from crowdbot.core.outlines import outline_of
+from crowdbot.metrics import outline_clearance
 from crowdbot.recording import RecordedEpisode
 from crowdbot.simulation import PushOrder
 from crowdbot.typing import Floats
@@ -63,7 +64,18 @@ def episode_series(episode: RecordedEpisode) -> dict[str, list[float | None]]:
 
 
 def _clearance(episode: RecordedEpisode, robot: int) -> Floats:
-    return swept_clearance(episode.times, episode.position, episode.radius, episode.active, robot)
+    """Return the smallest clearance ``[T, A]`` [m] of each agent to the outline of a robot since the last record."""
+    footprint = episode.footprints[episode.robots.index(robot)]
+    return outline_clearance(
+        episode.times,
+        episode.position,
+        episode.velocity,
+        episode.heading[:, robot],
+        episode.radius,
+        episode.active,
+        robot,
+        None if footprint is None else outline_of(footprint),
+    ).swept
 
 
 def _contacts(episode: RecordedEpisode) -> list[EpisodeEvent]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core import Scene
-from crowdbot.metrics import clearance, local_density, time_to_collision, wall_clearance
+from crowdbot.metrics import AgentStates, record_clearance
 from crowdbot.simulation import Simulation
 
 
@@ -54,16 +54,25 @@ def live_values(simulation: Simulation, recorded: Scene | None = None) -> dict[s
     found["walking"] = float(pace.mean()) if len(pace) else math.nan
     if robots and scene.active[0, robots[0]]:
         robot = robots[0]
-        args = scene.position, scene.radius[0], scene.active, robot
-        here = scene.position[0, robot]
-        closing = time_to_collision(scene.position, scene.velocity, scene.radius[0], scene.active, robot)
+        agents = np.flatnonzero(scene.active[0])
+        rows = (getattr(scene, name)[0, agents] for name in ("position", "velocity", "heading", "radius"))
+        radius, outline = float(scene.radius[0, robot]), simulation.robots[0].robot.body.outline
+        now = record_clearance(
+            None,
+            AgentStates(0.0, agents, *rows),
+            int(np.searchsorted(agents, robot)),
+            radius,
+            scene.walls.segments(),
+            0.0,
+            outline,
+        )
         found |= {
-            "clearance": float(clearance(*args).min()),
+            "clearance": now.nearest,
             "speed": float(np.hypot(*scene.velocity[0, robot])),
-            "wall": float(wall_clearance(here[None], float(scene.radius[0, robot]), scene.walls.segments())[0]),
-            "goal": float(math.dist(here, simulation.robots[0].goal[0])),
-            "ttc": float(closing.min()),
-            "density": float(local_density(scene.position, scene.active, robot)[0]),
+            "wall": now.wall,
+            "goal": float(math.dist(scene.position[0, robot], simulation.robots[0].goal[0])),
+            "ttc": now.ttc,
+            "density": now.density,
         }
     return {one.name: _finite(found.get(one.name, math.nan)) for one in LIVE_VALUES}
 
