@@ -56,5 +56,5 @@ def test_boxes_of_whole_pixels_do_not_stand_still(tmp_path: Path) -> None:
 
 
 def test_speeds_of_pedestrians_are_still_checked(street: Path) -> None:
-    assert "check fps and units" in load(street, transform=0.5).note
+    assert "check the frame rate (fps) and the units" in load(street, transform=0.5).note
     assert "check fps" not in load(street, transform=0.05).note

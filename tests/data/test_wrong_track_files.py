@@ -29,7 +29,11 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         ("inf.txt", "# a\n\n0 1 2 3\n10 1 2 -inf\n", "inf.txt line 4: y is -inf for frame 10, id 1"),
         ("twice.txt", "0 1 2 3\n10 1 2 3\n10 1 4 5\n10 1 6 7\n", "line 3: frame 10, id 1 is a duplicate"),
         ("half.txt", "0 1.5 2 3\n", r"half.txt line 1: id is 1\.5, it must be a whole number"),
-        ("step.txt", "0 1 2 3\n1 1 2 3\n", "step.txt has no frame rate, and a step of 1 frames is not a convention"),
+        (
+            "step.txt",
+            "0 1 2 3\n1 1 2 3\n",
+            "step.txt has no frame rate, and rows 1 frame apart are not a convention of the field",
+        ),
         ("obsmat.txt", OBSMAT + "11 1 inf 0 1 0 0 0\n", "obsmat.txt line 2: x is inf"),
         ("cut.vsp", VSP[:-30], "cut.vsp ends inside spline 1; the file is truncated"),
         ("few.vsp", VSP.replace("1 - the", "2 - the"), "ends before the number of control points of spline 2"),

@@ -110,9 +110,9 @@ def test_the_state_has_samples_goals_joints_and_moved_sensors() -> None:
     assert state["simulation/robots/0/goal"].tolist() == [[2.0, 1.0]]
     assert np.nanmax(state["simulation/robots/0/joints"]) == 0.3
     assert state["simulation/robots/0/sensors/0/moved"].shape == (1, 6)
-    kind, rows = state["simulation/robots/0/sensors/0/rngs"]
-    assert kind == "plain"
-    assert (rows[0][:2], rows[0][2]["bit_generator"]) == ([3, ["sensor", "pepper", "eyes"]], "PCG64")
+    stream = f"{RNGS}/_streams/0"
+    kind, content = state[f"{stream}/made"]
+    assert (state[f"{stream}/seed"], kind, content["bit_generator"]) == (3, "random", "PCG64")
 
 
 def test_ghosts_have_engine_states_of_their_own() -> None:
@@ -160,8 +160,12 @@ def test_a_removed_robot_and_changed_props_of_the_physics_world_have_no_state() 
         state_of(simulation)
 
 
+RNGS = "simulation/robots/0/sensors/0/rngs"
 CHANGES: dict[str, tuple[Any, str]] = {
-    "simulation/robots/0/sensors/0/rngs": (StateMark("plain", []), "one random stream for each environment"),
+    f"{RNGS}/_streams": (StateMark("objects", 2), "has 2 parts, but the trial has 1"),
+    f"{RNGS}/_streams/0/made": (StateMark("random", {"state": 3}), "is not the state of a random generator"),
+    f"{RNGS}/_streams/0/seed": ("x", "is a str, but the trial has a int"),
+    RNGS: (StateMark("plain", []), "is a 'plain', which is unknown"),
     "simulation/world/rigid/ghosts": (StateMark("dict", 0), r"has the parts \[\], but the trial has \[4\]"),
     "simulation/robots": (StateMark("list", 1), "has 1 parts, but the trial has 2"),
     "simulation/world/rigid/main/engine": (np.zeros(3), "has the shape"),

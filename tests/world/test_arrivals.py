@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plain_arrivals import PlainArrivals
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, tree
 from crowdbot.trials import Distribution
 from crowdbot.world import PeopleSource, PointWaypoint, PolygonZone, WaypointSequence, arrival_counts
 from crowdbot.world.crowd.arrivals import Arrivals
@@ -79,9 +79,10 @@ def test_the_same_people_enter(
                 one.reconfigure(new, [seed // 2 for seed in seeds] if restart and k == 35 else None)
         if k == 45:
             fresh = both(new, [5])
-            pair = tuple(one.select([count - 1, *range(count)][:count]) for one in pair)
-            for one, other in zip(pair, fresh, strict=True):
-                one.put([0], other)
+            chosen = np.array([count - 1, *range(count)][:count])
+            plain = pair[1].select(chosen.tolist())
+            plain.put([0], fresh[1])
+            pair = tree.put(tree.take(pair[0], chosen), np.array([0]), fresh[0]), plain
 
 
 @settings(max_examples=30, deadline=None)
@@ -99,7 +100,8 @@ def test_arrivals_are_counted(sources: list[PeopleSource], seeds: list[int], tim
 def test_joined_queues_continue() -> None:
     sources = [PeopleSource(DOORS[0], PATH, rate=5.0, speed=BODIES[1], radius=BODIES[3])]
     alone = [both(sources, [seed]) for seed in (3, 4)]
-    pair = tuple(first.join([second]) for first, second in zip(*alone, strict=True))
+    queues, plain = zip(*alone, strict=True)
+    pair = tree.join(queues), plain[0].join(plain[1:])
     empty = Scene.of(np.zeros((2, 9, 2)), active=False)
     scenes, ids = [empty, empty], [(np.tile(np.arange(9), (2, 1)), np.full(2, 9)) for _ in range(2)]
     for k in range(20):

@@ -49,10 +49,13 @@ class TrainingSet(NamedTuple):
 
     @property
     def digest(self) -> str:
-        """Hash of all arrays."""
+        """Hash of all arrays; variances of a tracker count where they are known."""
         found = hashlib.blake2b(digest_size=12)
-        for array in (self.ahead, *self.people, *self.planned):
-            found.update(np.ascontiguousarray(array).tobytes())
+        found.update(np.ascontiguousarray(self.ahead).tobytes())
+        for part in (self.people, self.planned):
+            for name, array in part._asdict().items():
+                if name != "noise" or np.isfinite(array).any():
+                    found.update(np.ascontiguousarray(array).tobytes())
         return found.hexdigest()
 
 
