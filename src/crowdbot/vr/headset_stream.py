@@ -60,6 +60,7 @@ class HeadsetStream:
         settings: delays and noise.
         seed: seed of the noise.
 
+    >>> import numpy as np
     >>> moving = HeadsetStream()
     >>> for k in range(10):
     ...     clock = (0.01 * k, 50.0 + 0.01 * k, 50.0 + 0.01 * k, 0.01 * k)
