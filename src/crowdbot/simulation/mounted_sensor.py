@@ -65,6 +65,8 @@ class SensorReadings:
     def without(self, excluded: Bools) -> SensorReadings | None:
         """Return the readings without the environments ``excluded`` ``[E]``, None if none is left."""
         kept = ~excluded[self.environments]
+        if kept.all():
+            return self
         return self.where(kept) if kept.any() else None
 
     def where(self, chosen: Bools) -> SensorReadings:
