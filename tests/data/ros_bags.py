@@ -18,6 +18,13 @@ DEFINITIONS = {
     "people_msgs/msg/People": "std_msgs/Header header\npeople_msgs/Person[] people\n",
     "pedsim_msgs/msg/TrackedPerson": "uint64 track_id\nbool is_occluded\ngeometry_msgs/PoseWithCovariance pose\n",
     "pedsim_msgs/msg/TrackedPersons": "std_msgs/Header header\npedsim_msgs/TrackedPerson[] tracks\n",
+    "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score\n",
+    "vision_msgs/msg/ObjectHypothesisWithPose": "vision_msgs/ObjectHypothesis hypothesis\n"
+    "geometry_msgs/PoseWithCovariance pose\n",
+    "vision_msgs/msg/BoundingBox3D": "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n",
+    "vision_msgs/msg/Detection3D": "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
+    "vision_msgs/BoundingBox3D bbox\nstring id\n",
+    "vision_msgs/msg/Detection3DArray": "std_msgs/Header header\nvision_msgs/Detection3D[] detections\n",
 }
 
 
@@ -88,6 +95,19 @@ class BagWriter:
             for id, place in places.items()
         ]
         message = self.make("pedsim_msgs/msg/TrackedPersons", header=self.header(time, frame), tracks=rows)
+        self.write(topic, time, message)
+
+    def detections(self, time, frame, rows, topic="/detections"):
+        """Write (id, class, x, y) as Detection3DArray of ROS 2 Humble."""
+        found = []
+        for id, kind, x, y in rows:
+            likely = self.make("vision_msgs/msg/ObjectHypothesis", class_id=kind, score=0.8)
+            pose = self.pose(x, y)
+            box = self.make("vision_msgs/msg/BoundingBox3D", center=pose.pose, size=self.vector("Vector3", 0.6, 0.6))
+            results = [self.make("vision_msgs/msg/ObjectHypothesisWithPose", hypothesis=likely, pose=pose)]
+            header = self.header(time, frame)
+            found.append(self.make("vision_msgs/msg/Detection3D", header=header, results=results, bbox=box, id=id))
+        message = self.make("vision_msgs/msg/Detection3DArray", header=self.header(time, frame), detections=found)
         self.write(topic, time, message)
 
     def pose(self, x, y, yaw=0.0):

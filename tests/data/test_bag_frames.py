@@ -184,3 +184,17 @@ def test_the_topic_of_people_is_chosen(tmp_path, capsys):
         load(tmp_path / "t.csv", topic="/people")
     assert cli.main(["predict", "--data", str(bag.file), "--topic", "/tracker", "--frame", "map", "--step", "0.2"]) == 0
     assert "60 rows of 1 person and 1 robots, 5.8 s with a step of 0.2 s" in capsys.readouterr().err
+
+
+def test_tracked_people_in_detections_of_vision_msgs(tmp_path):
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(20):
+            rows = [("7", "person", 0.1 * k, 2.0), ("8", "car", 0.3 * k, 0.0)]
+            bag.detections(BEGIN + 0.1 * k, "map", rows)
+    tracks = load(bag.file)
+    assert tracks.ids.tolist() == [7]
+    assert tracks.track(7).x[-1] == pytest.approx(1.9)
+    with BagWriter(tmp_path / "untracked") as bag:
+        bag.detections(BEGIN, "map", [("", "person", 0.0, 2.0)])
+    with pytest.raises(InputError, match="a detection of class 'person' has no id: people must be tracked"):
+        load(bag.file)

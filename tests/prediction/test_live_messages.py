@@ -34,8 +34,39 @@ def people(time: float, frame: str, **places: Sequence[float]) -> Any:
     return MAKE.make("people_msgs/msg/People", header=MAKE.header(nanoseconds(time), frame), people=persons)
 
 
-def odometry(time: float, x: float, y: float, heading: float, frame: str = "odom") -> Any:
-    return MAKE.odometry(nanoseconds(time), "robot", x, y, heading, [0.0, 0.0, 0.0], frame=frame)
+def odometry(
+    time: float, x: float, y: float, heading: float, frame: str = "odom", spread: np.ndarray | None = None
+) -> Any:
+    """Return odometry, with the covariance ``[3, 3]`` of x, y and yaw."""
+    message = MAKE.odometry(nanoseconds(time), "robot", x, y, heading, [0.0, 0.0, 0.0], frame=frame)
+    if spread is not None:
+        whole = np.diag([0.0, 0.0, 1e6, 1e6, 1e6, 0.0])  # what a planar robot does not know
+        whole[np.ix_((0, 1, 5), (0, 1, 5))] = spread
+        message.pose.covariance[:] = whole.ravel()
+    return message
+
+
+def detection(
+    number: str, kind: str, x: float, y: float, score: float = 0.7, spread: float = 0.0, old: bool = False
+) -> Any:
+    """Return vision_msgs/Detection3D with the fields of ROS 2 Humble, or of Foxy."""
+    whole = np.diag([spread, 2.0 * spread, 0.0, 0.0, 0.0, 0.0]).ravel()
+    place = SimpleNamespace(x=x, y=y, z=0.9)
+    pose = SimpleNamespace(pose=SimpleNamespace(position=place), covariance=whole)
+    likely = {"id": kind, "score": score} if old else {"hypothesis": SimpleNamespace(class_id=kind, score=score)}
+    less = {"id": "car", "score": 0.1} if old else {"hypothesis": SimpleNamespace(class_id="car", score=0.1)}
+    return SimpleNamespace(
+        results=[SimpleNamespace(pose=pose, **less), SimpleNamespace(pose=pose, **likely)] if kind else [],
+        bbox=SimpleNamespace(center=SimpleNamespace(position=place), size=SimpleNamespace(x=0.6, y=0.6, z=1.8)),
+        **({"is_tracking": bool(number), "tracking_id": number} if old else {"id": number}),
+    )
+
+
+def detections(time: float, frame: str, *rows: Any) -> Any:
+    stamp = SimpleNamespace(sec=int(time), nanosec=nanoseconds(time % 1.0))
+    message = SimpleNamespace(header=SimpleNamespace(frame_id=frame, stamp=stamp), detections=list(rows))
+    message.__msgtype__ = "vision_msgs/msg/Detection3DArray"
+    return message
 
 
 def tracked(time: float, frame: str, package: str, *tracks: tuple[int, Sequence[float], np.ndarray]) -> Any:
@@ -217,3 +248,88 @@ def test_a_message_of_nobody_hides_the_people() -> None:
     existence = live.predict(1).existence
     assert existence is not None
     np.testing.assert_allclose(existence, [[0.8 * 0.5**0.8]])
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_detections_of_tracked_people_are_read(old: bool) -> None:
+    live = Live(Kalman(), dt=0.4)
+    for row in range(4):
+        cars = [detection("4", "car", 9.0, 9.0, old=old), detection("", "traffic light", 8.0, 9.0, old=old)]
+        person = detection("3", "Person", 0.5 * row, 0.0, spread=0.04, old=old)
+        live.update_from(detections(0.4 * row, "map", person, detection("x", "", 3.0, 1.0, old=old), *cars))
+    assert live.ids.tolist() == [3, "x"]
+    past, forecast = live.past(), live.predict(1)
+    assert past.covariance is not None
+    np.testing.assert_allclose(past.covariance[0, -1, 0], np.diag([0.04, 0.08]))
+    assert np.isnan(past.covariance[0, :, 1]).all()
+    assert past.radius is None  # a box contains arms and bags
+    np.testing.assert_allclose(past.position[0, -1], [[1.5, 0.0], [3.0, 1.0]])
+    assert forecast.existence is not None
+    np.testing.assert_allclose(forecast.existence, [[0.7, 1.0]])
+
+
+def test_classes_of_people_have_other_names() -> None:
+    live = Live(ConstantVelocity(), dt=0.4, person_classes=["0"])
+    live.update_from(detections(0.0, "map", detection("1", "0", 1.0, 2.0), detection("2", "7", 3.0, 2.0)))
+    assert live.ids.tolist() == [1]
+    with pytest.raises(InputError, match=r"person_classes = 'person' must be a list, such as \['person'\]"):
+        Live(ConstantVelocity(), dt=0.4, person_classes="person")
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (detection("", "person", 1.0, 2.0), "live: a detection of class 'person' has no id: people must be tracked"),
+        (detection("1", "0", 1.0, 2.0), r"live: a detection has the class '0', .* Live\(..., person_classes=\['0'\]\)"),
+    ],
+)
+def test_detections_that_are_no_tracked_people_are_refused(row: Any, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Live(ConstantVelocity(), dt=0.4).update_from(detections(0.0, "map", row))
+
+
+def test_the_covariance_of_odometry_grows_with_the_distance_from_the_robot() -> None:
+    spread = np.array([[0.04, 0.01, 0.0], [0.01, 0.02, 0.0], [0.0, 0.0, 0.01]])
+    found = {}
+    for added in (True, False):
+        live = Live(Kalman(), dt=0.1, robot=BASE, pose_covariance=added)
+        for row in range(4):  # the robot looks along y; one person is 1 m ahead of it, one 10 m
+            live.update_from(odometry(0.1 * row, 5.0, 3.0, math.pi / 2.0, spread=spread))
+            live.update_from(people(0.1 * row, BASE, p1=(1.0, 0.0), p2=(10.0, 0.0)))
+        found[added] = live.predict(1)
+    with_pose, own = found[True].covariance, found[False].covariance
+    assert with_pose is not None
+    assert own is not None
+    np.testing.assert_array_equal(found[True].position, found[False].position)
+    names = live.ids.tolist()
+    for who, lever in ((1, [0.0, 1.0]), (2, [0.0, 10.0]), (BASE, [0.0, 0.0])):
+        motion = np.array([[1.0, 0.0, -lever[1]], [0.0, 1.0, lever[0]]])
+        more = (with_pose - own)[0, 0, names.index(who)]
+        np.testing.assert_allclose(more, motion @ spread @ motion.T, atol=1e-9)
+
+
+def test_the_covariance_of_odometry_turns_into_the_fixed_frame_and_ends_behind_it() -> None:
+    live = Live(Kalman(), dt=0.1, frame="map")
+    live.update_from(transform(0.0, "map", "odom", 10.0, 0.0, math.pi / 2.0), "/tf_static")
+    spread = np.diag([0.09, 0.01, 0.0])
+    live.update_from(odometry(0.0, 0.0, 0.0, 0.0, spread=spread))
+    live.update_from(odometry(0.2, 0.0, 0.0, 0.0, spread=3.0 * spread))
+    live.update_from(transform(0.1, "odom", BASE, 0.0, 0.0, 0.0))  # the same motion, without a covariance
+    live.update_from(people(0.1, BASE, p1=(2.0, 0.0)))
+    live.update_from(people(0.1, "map", p2=(2.0, 0.0)))  # of a camera on a wall
+    covariance = live.predict(1).covariance
+    assert covariance is not None
+    np.testing.assert_allclose((covariance[0, 0, 0] - covariance[0, 0, 1]), np.diag([0.02, 0.18]), atol=1e-9)
+
+
+def test_a_covariance_of_odometry_that_is_unknown_or_impossible() -> None:
+    unknown, wrong = np.diag([-1.0, 0.0, 0.0]), np.diag([0.1, -0.2, 0.1])
+    live = Live(Kalman(), dt=0.1)
+    live.update_from(odometry(0.0, 0.0, 0.0, 0.0, spread=unknown))
+    live.update_from(people(0.0, BASE, p1=(2.0, 0.0)))
+    assert live._history.rows().uncertainty is None
+    live.update_from(odometry(0.1, 0.0, 0.0, 0.0, spread=wrong))
+    with pytest.raises(
+        InputError, match=r"live: the odometry on /odom has the covariance \[\[0.1, 0.0, 0.0\], .* zeros"
+    ):
+        live.update_from(people(0.1, BASE, p1=(2.0, 0.0)))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.hdf5_arrays import read_hdf5_arrays
+    from .readers.ros.detections import DETECTIONS, PERSON_CLASSES, detected_people
     from .readers.ros.episode import PEOPLE_TYPES
     from .readers.ros.frames import Frames, frame_name, stamp_of
     from .readers.time_base import RowRateError
@@ -37,11 +38,13 @@ if TYPE_CHECKING:
 __getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
+    "DETECTIONS",
     "FILE_OPTIONS",
     "FORECAST_SUFFIXES",
     "FORMATS",
     "MCAP_MAGIC",
     "PEOPLE_TYPES",
+    "PERSON_CLASSES",
     "PROTOCOLS",
     "TIME_BASES",
     "TRAJNET_CATEGORIES",
@@ -63,6 +66,7 @@ __all__ = [
     "Windows",
     "check_forecast_suffix",
     "detect_format",
+    "detected_people",
     "example_windows",
     "fill_gaps",
     "folder_files",

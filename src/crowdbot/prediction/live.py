@@ -7,7 +7,7 @@ import math
 import threading
 import time as clocks
 import warnings
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.calibration import Fit, TimeLimit
 from crowdbot.core import InputError, stream
-from crowdbot.data import Forecast, Windows
+from crowdbot.data import PERSON_CLASSES, Forecast, Windows
+from crowdbot.typing import Floats
 
 from .live_report import LiveReport, parse_seconds
 from .predictor import Predictor
@@ -62,11 +63,16 @@ class Live:
             above that of the first people.
         robot: name of the coordinate frame of the robot, such as ``base_link``, that is added to the people of each
             message as a robot; None: messages bring no robot.
+        person_classes: classes of people in messages of detections, in any case of letters.
+        pose_covariance: whether the covariance of odometry is added to that of forecasts of people who were seen in
+            the frame of a robot, and of the robot itself: then it is the covariance in the fixed frame. A planner of
+            the same robot that plans in the frame of its odometry needs it not, since the error is the same for both.
         clock: returns the time [s] that latencies and the budget are measured with.
 
     Raises:
         InputError: ``dt``, ``budget`` or ``max_speed`` is not above 0, ``observe`` is below 1, ``coast`` or
-            ``allowed_lateness`` is negative, a ring of walls is not ``[N, 2]``, or the predictor requires the future.
+            ``allowed_lateness`` is negative, a ring of walls is not ``[N, 2]``, ``person_classes`` is a text, or the
+            predictor requires the future.
 
     Warns:
         TrackerWarning: people are so fast that positions are probably not in metres, time stamps are probably not in
@@ -92,6 +98,7 @@ class Live:
         self, predictor: Predictor, dt: float, observe: int | None = None, walls: Iterable[ArrayLike] = (),
         seed: int = 0, coast: float = 1.0, budget: float | str | None = None, allowed_lateness: float | str = 0.2,
         max_speed: float = 12.0, frame: str | None = None, robot: str | None = None,
+        person_classes: Sequence[str] = PERSON_CLASSES, pose_covariance: bool = True,
         clock: Callable[[], float] = clocks.perf_counter,
     ) -> None:  # fmt: skip
         if not 0.0 < dt < np.inf:
@@ -108,6 +115,8 @@ class Live:
             raise InputError(f"live: allowed_lateness = {lateness:g} s must be finite and at least 0")
         if not max_speed > 0.0:
             raise InputError(f"live: max_speed = {max_speed} m/s must be above 0; infinity for no limit")
+        if isinstance(person_classes, str):
+            raise InputError(f"live: person_classes = {person_classes!r} must be a list, such as [{person_classes!r}]")
         if not isinstance(predictor, Predictor):
             raise InputError(f"live: {predictor!r} is not a predictor; pass an instance, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
@@ -130,7 +139,8 @@ class Live:
         self._seed = seed
         self._plausibility = TrackerPlausibility(max_speed)
         self._history = TrackerHistory(dt, self.observe, coast, lateness, self._plausibility)
-        self._messages = TrackerMessages(frame, robot)
+        self._messages = TrackerMessages(frame, robot, person_classes)
+        self._pose_covariance = pose_covariance
         self._memory: Any = None
         self._reading, self._predicting = threading.RLock(), threading.Lock()
 
@@ -196,8 +206,9 @@ class Live:
         """Add a message of ROS 1 or 2: people, odometry or transforms, of rosbags, rclpy or rospy.
 
         People come as ``people_msgs/People`` or ``PositionMeasurementArray``, ``TrackedPersons`` of pedsim_msgs and
-        spencer_tracking_msgs (with covariances), ``pedsim_msgs/AgentStates``, or ``hunav_msgs/Agents``. The tag
-        ``radius`` and a reliability above 0 of ``people_msgs/Person`` are radius and existence probability. People in a
+        spencer_tracking_msgs (with covariances), ``pedsim_msgs/AgentStates``, ``hunav_msgs/Agents``, or
+        ``vision_msgs/Detection3DArray`` with the id of each person (with covariances and scores). The tag ``radius``
+        and a reliability above 0 of ``people_msgs/Person`` are radius and existence probability. People in a
         frame that moves, such as ``base_link``, are brought to the fixed frame by ``nav_msgs/Odometry``, ``/tf`` and
         ``/tf_static``, interpolated at the stamp of the people; they wait until a transform as new as they are comes.
 
@@ -255,7 +266,11 @@ class Live:
                 self._memory = memory
             self._report(memory, begin)
         self._warn()
-        return dataclasses.replace(forecast, existence=rows.existence[None])
+        covariance = forecast.covariance
+        if self._pose_covariance and covariance is not None and rows.uncertainty is not None:
+            mean = np.einsum("k,ktac->tac", forecast.weight[0], forecast.position[0])
+            covariance = covariance + _placed_covariances(rows.uncertainty, mean)[None]
+        return dataclasses.replace(forecast, existence=rows.existence[None], covariance=covariance)
 
     def _warn(self) -> None:
         """Warn the caller of a public method of what is new."""
@@ -305,6 +320,22 @@ class Live:
             covariance=None if rows.covariance is None else rows.covariance[None],
         )  # fmt: skip
         return (past.with_plans(known) if known else past), rows, count
+
+
+def _placed_covariances(uncertainty: Floats, position: Floats) -> Floats:
+    """Return the covariances ``[T, A, 2, 2]`` [m^2] of positions ``[T, A, 2]`` in frames of uncertain placement.
+
+    The error of a pose is nearly the same in all rows, so it is no noise of the observations: filters would smooth
+    turns away. It moves and turns the forecast as a whole.
+
+    Args:
+        uncertainty: ``[A, 3, 3]`` covariances of x, y [m] of the origin and yaw [rad].
+        position: ``[T, A, 2]`` [m].
+    """
+    motion = np.zeros((*position.shape[:2], 2, 3))
+    motion[..., 0, 0] = motion[..., 1, 1] = 1.0
+    motion[..., 0, 2], motion[..., 1, 2] = -position[..., 1], position[..., 0]
+    return np.asarray(motion @ uncertainty @ np.swapaxes(motion, -1, -2))
 
 
 def _checked_ring(ring: ArrayLike) -> NDArray[np.float64]:

@@ -28,6 +28,8 @@ class TrackerFrame:
         covariance: ``[N, 2, 2]`` [m^2] of the positions, NaN where unknown, or None.
         radius: ``[N]`` [m], NaN where unknown.
         existence: ``[N]`` probability that there is a person, 1 where the tracker does not say.
+        uncertainty: ``[N, 3, 3]`` covariance of the placement of the coordinate frame in which each person was seen
+            (see :meth:`crowdbot.data.Frames.pose_covariance`), or None.
     """
 
     labels: list[Hashable]
@@ -37,6 +39,7 @@ class TrackerFrame:
     covariance: Floats | None
     radius: Floats
     existence: Floats
+    uncertainty: Floats | None = None
 
     @classmethod
     def of(

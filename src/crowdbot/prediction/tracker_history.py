@@ -47,6 +47,8 @@ class TrackedRows(NamedTuple):
             is hidden.
         covariance: ``[T, A, 2, 2]`` [m^2] of the positions, NaN where the tracker gave none; None if there are none.
         radius: ``[A]`` [m] last known radius of each agent, NaN where unknown; None if all are.
+        uncertainty: ``[A, 3, 3]`` covariance of the placement of the frame in which each agent was last seen, 0 without
+            odometry; None if all are.
     """
 
     position: Floats
@@ -56,6 +58,7 @@ class TrackedRows(NamedTuple):
     existence: Floats
     covariance: Floats | None
     radius: Floats | None
+    uncertainty: Floats | None
 
 
 class TrackerHistory:
@@ -85,6 +88,7 @@ class TrackerHistory:
         self._numbers: dict[Hashable, int] = {}
         self._next = FIRST_NUMBER
         self._radii: dict[int, tuple[float, float]] = {}  # time [s] and radius [m]
+        self._uncertainty: dict[int, tuple[float, Floats]] = {}  # time [s] and covariance [3, 3]
 
     def add(self, frame: TrackerFrame) -> None:
         """Put a frame at its time; one with the stamp of a stored frame is merged with it, one too old is dropped."""
@@ -103,6 +107,10 @@ class TrackerHistory:
         for number, size in zip(who[known].tolist(), frame.radius[known].tolist(), strict=True):
             if stamp >= self._radii.get(number, (-np.inf, 0.0))[0]:
                 self._radii[number] = (stamp, size)
+        if frame.uncertainty is not None:
+            for number, own in zip(who.tolist(), frame.uncertainty, strict=True):
+                if stamp >= self._uncertainty.get(number, (-np.inf, own))[0]:
+                    self._uncertainty[number] = (stamp, own)
         if stamp > newest:
             self._judge(row, stamp - newest, frame.time is not None)
         self._stamped = self._stamped or frame.time is not None
@@ -176,7 +184,7 @@ class TrackerHistory:
                     covariance[-1, slot] = _coasted_covariance(seen, spread, hidden)
         robots: frozenset[int] = frozenset().union(*(row.robots for row in self._rows))
         return TrackedRows(position, present, np.isin(id, sorted(robots)), id, existence, covariance,
-                           self._last_radii(id))  # fmt: skip
+                           self._last_radii(id), self._last_uncertainty(id))  # fmt: skip
 
     def _last_existence(self, id: Ints) -> Floats:
         """Return the existence probabilities ``[A]`` in the last frames of agents."""
@@ -190,6 +198,11 @@ class TrackerHistory:
         """Return radii ``[A]`` [m], or None if none is known."""
         found = np.array([self._radii.get(int(number), (0.0, np.nan))[1] for number in id])
         return None if np.isnan(found).all() else found
+
+    def _last_uncertainty(self, id: Ints) -> Floats | None:
+        """Return covariances ``[A, 3, 3]`` of placements, or None if all are 0."""
+        found = np.array([self._uncertainty.get(int(n), (0.0, np.zeros((3, 3))))[1] for n in id]).reshape(-1, 3, 3)
+        return found if found.any() else None
 
     def _stamp(self, time: float | None) -> float:
         if time is not None:
@@ -217,6 +230,7 @@ class TrackerHistory:
             self._labels = {number: label for number, label in self._labels.items() if number in alive}
             self._numbers = {label: number for number, label in self._labels.items()}
             self._radii = {number: size for number, size in self._radii.items() if number in alive}
+            self._uncertainty = {number: own for number, own in self._uncertainty.items() if number in alive}
 
     def _times(self) -> Floats:
         """Return the times of the rows: multiples of ``dt`` before now that are not before the first stored row."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections import deque
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from crowdbot.core import InputError
-from crowdbot.data import PEOPLE_TYPES, Frames, frame_name, stamp_of
+from crowdbot.data import DETECTIONS, PEOPLE_TYPES, PERSON_CLASSES, Frames, detected_people, frame_name, stamp_of
 from crowdbot.typing import Floats
 
 from .tracker_frame import TrackerFrame
@@ -42,11 +44,13 @@ class TrackerMessages:
     Args:
         frame: name of the fixed coordinate frame of all positions; None: the first one above the first message.
         robot: name of a coordinate frame of the robot, such as ``base_link``, that is added to each frame as a robot.
+        classes: classes of people in detections.
     """
 
-    def __init__(self, frame: str | None, robot: str | None) -> None:
+    def __init__(self, frame: str | None, robot: str | None, classes: Sequence[str] = PERSON_CLASSES) -> None:
         self.frame = None if frame is None else frame_name(frame)
         self.robot = None if robot is None else frame_name(robot)
+        self.classes = classes
         self._frames = Frames()
         self._waiting: deque[_People] = deque()
 
@@ -54,7 +58,7 @@ class TrackerMessages:
         """Return the frames that a message completes, see :meth:`Live.update_from`."""
         kind = _kind(message)
         if kind in PEOPLE_TYPES:
-            self._waiting.append(_people(kind, message))
+            self._waiting.append(_people(kind, message, self.classes))
         elif kind == ODOMETRY:
             if not frame_name(message.header.frame_id) or not frame_name(message.child_frame_id):
                 raise InputError(
@@ -105,7 +109,7 @@ class TrackerMessages:
         turn, shift = self._placement(people.frame, target, people.stamp)
         labels: list[Any] = list(people.labels)
         position, covariance = people.position @ turn.T + shift, turn @ people.covariance @ turn.T
-        radius, existence, robots = people.radius, people.existence, []
+        radius, existence, robots = people.radius, people.existence, list[str]()
         if self.robot is not None:
             if not self._frames.connects(self.robot, target):
                 raise InputError(self._unknown(self.robot, target))
@@ -125,7 +129,11 @@ class TrackerMessages:
             return None
         spread = None if np.isnan(covariance).all() else covariance[:, :2, :2]
         time = people.stamp / SECOND
-        return TrackerFrame.of(labels, position[:, :2], robots, time, spread, radius, existence)
+        frame = TrackerFrame.of(labels, position[:, :2], robots, time, spread, radius, existence)
+        sources = [people.frame] * N + robots
+        uncertainty = {name: self._uncertainty(name, target, people.stamp) for name in {*sources}}
+        rows = [uncertainty[name] for name in sources]
+        return dataclasses.replace(frame, uncertainty=np.array(rows).reshape(-1, 3, 3))
 
     def _target(self, frame: str) -> str:
         """Return the fixed frame of all positions, which the first message of people decides."""
@@ -143,6 +151,13 @@ class TrackerMessages:
             " and /tf_static before people, or name the fixed frame with Live(..., frame=NAME)"
         )
 
+    def _uncertainty(self, frame: str, target: str, stamp: int) -> Floats:
+        """Return the covariance ``[3, 3]`` of the placement of a frame, see :meth:`Frames.pose_covariance`."""
+        try:
+            return self._frames.pose_covariance(frame, target, stamp)
+        except InputError as error:
+            raise InputError(f"live: {error}") from None
+
     def _placement(self, frame: str, target: str, stamp: int) -> tuple[Floats, Floats]:
         placement = self._frames.placement(frame, target, np.array([stamp], dtype=np.int64))
         return placement.turn[0], placement.shift[0]
@@ -158,24 +173,37 @@ def _kind(message: Any) -> str:
     return f"{package}/msg/{rest.rpartition('/')[2]}"
 
 
-def _people(kind: str, message: Any) -> _People:
+def _people(kind: str, message: Any, classes: Sequence[str]) -> _People:
     """Return the people of a message.
 
     Raises:
-        InputError: it has no frame.
+        InputError: it has no frame, or detections are not of tracked people.
     """
     frame = frame_name(message.header.frame_id)
     if not frame:
         raise InputError(f"live: a message of type {kind} names no frame (header.frame_id is empty)")
-    pairs = list(PEOPLE_TYPES[kind](message))
+    if kind == DETECTIONS:
+        try:
+            detections = list(detected_people(message, classes))
+        except InputError as error:
+            raise InputError(f"live: {error}") from None
+        pairs = [(person.name, person.point) for person in detections]
+        spreads = [person.covariance for person in detections]
+        shares = [person.score for person in detections]
+    else:
+        pairs = list(PEOPLE_TYPES[kind](message))
+        tracks = getattr(message, "tracks", ())
+        spreads = [np.asarray(track.pose.covariance, dtype=float).reshape(6, 6)[:3, :3] for track in tracks]
+        shares = [person.reliability for person in getattr(message, "people", ())]
     N = len(pairs)
     place = np.array([(point.x, point.y, point.z) for _, point in pairs], dtype=float).reshape(N, 3)
     covariance, radius, existence = np.full((N, 3, 3), np.nan), np.full(N, np.nan), np.full(N, np.nan)
-    for k, track in enumerate(getattr(message, "tracks", ())):
-        own = np.asarray(track.pose.covariance, dtype=float).reshape(6, 6)[:3, :3]
-        covariance[k] = own if own.any() else np.nan  # trackers without covariances leave zeros
+    for k, spread in enumerate(spreads):
+        if spread is not None and spread.any():  # trackers without covariances leave zeros
+            covariance[k] = spread
+    for k, share in enumerate(shares):
+        existence[k] = share or np.nan  # 0 where it is not filled in
     for k, person in enumerate(getattr(message, "people", ())):
-        existence[k] = person.reliability or np.nan  # 0 where it is not filled in
         tags = dict(zip(getattr(person, "tagnames", ()), getattr(person, "tags", ()), strict=False))
         radius[k] = _number(tags.get("radius", "nan"))
     labels = [_label(name) for name, _ in pairs]

@@ -25,6 +25,7 @@ from crowdbot.data.source import Source, parse_errors
 from crowdbot.data.trajectories import Trajectories
 
 from .bags import Bag, read_bag
+from .detections import DETECTIONS, detected_people
 from .frames import SECOND, Frames, frame_name, stamp_of
 
 PEOPLE = "/people"
@@ -47,6 +48,7 @@ PEOPLE_TYPES: Mapping[str, Callable[[Any], Iterator[_Person]]] = {
     "hunav_msgs/msg/Agents": lambda message: (
         (str(p.id), p.position.position) for p in message.agents if p.type != HUNAV_ROBOT
     ),
+    DETECTIONS: lambda message: ((person.name, person.point) for person in detected_people(message)),
 }
 """Message types of people; each gives names and positions."""
 

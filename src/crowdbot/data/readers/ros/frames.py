@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import InputError
 from crowdbot.typing import Floats
 
 SECOND = 1_000_000_000
@@ -33,7 +34,10 @@ def stamp_of(header: Any) -> int:
 
 @dataclass
 class _Edge:
-    """Poses of a frame in its parent: stamps [ns], and x, y, z [m] with a quaternion x, y, z, w."""
+    """Poses of a frame in its parent: stamps [ns], and x, y, z [m] with a quaternion x, y, z, w.
+
+    Poses of odometry go on with the covariance of x, y [m] and yaw [rad]: xx, xy, xt, yy, yt, tt.
+    """
 
     parent: str
     topic: str
@@ -59,7 +63,7 @@ class _Edge:
 
     @functools.cached_property
     def table(self) -> tuple[NDArray[np.int64], Floats]:
-        """Stamps ``[P]`` in ascending order without duplicates, and poses ``[P, 7]``."""
+        """Stamps ``[P]`` in ascending order without duplicates, and poses ``[P, 7]`` or, of odometry, ``[P, 13]``."""
         stamps, first = np.unique(np.asarray(self.stamps, dtype=np.int64), return_index=True)
         return stamps, np.asarray(self.poses, dtype=np.float64)[first]
 
@@ -107,7 +111,8 @@ class Frames:
         edge = self.odometry.setdefault(child, _Edge(parent, topic, False))
         if edge.topic == topic and edge.parent == parent:
             place, turn = message.pose.pose.position, message.pose.pose.orientation
-            edge.add(stamp_of(message.header), (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w))
+            spread = _planar_covariance(message.pose.covariance)
+            edge.add(stamp_of(message.header), (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w, *spread))
 
     def forget(self, stamp: int) -> None:
         """Drop the poses before a stamp [ns] in a stream of messages."""
@@ -155,6 +160,44 @@ class Frames:
         placement = self._chain(up, stamps)
         return self._chain(down, stamps).inverse().after(placement) if down else placement
 
+    def pose_covariance(self, frame: str, target: str, stamp: int) -> Floats:
+        """Return how uncertain odometry makes the placement of a frame in a target frame that it is joined with.
+
+        The covariance ``[3, 3]`` is that of a small motion of the plane of the target frame: x, y [m] of the point at
+        its origin, and yaw [rad]. A point at x, y then has the covariance ``J P J^T`` with
+        ``J = [[1, 0, -y], [0, 1, x]]``: far from the robot, the error of its heading counts more. Several odometries on
+        the way add up; 0 where there is none. Transforms of ``/tf`` have no covariance; that of odometry between the
+        same frames counts.
+
+        Args:
+            frame, target: the frames.
+            stamp: time [ns] at which the placement is known.
+
+        Raises:
+            InputError: a covariance is not finite and positive semidefinite.
+        """
+        total, at = np.zeros((3, 3)), np.array([stamp], dtype=np.int64)
+        for name in (one for part in self._paths(frame, target) for one in part):
+            edge, tree = self.odometry.get(name), self._edge(name)
+            if edge is None or tree is None or edge.parent != tree.parent:
+                continue
+            first, last, share = _around(edge, at)
+            xx, xy, xt, yy, yt, tt = (first + share[:, None] * (last - first))[0, 7:]
+            spread = np.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]])
+            size = np.abs(spread).max()
+            if not np.isfinite(size) or np.linalg.eigvalsh(spread)[0] < -1e-6 * size:
+                raise InputError(
+                    f"the odometry on {edge.topic} has the covariance {spread.tolist()} of x, y and yaw, which must be"
+                    " finite and positive semidefinite; send zeros if it is unknown"
+                )
+            base = self.placement(edge.parent, target, at)
+            x, y = self.placement(name, target, at).shift[0, :2]
+            motion = np.eye(3)
+            motion[:2, :2] = base.turn[0, :2, :2]
+            motion[:2, 2] = y, -x  # from the robot to the origin of the target frame
+            total += motion @ spread @ motion.T
+        return total
+
     def _edge(self, frame: str) -> _Edge | None:
         return self.edges.get(frame) or self.odometry.get(frame)
 
@@ -173,23 +216,37 @@ class Frames:
         return placement
 
 
-def _interpolate(edge: _Edge, stamps: NDArray[np.int64]) -> Placement:
-    """Return the poses at stamps: places are interpolated linearly, quaternions too, then normalized."""
+def _around(edge: _Edge, stamps: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+    """Return the poses before and after stamps ``[N]``, and the shares ``[N]`` of the time between them.
+
+    The poses are NaN at stamps outside the poses, and in gaps.
+    """
     times, poses = edge.table
-    if edge.static:
-        pose = np.repeat(poses[-1:], len(stamps), axis=0)
-        return Placement(_matrices(pose[:, 3:]), pose[:, :3])
     after = np.clip(np.searchsorted(times, stamps), 1, max(1, len(times) - 1))
     before = np.where(np.isin(stamps, times), np.minimum(np.searchsorted(times, stamps), len(times) - 1), after - 1)
     after = np.minimum(np.where(np.isin(stamps, times), before, after), len(times) - 1)
     gap = (times[after] - times[before]) / SECOND
     share = np.where(gap > 0.0, (stamps - times[before]) / SECOND / np.where(gap > 0.0, gap, 1.0), 0.0)
-    first, last = poses[before], poses[after].copy()
-    last[np.sum(first[:, 3:] * last[:, 3:], axis=1) < 0.0, 3:] *= -1.0  # both signs are the same rotation
-    pose = first + share[:, None] * (last - first)
     unknown = (stamps < times[0]) | (stamps > times[-1]) | (gap > LONGEST_GAP)
-    pose[unknown] = np.nan
-    return Placement(_matrices(pose[:, 3:]), pose[:, :3])
+    return np.where(unknown[:, None], np.nan, poses[before]), poses[after], share
+
+
+def _interpolate(edge: _Edge, stamps: NDArray[np.int64]) -> Placement:
+    """Return the poses at stamps: places are interpolated linearly, quaternions too, then normalized."""
+    if edge.static:
+        pose = np.repeat(edge.table[1][-1:], len(stamps), axis=0)
+        return Placement(_matrices(pose[:, 3:]), pose[:, :3])
+    first, last, share = _around(edge, stamps)
+    opposite = np.sum(first[:, 3:7] * last[:, 3:7], axis=1) < 0.0
+    last[opposite, 3:7] *= -1.0  # both signs are the same rotation
+    pose = first + share[:, None] * (last - first)
+    return Placement(_matrices(pose[:, 3:7]), pose[:, :3])
+
+
+def _planar_covariance(covariance: Any) -> tuple[float, ...]:
+    """Return the covariance of x, y and yaw of a pose: xx, xy, xt, yy, yt, tt; 0 if its first number is -1, unknown."""
+    whole = np.asarray(covariance, dtype=np.float64).reshape(6, 6)
+    return (0.0,) * 6 if whole[0, 0] == -1.0 else tuple(whole[[0, 0, 0, 1, 1, 5], [0, 1, 5, 1, 5, 5]].tolist())
 
 
 def _matrices(quaternions: Floats) -> Floats:
