@@ -167,7 +167,7 @@ def ros1() -> str:
 @pytest.fixture
 def domain() -> Iterator[int]:
     """A ROS domain that no other run on this computer uses; it is locked until the end of the test."""
-    from crowdbot.bridges.ros2.domain_lock import lock_domain
+    from crowdbot.bridges.stack_link import lock_domain
 
     number, release = lock_domain()
     yield number

@@ -24,7 +24,7 @@ from ros1_master import PYTHON, RosMaster
 from crowdbot.benchmark.speed import bridge_viewer
 from crowdbot.benchmark.speed.bridge_loads import LOAD_TOPICS, LOADED_BRIDGES, LoadTraffic, bridge_load
 from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
-from crowdbot.bridges.ros2.domain_lock import lock_domain
+from crowdbot.bridges.stack_link import lock_domain
 from crowdbot.core import CrowdbotError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial

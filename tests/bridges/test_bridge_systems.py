@@ -8,10 +8,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from crowdbot.bridges import stack_link
 from crowdbot.bridges.motion_capture import natnet
 from crowdbot.bridges.naoqi import NaoqiBridge
-from crowdbot.bridges.ros2 import domain_lock
-from crowdbot.bridges.stacks.stack_program import StackProgram
+from crowdbot.bridges.stack_link import StackProgram
 from crowdbot.cli.join.stop_key import StopKey
 from crowdbot.core import InputError
 
@@ -40,7 +40,7 @@ def test_naoqi_needs_a_package_of_linux(monkeypatch, system, name):
 def test_the_lock_of_a_domain_needs_no_user_number_on_windows(monkeypatch):
     monkeypatch.delattr(os, "getuid")
     monkeypatch.setattr(sys, "platform", "win32")
-    assert domain_lock._lock_path(101).name == "crowdbot-domain-101.lock"
+    assert stack_link._lock_path(101).name == "crowdbot-domain-101.lock"
 
 
 @pytest.mark.parametrize(("system", "bound"), [("win32", "192.168.0.7"), ("darwin", "239.255.42.99")])

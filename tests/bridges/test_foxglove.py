@@ -17,7 +17,7 @@ from websockets.sync.client import connect
 
 from crowdbot.bridges import BridgeClock, RobotInterface, interface_store, message_of, open_transport, run_bridge
 from crowdbot.bridges.foxglove import FoxgloveServer, foxglove_layout
-from crowdbot.bridges.foxglove.decoding import decode_fields
+from crowdbot.bridges.foxglove.server import decode_fields
 from crowdbot.core import InputError
 from crowdbot.data import McapReader
 from crowdbot.messages import Messages

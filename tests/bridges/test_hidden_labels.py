@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bridge_runs import MemoryTransport
 
-from crowdbot.bridges.stacks.stack_port import StackPort
+from crowdbot.bridges.stack_link import StackPort
 from crowdbot.messages import Messages, Ros1Messages
 from crowdbot.messages.point_clouds import points_in
 from crowdbot.simulation import Simulation

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.bridges import BridgeClock, run_bridge
-from crowdbot.bridges.instant_repeat import LONGEST, REPEAT, SETTLED, InstantRepeat
+from crowdbot.bridges.run_control import LONGEST, REPEAT, SETTLED, InstantRepeat
 from crowdbot.trials import load_trial
 
 STEP = 50_000_000

@@ -11,16 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.bridges.motion_capture import FootLock, Retargeting, SourceSkeleton
-from crowdbot.bridges.motion_capture.rotations import (
+from crowdbot.bridges.motion_capture.retargeting import (
     align_vectors,
+    body_axes,
     normalize,
     rotate_about,
     to_matrices,
     to_quaternions,
     yaw_of,
 )
-from crowdbot.bridges.motion_capture.source_skeleton import body_axes
-from crowdbot.bridges.motion_capture.xsens_segments import xsens_skeleton
+from crowdbot.bridges.motion_capture.xsens import xsens_skeleton
 from crowdbot.core import InputError
 from crowdbot.humans import Gait, People, RestSkeleton, reach_poses, rest_skeleton
 

@@ -16,7 +16,7 @@ from motion_senders import Motive, Sender
 
 from crowdbot.bridges import open_stream
 from crowdbot.bridges.motion_capture import ClockOffset, NatNetStream, XsensStream
-from crowdbot.bridges.motion_capture.natnet_packets import read_server
+from crowdbot.bridges.motion_capture.natnet import read_server
 from crowdbot.core import InputError
 
 

@@ -22,7 +22,7 @@ from ros1_master import RosMaster
 
 from crowdbot.bridges import BridgeClock, RobotInterface, open_transport, run_bridge
 from crowdbot.bridges.ros1 import Ros1Node
-from crowdbot.bridges.ros1.tcpros import pack_header, unpack_header
+from crowdbot.bridges.ros1.session import pack_header, unpack_header
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial

@@ -21,7 +21,7 @@ from rosbags.interfaces import Nodetype
 
 from crowdbot.bridges import SERVICES, BridgeClock, interface_store, open_transport, run_bridge
 from crowdbot.bridges.ros2 import Ros2Node
-from crowdbot.bridges.ros2.services import fill_message, message_fields
+from crowdbot.bridges.ros2.node import fill_message, message_fields
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial

@@ -11,12 +11,9 @@ import numpy as np
 import pytest
 
 from crowdbot.bridges import Inbox, RobotInterface, fields_of, plain_fields
-from crowdbot.bridges.rosbridge.encoding import OutgoingMessage, encode_cbor, read_png
-from crowdbot.bridges.rosbridge.frames import MOST_TEXT, FrameReader
-from crowdbot.bridges.rosbridge.graph import RosGraph
-from crowdbot.bridges.rosbridge.rosapi import ROSAPI, type_details
-from crowdbot.bridges.rosbridge.session import ClientSession
-from crowdbot.bridges.rosbridge.subscription import Subscription
+from crowdbot.bridges.rosbridge.frames import MOST_TEXT, FrameReader, OutgoingMessage, encode_cbor, read_png
+from crowdbot.bridges.rosbridge.graph import ROSAPI, RosGraph, type_details
+from crowdbot.bridges.rosbridge.session import ClientSession, Subscription
 from crowdbot.core import InputError
 from crowdbot.messages import Messages
 from crowdbot.recording import StepMessage

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.bridges import steered_trial
-from crowdbot.bridges.stacks.stack_link import close_stacks
-from crowdbot.bridges.stacks.stack_port import StackPort
+from crowdbot.bridges.stack_link import StackPort, close_stacks
 from crowdbot.core import InputError
 from crowdbot.evaluation import EvaluationPlan, evaluate, load_evaluation, parse_methods
 from crowdbot.navigation import ExternalNavigator, Ros2Navigator, RosbridgeNavigator

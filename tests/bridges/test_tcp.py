@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from crowdbot.bridges import open_transport
-from crowdbot.bridges.tcp.challenge_server import ChallengeServer, format_reply, read_request
+from crowdbot.bridges.challenge_server import ChallengeServer, format_reply, read_request
 from crowdbot.core import InputError
 from crowdbot.recording import replay
 from crowdbot.trials import load_trial, parse_trial

@@ -4,7 +4,7 @@ import pytest
 from bridge_runs import MemoryTransport, Running
 
 from crowdbot.bridges import SERVICES, RobotInterface, interface_store, message_of, request_kind, response_kind
-from crowdbot.bridges.verbs.verbs import Verbs
+from crowdbot.bridges.simulation_services import Verbs
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial

@@ -16,7 +16,7 @@ from rosbags.typesys import get_types_from_msg
 from websockets.sync.client import connect
 
 from crowdbot.bridges.fields import message_of as ros_message
-from crowdbot.bridges.verbs.definitions import interface_store
+from crowdbot.bridges.interface import interface_store
 from crowdbot.sensors import Lens
 from crowdbot.trials import load_trial
 

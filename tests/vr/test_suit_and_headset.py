@@ -14,7 +14,7 @@ import pytest
 from headset_sessions import Headset, open_session, phase, until
 
 from crowdbot.bridges import MotionSample, PoseStream
-from crowdbot.bridges.motion_capture.xsens_segments import SEGMENTS, xsens_skeleton
+from crowdbot.bridges.motion_capture.xsens import SEGMENTS, xsens_skeleton
 from crowdbot.core import InputError
 from crowdbot.humans import Gait, People, eye_offsets, reach_poses, rest_skeleton
 from crowdbot.recording import read_episode, replay

@@ -24,15 +24,23 @@ Names are those of recordings: ``/robot/scan``, ``/robot/cmd_vel``, ``/people``,
 """
 
 from .bridge_run import BridgeRun, run_bridge
-from .clock import MODES, BridgeClock, Pace
 from .fields import fields_of, message_of, plain_fields
 from .inbox import Inbox, ServiceCall
-from .interface import InputTopic, OutputTopic, RobotInterface, Service
+from .interface import (
+    QUALITIES,
+    SERVICES,
+    InputTopic,
+    OutputTopic,
+    QualityOfService,
+    RobotInterface,
+    Service,
+    interface_store,
+    request_kind,
+    response_kind,
+)
 from .join.command_guard import CommandGuard, DrivingArea, GuardLimits
 from .join.join_run import JoinRun, joined_trial
-from .join.real_robot_link import RealRobotLink, open_real_robot
-from .join.simulated_robot import SimulatedRobot
-from .latency import CommandLatency, LatencySummary
+from .join.real_robot_link import RealRobotLink, SimulatedRobot, open_real_robot
 from .motion_capture import (
     CaptureSet,
     FootLock,
@@ -47,14 +55,11 @@ from .motion_capture import (
     parse_binding,
     parse_captures,
 )
-from .plain_services import PLAIN_SERVICES, PlainService
 from .port import BridgePort, steered_trial
-from .quality import QUALITIES, QualityOfService
-from .run_control import RunControl
-from .stacks.stack_link import open_stack
-from .transport import Transport
-from .transports import TRANSPORTS, open_transport
-from .verbs.definitions import SERVICES, interface_store, request_kind, response_kind
+from .run_control import MODES, BridgeClock, CommandLatency, LatencySummary, Pace, RunControl
+from .simulation_services import PLAIN_SERVICES, PlainService
+from .stack_link import open_stack
+from .transport import TRANSPORTS, Transport, open_transport
 
 __all__ = [
     "MODES",

@@ -22,12 +22,10 @@ from crowdbot.simulation import (
 )
 from crowdbot.trials import Trial, check_trial
 
-from .clock import BridgeClock, Pace
-from .instant_repeat import InstantRepeat
 from .port import BridgePort, steered_trial
-from .run_control import PAUSED, PLAYING, RunControl
+from .run_control import PAUSED, PLAYING, BridgeClock, InstantRepeat, Pace, RunControl
+from .simulation_services import FAILED, result
 from .transport import RemarkSource, Transport
-from .verbs.results import FAILED, result
 
 IDLE = 0.02
 """Longest real time [s] between two looks at the transports."""

@@ -13,7 +13,7 @@ from rosbags.interfaces import Nodetype
 
 from crowdbot.core import InputError
 
-from .verbs.definitions import interface_store
+from .interface import interface_store
 
 DEEPEST, LONGEST = 32, 1 << 22
 """Largest depth of a message, and number of elements of an array."""

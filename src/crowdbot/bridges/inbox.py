@@ -12,7 +12,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
 from .interface import InputTopic, RobotInterface
-from .latency import CommandLatency
+from .run_control import CommandLatency
 
 SLOWEST, FASTEST = 0.001, 100.0
 """Speeds that may be asked for, in simulated seconds per real second."""

@@ -1,20 +1,332 @@
-"""RobotInterface: the topics and services of a trial, before anything runs."""
+"""RobotInterface: the topics and services of a trial, with types, quality of service and the commands in messages."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rosbags.typesys import get_types_from_msg
+
 from crowdbot.core import InputError
-from crowdbot.messages import COLLISIONS, FALL_POSES, FALLS, FORCES, MAP, MARKERS, reading_topics
+from crowdbot.messages import COLLISIONS, FALL_POSES, FALLS, FORCES, MAP, MARKERS, Messages, reading_topics
 from crowdbot.recording import LinkFrames
-from crowdbot.simulation import Order
+from crowdbot.simulation import GoalOrder, JointOrder, Order, VelocityOrder, read_order
 from crowdbot.trials import RobotSpec, Trial
 
-from .commands import READERS
-from .quality import CLOCK, COMMAND, LATCHED, SENSOR, STATE, TF, QualityOfService
-from .verbs.definitions import SERVICES
+
+@dataclass(frozen=True)
+class QualityOfService:
+    """Delivery of a topic.
+
+    Fields:
+        name: name of the class in tables.
+        reliable: whether lost messages are sent again; a reliable subscriber does not match a best-effort topic.
+        latched: whether a late subscriber gets the latest message (``transient local`` in ROS 2).
+        depth: number of messages that are kept for a subscriber.
+
+    >>> SENSOR.reliable, LATCHED.latched
+    (False, True)
+    """
+
+    name: str
+    reliable: bool
+    latched: bool
+    depth: int
+
+
+SENSOR = QualityOfService("sensor", False, False, 5)
+"""Readings, as ``rmw_qos_profile_sensor_data``."""
+CLOCK = QualityOfService("clock", True, False, 1)
+"""The clock: reliable, so that both kinds of subscribers match."""
+TF = QualityOfService("tf", True, False, 100)
+"""Transforms that move."""
+LATCHED = QualityOfService("latched", True, True, 1)
+"""What is sent once: the map, fixed transforms, descriptions of robots."""
+STATE = QualityOfService("state", True, False, 10)
+"""Odometry, joints, people, contacts, orders."""
+COMMAND = QualityOfService("command", True, False, 10)
+"""Commands to the robot; a best-effort publisher does not match. The newest counts, but none is lost on the way."""
+QUALITIES = (SENSOR, CLOCK, TF, LATCHED, STATE, COMMAND)
+
+
+Fields = Mapping[str, Any]
+MOST_JOINTS = 200
+
+
+def read_number(fields: Any, *path: str) -> float:
+    """Return a number of nested fields, 0 if it is missing.
+
+    Raises:
+        InputError: it is not a finite number.
+
+    >>> read_number({"linear": {"x": 0.5}}, "linear", "x"), read_number({}, "linear", "x")
+    (0.5, 0.0)
+    """
+    value = fields
+    for word in path:
+        if not isinstance(value, Mapping):
+            raise InputError(f"{'.'.join(path)}: {word} is in a {type(value).__name__}, it must be in an object")
+        value = value.get(word, 0.0 if word == path[-1] else {})
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f"{'.'.join(path)} = {str(value)[:40]!r} must be a finite number")
+    return float(value)
+
+
+def read_point(fields: Any, *path: str) -> tuple[float, float]:
+    """Return x and y of a point."""
+    return read_number(fields, *path, "x"), read_number(fields, *path, "y")
+
+
+def read_heading(fields: Any, *path: str) -> float:
+    """Return the heading [rad] of a quaternion; one of zeros is the identity.
+
+    >>> read_heading({"z": 1.0, "w": 0.0}) == math.pi
+    True
+    """
+    x, y, z, w = (read_number(fields, *path, axis) for axis in "xyzw")
+    if x == y == z == w == 0.0:
+        return 0.0
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def read_twist(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Return the command of ``geometry_msgs/Twist`` or ``TwistStamped``."""
+    twist = fields.get("twist", fields)
+    if not isinstance(twist, Mapping) or not ({"linear", "angular"} & {*twist}):
+        raise InputError("a command needs linear and angular, as in geometry_msgs/Twist")
+    return [
+        VelocityOrder(
+            robot=robot,
+            forward=read_number(twist, "linear", "x"),
+            turn=read_number(twist, "angular", "z"),
+            left=read_number(twist, "linear", "y"),
+            source=sender,
+        )
+    ]
+
+
+def read_goal(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Return the goal of ``geometry_msgs/PoseStamped``, in the frame of the map."""
+    if not isinstance(fields.get("pose"), Mapping):
+        raise InputError("a goal needs pose, as in geometry_msgs/PoseStamped")
+    header = fields.get("header", {})
+    frame = header.get("frame_id", "") if isinstance(header, Mapping) else ""
+    if frame not in ("", MAP):
+        raise InputError(f"a goal must be in the frame {MAP!r}, not {str(frame)[:40]!r}")
+    x, y = read_point(fields, "pose", "position")
+    return [GoalOrder(robot=robot, x=x, y=y, source=sender)]
+
+
+def read_joints(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Return the joint targets of ``sensor_msgs/JointState``: names and positions."""
+    return _joints(fields.get("name"), fields.get("position"), robot, sender)
+
+
+def read_trajectory(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Return the joint targets of ``trajectory_msgs/JointTrajectory``: its last point."""
+    points = fields.get("points")
+    if not _is_list(points) or not points or not isinstance(points[-1], Mapping):
+        raise InputError("a trajectory needs points with positions")
+    return _joints(fields.get("joint_names"), points[-1].get("positions"), robot, sender)
+
+
+def _joints(names: Any, positions: Any, robot: str, sender: str) -> list[Order]:
+    positions = positions.tolist() if hasattr(positions, "tolist") else positions
+    if not _is_list(names) or not _is_list(positions) or len(names) != len(positions) or len(names) > MOST_JOINTS:
+        raise InputError("joint targets need as many names as positions")
+    if not all(isinstance(name, str) for name in names):
+        raise InputError("names of joints must be texts")
+    return [
+        JointOrder(robot=robot, joint=name, position=read_number({"position": value}, "position"), source=sender)
+        for name, value in zip(names, positions, strict=True)
+    ]
+
+
+def read_order_text(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Return the order of ``std_msgs/String`` as JSON, see :func:`crowdbot.simulation.read_order`."""
+    if not isinstance(fields.get("data"), str):
+        raise InputError("an order needs data with JSON, as in std_msgs/String")
+    return [read_order(fields["data"])]
+
+
+def read_clock(fields: Fields, robot: str, sender: str) -> list[Order]:
+    """Check ``rosgraph_msgs/Clock``; it gives no order."""
+    for word in ("sec", "nanosec"):
+        value = read_number(fields, "clock", word)
+        if value < 0 or value > 1e10 or value != int(value):
+            raise InputError(f"clock.{word} = {value:g} must be a whole number from 0")
+    if "clock" not in fields:
+        raise InputError("a time needs clock, as in rosgraph_msgs/Clock")
+    return []
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
+
+
+READERS: dict[str, Callable[[Fields, str, str], list[Order]]] = {
+    "geometry_msgs/msg/Twist": read_twist,
+    "geometry_msgs/msg/TwistStamped": read_twist,
+    "geometry_msgs/msg/PoseStamped": read_goal,
+    "sensor_msgs/msg/JointState": read_joints,
+    "trajectory_msgs/msg/JointTrajectory": read_trajectory,
+    "std_msgs/msg/String": read_order_text,
+    "rosgraph_msgs/msg/Clock": read_clock,
+}
+"""Functions that read the messages of input topics, by type: fields, robot, sender."""
+
+
+PACKAGE = "simulation_interfaces"
+
+MESSAGES = {
+    "Result": "uint8 result\nstring error_message\n",
+    "SimulatorFeatures": "uint16[] features\nstring[] spawn_formats\nstring custom_info\n",
+    "SimulationState": "uint8 state\n",
+    "Resource": "string uri\nstring resource_string\n",
+    "WorldResource": "string name\nsimulation_interfaces/Resource world_resource\nstring description\nstring[] tags\n",
+    "EntityState": (
+        "std_msgs/Header header\ngeometry_msgs/Pose pose\ngeometry_msgs/Twist twist\ngeometry_msgs/Accel acceleration\n"
+    ),
+    "EntityCategory": "uint8 category\n",
+    "EntityInfo": "simulation_interfaces/EntityCategory category\nstring description\nstring[] tags\n",
+    "Bounds": "uint8 type\ngeometry_msgs/Vector3[] points\n",
+    "TagsFilter": "string[] tags\nuint8 filter_mode\n",
+    "EntityFilters": (
+        "string filter\nsimulation_interfaces/EntityCategory[] categories\nsimulation_interfaces/TagsFilter tags\n"
+        "simulation_interfaces/Bounds bounds\n"
+    ),
+    "Spawnable": (
+        "simulation_interfaces/Resource entity_resource\nstring description\n"
+        "simulation_interfaces/Bounds spawn_bounds\n"
+    ),
+    "SpawnEntity": (
+        "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\n"
+        "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n"
+    ),
+    "SpawnResult": "simulation_interfaces/Result result\nstring entity_name\n",
+}
+"""Message types, without their constants."""
+
+
+@dataclass(frozen=True)
+class ServiceDefinition:
+    """A service type.
+
+    Fields:
+        kind: name, such as ``StepSimulation``.
+        request, response: definitions of its messages.
+        about: one line for people.
+    """
+
+    kind: str
+    request: str
+    response: str
+    about: str
+
+
+RESULT = "simulation_interfaces/Result result\n"
+FILTERS = "simulation_interfaces/EntityFilters filters\n"
+ENTITY_STATE = "simulation_interfaces/EntityState state\n"
+SPAWN = MESSAGES["SpawnEntity"]
+
+SERVICES = {
+    "get_simulator_features": ServiceDefinition(
+        "GetSimulatorFeatures", "", "simulation_interfaces/SimulatorFeatures features\n", "supported features"
+    ),
+    "get_simulation_state": ServiceDefinition(
+        "GetSimulationState", "", "simulation_interfaces/SimulationState state\n" + RESULT, "playing or paused"
+    ),
+    "set_simulation_state": ServiceDefinition(
+        "SetSimulationState", "simulation_interfaces/SimulationState state\n", RESULT, "play, pause, stop or quit"
+    ),
+    "step_simulation": ServiceDefinition("StepSimulation", "uint64 steps\n", RESULT, "steps while paused"),
+    "reset_simulation": ServiceDefinition("ResetSimulation", "uint8 scope\n", RESULT, "begin the trial again"),
+    "spawn_entity": ServiceDefinition("SpawnEntity", SPAWN, RESULT + "string entity_name\n", "add an entity"),
+    "spawn_entities": ServiceDefinition(
+        "SpawnEntities",
+        "simulation_interfaces/SpawnEntity[] spawn_requests\n",
+        RESULT + "simulation_interfaces/SpawnResult[] results\n",
+        "add entities",
+    ),
+    "delete_entity": ServiceDefinition("DeleteEntity", "string entity\n", RESULT, "remove a person or robot"),
+    "get_entities": ServiceDefinition("GetEntities", FILTERS, RESULT + "string[] entities\n", "names of entities"),
+    "get_entities_states": ServiceDefinition(
+        "GetEntitiesStates",
+        FILTERS,
+        RESULT + "string[] entities\nsimulation_interfaces/EntityState[] states\n",
+        "poses and velocities",
+    ),
+    "get_entity_state": ServiceDefinition(
+        "GetEntityState", "string entity\n", RESULT + ENTITY_STATE, "pose and velocity of an entity"
+    ),
+    "set_entity_state": ServiceDefinition(
+        "SetEntityState",
+        "string entity\n" + ENTITY_STATE + "bool set_pose\nbool set_twist\nbool set_acceleration\n",
+        RESULT,
+        "move a person or robot",
+    ),
+    "get_entity_info": ServiceDefinition(
+        "GetEntityInfo", "string entity\n", RESULT + "simulation_interfaces/EntityInfo info\n", "category of an entity"
+    ),
+    "get_spawnables": ServiceDefinition(
+        "GetSpawnables",
+        "string[] sources\n",
+        RESULT + "simulation_interfaces/Spawnable[] spawnables\n",
+        "what can be added",
+    ),
+    "load_world": ServiceDefinition(
+        "LoadWorld",
+        "simulation_interfaces/Resource world_resource\nbool fail_on_unsupported_element\n"
+        "bool ignore_missing_or_unsupported_assets\n",
+        RESULT + "simulation_interfaces/WorldResource world\n",
+        "run another trial",
+    ),
+    "get_current_world": ServiceDefinition(
+        "GetCurrentWorld", "", RESULT + "simulation_interfaces/WorldResource world\n", "the trial"
+    ),
+    "get_available_worlds": ServiceDefinition(
+        "GetAvailableWorlds",
+        "string[] additional_sources\nsimulation_interfaces/TagsFilter filter\nbool offline_only\n"
+        "bool continue_on_error\n",
+        RESULT + "simulation_interfaces/WorldResource[] worlds\n",
+        "trials that can be loaded",
+    ),
+}
+"""Services by the last part of their name."""
+
+
+def request_kind(service: ServiceDefinition) -> str:
+    """Return the message type of the requests of a service in the store.
+
+    >>> request_kind(SERVICES["step_simulation"])
+    'simulation_interfaces/msg/StepSimulation_Request'
+    """
+    return f"{PACKAGE}/msg/{service.kind}_Request"
+
+
+def response_kind(service: ServiceDefinition) -> str:
+    """Return the message type of the responses of a service in the store."""
+    return f"{PACKAGE}/msg/{service.kind}_Response"
+
+
+@functools.cache
+def interface_store() -> Any:
+    """Return the message library of rosbags with the types of this file.
+
+    >>> interface_store().types["simulation_interfaces/msg/StepSimulation_Request"](steps=3).steps
+    3
+    """
+    store = Messages().store
+    for name, text in MESSAGES.items():
+        store.register(get_types_from_msg(text, f"{PACKAGE}/msg/{name}"))
+    for service in SERVICES.values():
+        store.register(get_types_from_msg(service.request or "\n", request_kind(service)))
+        store.register(get_types_from_msg(service.response, response_kind(service)))
+    return store
+
 
 OPTICAL = ("/image", "/labels", "/camera_info")
 """Topics of a camera that are in its optical frame."""

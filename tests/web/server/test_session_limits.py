@@ -8,7 +8,7 @@ import aiohttp
 import pytest
 from job_functions import count
 
-from crowdbot.bridges.stacks.stack_program import StackProgram
+from crowdbot.bridges.stack_link import StackProgram
 from crowdbot.cli import main
 from crowdbot.core import PROGRAMS, InputError
 from crowdbot.navigation import ProcessNavigator

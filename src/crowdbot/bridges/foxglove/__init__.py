@@ -1,6 +1,5 @@
 """Foxglove: a live server for the Foxglove app, and a layout for it."""
 
-from .layout import foxglove_layout
-from .server import FoxgloveServer
+from .server import FoxgloveServer, foxglove_layout
 
 __all__ = ["FoxgloveServer", "foxglove_layout"]

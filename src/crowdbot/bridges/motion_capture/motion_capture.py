@@ -1,25 +1,30 @@
-"""MotionCapture: people and robots of a trial that move as a motion capture system says."""
+"""Motion capture in a simulation: recorded or live motion of people."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError, did_you_mean, wrap_angle
+from crowdbot.core import InputError, did_you_mean, read_bytes, wrap_angle
 from crowdbot.humans import BodyPose, PoseTrack, RestSkeleton, rest_skeleton
 from crowdbot.simulation import AvatarOrder, Order, RobotPoseOrder
 from crowdbot.trials import Trial, people_appearance
 
-from .foot_lock import FootLock
-from .pose_stream import MotionSample, PoseStream
-from .retargeting import Retargeting
-from .rotations import rotate_about, yaw_of
-from .source_skeleton import SourceSkeleton
+from .motion_files import read_bvh, read_csv, read_mvnx
+from .natnet import NatNetStream
+from .pose_stream import MotionSample, PoseStream, ServerStream
+from .retargeting import FootLock, Retargeting, SourceSkeleton, rotate_about, yaw_of
+from .vrpn import VrpnStream
+from .xsens import PORT as XSENS_PORT
+from .xsens import XsensStream
 
 AHEAD = 9.0
 """A time stamp that is further ahead [s] is not given: the clocks of sender and simulation are not related yet."""
@@ -173,3 +178,226 @@ def _avatar_bodies(simulation: Any) -> dict[str, RestSkeleton]:
     names = [getattr(people.owners[owner], "name", "") for owner in people.owner.tolist()]
     first = len(names) - len(trial.avatars)
     return {avatar.name: rest_skeleton(figures, first + names[first:].index(avatar.name)) for avatar in trial.avatars}
+
+
+SERVERS: dict[str, type[ServerStream]] = {"natnet": NatNetStream, "vrpn": VrpnStream}
+FILES = {".bvh": read_bvh, ".csv": read_csv, ".mvnx": read_mvnx}
+FORM = "SOURCE[#SUBJECT]=NAME[@X,Y,HEADING]"
+EXAMPLES = "xsens:9763=guide, natnet:192.168.0.5#Cart=twin or walk.bvh=guide@4,0,3.14"
+
+
+def open_stream(address: str) -> PoseStream:
+    """Return the stream at an address; enter it as a context to receive.
+
+    Args:
+        address: ``xsens:PORT`` or ``xsens:HOST:PORT`` (the address to listen on), ``natnet:SERVER`` or
+            ``natnet:SERVER:PORT``, ``vrpn:SERVER`` or ``vrpn:SERVER:PORT``, or the path of a .bvh, .csv or .mvnx file.
+
+    Raises:
+        InputError: the address or file is not valid.
+
+    >>> open_stream("natnet:127.0.0.1").port
+    1510
+    """
+    kind, _, rest = address.partition(":")
+    if kind == "xsens":
+        host, port = _host_port(rest, "127.0.0.1", XSENS_PORT, address)
+        return XsensStream(host, port)
+    if kind in SERVERS:
+        server, _, port_text = rest.partition(":")
+        stream = SERVERS[kind]
+        return stream(server or "127.0.0.1", _port(port_text, stream.default_port, address))
+    path = Path(address)
+    reader = FILES.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(
+            f"motion capture {address!r} must be xsens:PORT, natnet:SERVER, vrpn:SERVER or a file that ends in"
+            f" {', '.join(FILES)}"
+        )
+    return reader(read_bytes(path), str(path))
+
+
+def _host_port(text: str, host: str, port: int, address: str) -> tuple[str, int]:
+    """Return host and port of ``HOST:PORT``, ``HOST`` or ``PORT``."""
+    first, colon, second = text.partition(":")
+    if colon:
+        return first or host, _port(second, port, address)
+    return (host, _port(first, port, address)) if first.isdigit() or not first else (first, port)
+
+
+def _port(text: str, default: int, address: str) -> int:
+    if not text:
+        return default
+    if not re.fullmatch(r"\d{1,5}", text) or int(text) > 65535:
+        raise InputError(f"motion capture {address!r}: port {text[:40]!r} must be a number from 0 to 65535")
+    return int(text)
+
+
+def parse_captures(texts: Sequence[str], trial: Trial) -> list[MotionCapture]:
+    """Return the motion captures that some texts describe; those with the same source share a stream.
+
+    Args:
+        texts: such as ``xsens:9763=guide``: source, possibly ``#`` and a subject, ``=``, the name of an avatar or
+            robot, and possibly ``@`` and the place of the origin of the source in the trial: x, y [m], heading [rad].
+        trial: the trial, which must have the avatars and robots.
+
+    Raises:
+        InputError: a text, a file or a name is not valid.
+
+    >>> from crowdbot.trials import parse_trial
+    >>> trial = parse_trial('''<trial name="led" duration="1"><stage/><crowd type="orca"/>
+    ...   <avatar name="guide" source="external" x="0" y="0"/></trial>''')
+    >>> parse_captures(["xsens:9763#Anna=guide@2,0,1.57"], trial)[0].bindings[0].subject
+    'Anna'
+    """
+    found: dict[str, list[MotionBinding]] = {}
+    for text in texts:
+        address, binding = parse_binding(text)
+        found.setdefault(address, []).append(binding)
+    targets = [one.target for bindings in found.values() for one in bindings]
+    for name in targets:
+        if targets.count(name) > 1:
+            raise InputError(f"motion capture moves {name!r} twice")
+    captures = []
+    for address, bindings in found.items():
+        capture = MotionCapture(open_stream(address), bindings)
+        capture.check(trial)
+        known = capture.stream.subjects()
+        for one in bindings:
+            if not capture.stream.live and one.subject and one.subject not in known:
+                raise InputError(f"{address} has no subject {one.subject!r}; it has {', '.join(known)}")
+        captures.append(capture)
+    return captures
+
+
+def parse_binding(text: str) -> tuple[str, MotionBinding]:
+    """Return the address of a stream and the binding that a text such as ``xsens:9763=guide`` describes.
+
+    Raises:
+        InputError: the text has another form.
+
+    >>> parse_binding("walk.bvh=guide@1,2")[1].y
+    2.0
+    """
+    match = re.fullmatch(r"(?P<source>[^#=]+)(#(?P<subject>[^=]+))?=(?P<name>[^@=]+)(@(?P<origin>.*))?", text)
+    if match is None:
+        raise InputError(f"motion capture {text!r} must have the form {FORM}, such as {EXAMPLES}")
+    origin = [0.0, 0.0, 0.0]
+    if match["origin"] is not None:
+        try:
+            numbers = [float(word) for word in match["origin"].split(",")]
+        except ValueError:
+            numbers = []
+        if len(numbers) not in (2, 3):
+            raise InputError(f"motion capture {text!r}: {match['origin']!r} must be X,Y or X,Y,HEADING in m and rad")
+        origin[: len(numbers)] = numbers
+    return match["source"], MotionBinding(match["name"], match["subject"] or "", *origin)
+
+
+Origin = Callable[[], tuple[float, float, float]]
+
+
+class CaptureSet:
+    """Motion capture of a session: streams stay open from one trial to the next. Use it as a context.
+
+    >>> with CaptureSet(["xsens:0=guest", "xsens:0#Cart=twin@2,0"]) as captures:
+    ...     captures.targets, len(captures.streams)
+    (('guest', 'twin'), 1)
+    """
+
+    def __init__(self, texts: Sequence[str] = ()) -> None:
+        self.streams: dict[str, PoseStream] = {}
+        """Open streams by their addresses."""
+        self._bindings: dict[str, tuple[str, MotionBinding]] = {}
+        self._texts = tuple(texts)
+
+    def __enter__(self) -> CaptureSet:
+        """Open the streams."""
+        try:
+            for text in self._texts:
+                self.add(text)
+        except BaseException:
+            self.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the streams."""
+        self.close()
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The texts of the bindings, such as ``xsens:9763=guest``."""
+        return tuple(self._bindings)
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """Names of the avatars and robots that are moved."""
+        return tuple(binding.target for _, binding in tuple(self._bindings.values()))
+
+    @property
+    def bindings(self) -> dict[str, MotionBinding]:
+        """Who is moved, by the texts of the bindings; a copy."""
+        return {text: binding for text, (_, binding) in tuple(self._bindings.items())}
+
+    @property
+    def live(self) -> bool:
+        """Whether a stream comes in real time."""
+        return any(one.live for one in self.streams.values())
+
+    def add(self, text: str) -> None:
+        """Open a stream, such as ``xsens:9763=guest``, and bind a target to it.
+
+        Raises:
+            InputError: the text is not valid, the target is moved already, or the stream cannot be opened.
+        """
+        address, binding = parse_binding(text)
+        if binding.target in self.targets:
+            raise InputError(f"motion capture moves {binding.target!r} already; remove that first")
+        if address not in self.streams:
+            self.streams[address] = open_stream(address).__enter__()
+        self._bindings[text] = (address, binding)
+
+    def remove(self, text: str) -> None:
+        """Release a target; a stream without targets is closed.
+
+        Raises:
+            InputError: there is no such binding.
+        """
+        if text not in self._bindings:
+            raise InputError(f"there is no motion capture {text!r}; there is {', '.join(self._bindings) or 'none'}")
+        address, _ = self._bindings.pop(text)
+        if all(other != address for other, _ in self._bindings.values()):
+            self.streams.pop(address).__exit__(None, None, None)
+
+    def close(self) -> None:
+        """Close all streams."""
+        for text in self.texts:
+            self.remove(text)
+
+    def stream_of(self, target: str) -> tuple[PoseStream, str] | None:
+        """Return the stream of a target and the name of its subject; None: it is not moved."""
+        found = next((pair for pair in tuple(self._bindings.values()) if pair[1].target == target), None)
+        stream = None if found is None else self.streams.get(found[0])
+        return None if found is None or stream is None else (stream, found[1].subject)
+
+    def captures_of(self, trial: Trial, leave: Sequence[str] = (), origin: Origin | None = None) -> list[MotionCapture]:
+        """Return what moves avatars and mirrored robots of a trial; targets that it lacks are left out.
+
+        Args:
+            trial: the trial.
+            leave: names of targets that are moved in another way.
+            origin: returns x, y [m] and heading [rad] of the origin of systems whose text has no ``@``.
+        """
+        mirrors = {one.name for one in trial.robots if one.mirror is not None and one.mirror.source == "external"}
+        known = {one.name for one in trial.avatars if one.source == "external"} | mirrors
+        found: dict[str, list[MotionBinding]] = {}
+        for text, (address, binding) in tuple(self._bindings.items()):
+            if binding.target not in known or binding.target in leave:
+                continue
+            x, y, heading = (binding.x, binding.y, binding.heading) if origin is None or "@" in text else origin()
+            placed = dataclasses.replace(binding, x=x, y=y, heading=heading)
+            found.setdefault(address, []).append(placed)
+        return [MotionCapture(self.streams[address], bindings) for address, bindings in found.items()]

@@ -9,10 +9,8 @@ from collections.abc import Iterable, Iterator
 
 from crowdbot.core import InputError
 
-from .pose_receiver import WAIT, BadDatagram
-from .pose_stream import MotionSample
-from .rotations import to_matrices
-from .server_stream import AGAIN, ServerStream, checked_pose
+from .pose_stream import AGAIN, WAIT, BadDatagram, MotionSample, ServerStream, checked_pose
+from .retargeting import to_matrices
 
 PORT = 3883
 """Default port of a VRPN server."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
-from crowdbot.bridges.join.robot_input import StartAlignment
+from crowdbot.bridges.join.join_run import StartAlignment
 from crowdbot.core import InputError, import_optional, refuse_system, wrap_angle
 from crowdbot.messages import points_in
 from crowdbot.recording import StepMessage

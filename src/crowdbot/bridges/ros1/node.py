@@ -17,9 +17,7 @@ from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
 from crowdbot.recording import StepMessage
 
-from .master import master_address
-from .session import Ros1Session
-from .tcpros import pack_frame
+from .session import Ros1Session, master_address, pack_frame
 
 STARTUP = 10.0
 """Longest real time [s] of the start and of the end."""

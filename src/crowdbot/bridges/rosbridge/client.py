@@ -18,9 +18,8 @@ from crowdbot.bridges.interface import RobotInterface
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-from .encoding import OutgoingMessage, dump_json
-from .frames import MOST_TEXT, FrameReader, field
-from .subscription import Subscription
+from .frames import MOST_TEXT, FrameReader, OutgoingMessage, dump_json, field
+from .session import Subscription
 
 LEFT_OUT = ("*/reading", "*/labels")
 """Patterns of topics that are not sent unless the user names them: exact readings and truth, which are large."""

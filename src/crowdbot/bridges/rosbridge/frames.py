@@ -1,12 +1,21 @@
-"""Frames from clients: limits on size and depth, fragments put together."""
+"""Frames of the rosbridge protocol: limits, fragments, and messages as JSON, PNG and CBOR."""
 
 from __future__ import annotations
 
+import base64
+import functools
+import io
 import json
-from collections.abc import Mapping
+import math
+import struct
+from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+
+from crowdbot.bridges.fields import fields_of, plain_fields
 from crowdbot.core import InputError
+from crowdbot.recording import StepMessage
 
 MOST_TEXT = 4 << 20
 """Largest size of a frame, and of all waiting fragments of a client [characters]: a camera image fits."""
@@ -117,3 +126,201 @@ def _is_deep(value: Any) -> bool:
         if not level:
             return False
     return True
+
+
+UNSIGNED, NEGATIVE, BYTES, TEXT, LIST, MAPPING, TAG = range(7)
+TYPED = {"<u2": 69, "<u4": 70, "<u8": 71, "|i1": 72, "<i2": 77, "<i4": 78, "<i8": 79, "<f4": 85, "<f8": 86}
+"""Tags of little-endian arrays by NumPy type; bytes need none."""
+FALSE, TRUE, NONE = b"\xf4", b"\xf5", b"\xf6"
+
+
+def encode_cbor(value: Any) -> bytes:
+    """Return a value as CBOR: mappings, lists, arrays, texts, bytes, numbers, True, False and None.
+
+    Raises:
+        InputError: the value has another type.
+
+    >>> encode_cbor({"a": [1, -2, 0.5, None]}).hex()
+    'a16161840121fb3fe0000000000000f6'
+    """
+    out = bytearray()
+    _write(out, value)
+    return bytes(out)
+
+
+def _head(out: bytearray, major: int, number: int) -> None:
+    if number < 24:
+        out.append(major << 5 | number)
+        return
+    for code, size in ((24, 1), (25, 2), (26, 4), (27, 8)):
+        if number < 1 << 8 * size:
+            out.append(major << 5 | code)
+            out += number.to_bytes(size, "big")
+            return
+    raise InputError(f"{number} is too large for CBOR")
+
+
+def _write(out: bytearray, value: Any) -> None:
+    if value is None or isinstance(value, bool | np.bool_):
+        out += NONE if value is None else TRUE if value else FALSE
+    elif isinstance(value, int | np.integer):
+        number = int(value)
+        _head(out, UNSIGNED if number >= 0 else NEGATIVE, number if number >= 0 else -1 - number)
+    elif isinstance(value, float | np.floating):
+        out += b"\xfb" + struct.pack(">d", float(value))
+    elif isinstance(value, str):
+        data = value.encode()
+        _head(out, TEXT, len(data))
+        out += data
+    elif isinstance(value, bytes | bytearray):
+        _head(out, BYTES, len(value))
+        out += value
+    elif isinstance(value, dict):
+        _head(out, MAPPING, len(value))
+        for name, inner in value.items():
+            _write(out, name)
+            _write(out, inner)
+    elif isinstance(value, np.ndarray):
+        _array(out, value)
+    elif isinstance(value, list | tuple):
+        _head(out, LIST, len(value))
+        for inner in value:
+            _write(out, inner)
+    else:
+        raise InputError(f"a {type(value).__name__} has no form in CBOR")
+
+
+def _array(out: bytearray, value: Any) -> None:
+    kind = value.dtype.str
+    if kind in TYPED:
+        _head(out, TAG, TYPED[kind])
+    elif kind != "|u1":
+        _write(out, value.tolist())
+        return
+    _write(out, value.tobytes())
+
+
+COMPRESSIONS = ("none", "png", "cbor", "cbor-raw")
+
+
+def dump_json(value: Any) -> str:
+    """Return compact JSON; NaN is not allowed in it.
+
+    >>> dump_json({"op": "status"})
+    '{"op":"status"}'
+    """
+    return json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
+
+
+class OutgoingMessage:
+    """A message for the subscribers of a topic, encoded at most once in each form.
+
+    Args:
+        topic, kind: topic and message type.
+        nanoseconds: time [ns].
+        plain: returns the fields for JSON.
+        rich: returns the fields with NumPy arrays, for CBOR.
+        cdr: returns the CDR bytes, for ``cbor-raw``; None: not available.
+
+    >>> message = OutgoingMessage("/chat", "std_msgs/msg/String", 0, lambda: {"data": "hi"})
+    >>> message.frames("none", None, "1")
+    ['{"op":"publish","topic":"/chat","msg":{"data":"hi"}}']
+    """
+
+    def __init__(
+        self,
+        topic: str,
+        kind: str,
+        nanoseconds: int,
+        plain: Callable[[], Any],
+        rich: Callable[[], Any] | None = None,
+        cdr: Callable[[], bytes] | None = None,
+    ) -> None:
+        self.topic, self.kind, self.nanoseconds = topic, kind, nanoseconds
+        self._plain, self._rich, self._cdr = plain, rich or plain, cdr
+
+    @classmethod
+    def of(cls, step: StepMessage) -> OutgoingMessage:
+        """Return the message of a step."""
+        return cls(
+            step.topic,
+            step.kind,
+            step.nanoseconds,
+            lambda: plain_fields(step.message),
+            lambda: fields_of(step.message),
+            lambda: step.cdr,
+        )
+
+    def frames(self, compression: str, fragment_size: int | None, number: str) -> list[str | bytes]:
+        """Return the WebSocket frames: text, or bytes for CBOR.
+
+        Args:
+            compression: one of :data:`COMPRESSIONS`.
+            fragment_size: largest number of characters of a text frame; None: no limit.
+            number: id of the fragments.
+        """
+        if compression == "cbor":
+            return [self._cbor]
+        if compression == "cbor-raw" and self._cdr is not None:
+            return [self._cbor_raw]
+        text = self._png if compression == "png" else self._json
+        return list(fragments(text, fragment_size, number))
+
+    @functools.cached_property
+    def _json(self) -> str:
+        return dump_json({"op": "publish", "topic": self.topic, "msg": self._plain()})
+
+    @functools.cached_property
+    def _png(self) -> str:
+        return png_frame(self._json)
+
+    @functools.cached_property
+    def _cbor(self) -> bytes:
+        return encode_cbor({"op": "publish", "topic": self.topic, "msg": self._rich()})
+
+    @functools.cached_property
+    def _cbor_raw(self) -> bytes:
+        assert self._cdr is not None
+        seconds, rest = divmod(self.nanoseconds, 10**9)
+        raw = {"secs": seconds, "nsecs": rest, "bytes": self._cdr()}
+        return encode_cbor({"op": "publish", "topic": self.topic, "msg": raw})
+
+
+def fragments(text: str, size: int | None, number: str) -> list[str]:
+    """Return a frame, or its fragments if it is longer than ``size`` characters.
+
+    >>> [json.loads(one)["data"] for one in fragments('{"op":"x"}', 6, "1")]
+    ['{"op":', '"x"}']
+    """
+    if size is None or len(text) <= size:
+        return [text]
+    total = -(-len(text) // size)
+    return [
+        dump_json({"op": "fragment", "id": number, "data": text[k * size : (k + 1) * size], "num": k, "total": total})
+        for k in range(total)
+    ]
+
+
+def png_frame(text: str) -> str:
+    """Return a frame whose data are a PNG of the bytes of a text, as rosbridge_suite makes it."""
+    from PIL import Image
+
+    data = text.encode()
+    width = max(1, math.isqrt(len(data) // 3))
+    height = max(1, -(-len(data) // (3 * width)))
+    image = Image.frombytes("RGB", (width, height), data.ljust(3 * width * height, b"\n"))
+    with io.BytesIO() as buffer:
+        image.save(buffer, "PNG")
+        return dump_json({"op": "png", "data": base64.b64encode(buffer.getvalue()).decode()})
+
+
+def read_png(data: str) -> str:
+    """Return the text in the data of :func:`png_frame`.
+
+    >>> read_png(json.loads(png_frame('{"op":"status"}'))["data"])
+    '{"op":"status"}'
+    """
+    from PIL import Image
+
+    with io.BytesIO(base64.b64decode(data)) as buffer, Image.open(buffer) as image:
+        return image.convert("RGB").tobytes().decode().rstrip("\n")

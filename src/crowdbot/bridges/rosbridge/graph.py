@@ -1,19 +1,59 @@
-"""RosGraph: topics, services and clients of a rosbridge server."""
+"""Topics, services and actions of the clients of a rosbridge server."""
 
 from __future__ import annotations
 
 import fnmatch
+import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
+
+from rosbags.interfaces import Nodetype
 
 from crowdbot.bridges.inbox import Inbox
-from crowdbot.bridges.interface import RobotInterface
-from crowdbot.bridges.verbs.definitions import SERVICES
+from crowdbot.bridges.interface import PACKAGE, SERVICES, RobotInterface, interface_store, request_kind, response_kind
 from crowdbot.core import InputError
 
-from .encoding import OutgoingMessage
-from .peer import Peer
+from .frames import OutgoingMessage, field
+
+
+class PeerCalls(Protocol):
+    """Calls of a client."""
+
+    def hand(self, caller: Peer, asked: Mapping[str, Any], sent: Mapping[str, Any]) -> None:
+        """Give the client a call of another one.
+
+        Raises:
+            InputError: too many calls wait for it.
+        """
+
+    def cancel(self, caller: Peer, name: str, action: str) -> bool:
+        """Tell the client that a goal is cancelled; return whether it has the goal."""
+
+    def fail(self, frame: Mapping[str, Any], text: str) -> None:
+        """Answer a call of this client with an error."""
+
+    def forget(self, caller: Peer) -> None:
+        """Drop the calls of a client that has gone."""
+
+
+class Peer(Protocol):
+    """A client of a server."""
+
+    @property
+    def subscriptions(self) -> Mapping[str, Any]:
+        """Subscriptions by topic."""
+
+    @property
+    def calls(self) -> PeerCalls:
+        """Its calls."""
+
+    def offer(self, message: OutgoingMessage) -> None:
+        """Let a message wait if the client subscribes its topic."""
+
+    def reply(self, frame: Mapping[str, Any], fragment_size: int | None = None, compression: str = "none") -> None:
+        """Send a frame."""
+
 
 NODE = "/crowdbot"
 """Name of the simulation as a node."""
@@ -182,3 +222,401 @@ class RosGraph:
             for name in [name for name, (owner, _) in kept.items() if owner is session]:
                 del kept[name]
         self.collect_subscriptions()
+
+
+Request = Mapping[str, Any]
+Answer = dict[str, Any]
+
+
+def answer_rosapi(graph: RosGraph, name: str, request: Request) -> Answer:
+    """Return the response of a service of rosapi.
+
+    Args:
+        graph: topics and services.
+        name: last part of the name of the service.
+        request: fields of the request.
+
+    Raises:
+        InputError: a field is missing or has another type, or a message type is unknown.
+    """
+    return ROSAPI[name](graph, request)
+
+
+def type_details(kind: str) -> list[Answer]:
+    """Return ``rosapi_msgs/TypeDef`` of a message type and of all types in it.
+
+    Raises:
+        InputError: the type is unknown.
+
+    >>> [one["type"] for one in type_details("geometry_msgs/Twist")]
+    ['geometry_msgs/msg/Twist', 'geometry_msgs/msg/Vector3']
+    """
+    store, rest, found = interface_store(), [ros2_type(kind)], dict[str, Answer]()
+    while rest:
+        name = rest.pop(0)
+        if name in found:
+            continue
+        if name not in store.fielddefs:
+            raise InputError(f"the message type {name[:80]!r} is unknown")
+        constants, parts = store.fielddefs[name]
+        rows = [(word, *_field(node)) for word, node in parts]
+        found[name] = {
+            "type": name,
+            "fieldnames": [row[0] for row in rows],
+            "fieldtypes": [row[1] for row in rows],
+            "fieldarraylen": [row[2] for row in rows],
+            "examples": ["" if row[2] < 0 else "[]" for row in rows],
+            "constnames": [row[0] for row in constants],
+            "constvalues": [str(row[2]) for row in constants],
+        }
+        rest += [row[1] for row in rows if "/" in row[1]]
+    return list(found.values())
+
+
+def _field(node: Any) -> tuple[str, int]:
+    """Return type and length of a field: -1 for one value, 0 for a list of any length."""
+    kind, detail = node
+    if kind in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+        inner, size = detail
+        return _field(inner)[0], size if kind == Nodetype.ARRAY else 0
+    return (detail if kind == Nodetype.NAME else detail[0]), -1
+
+
+def _text(request: Request, name: str) -> str:
+    value = request.get(name)
+    if not isinstance(value, str):
+        raise InputError(f"the request needs {name!r}")
+    return value
+
+
+def _topics(graph: RosGraph, request: Request) -> Answer:
+    found = graph.topics
+    return {"topics": list(found), "types": list(found.values())}
+
+
+def _raw_types(graph: RosGraph, request: Request) -> Answer:
+    found, store = graph.topics, interface_store()
+    kinds = found.values()
+    texts = [store.generate_msgdef(kind, ros_version=2)[0] if kind in store.fielddefs else "" for kind in kinds]
+    return _topics(graph, request) | {"typedefs_full_text": texts}
+
+
+def _topic_type(graph: RosGraph, request: Request) -> Answer:
+    return {"type": (*graph.topic_types(_text(request, "topic")), "")[0]}
+
+
+def _topics_for_type(graph: RosGraph, request: Request) -> Answer:
+    kind = ros2_type(_text(request, "type"))
+    return {"topics": [name for name in graph.topics if kind in graph.topic_types(name)]}
+
+
+def _services(graph: RosGraph, request: Request) -> Answer:
+    return {"services": [*graph.service_types, *(f"/rosapi/{name}" for name in ROSAPI)]}
+
+
+def _service_type(graph: RosGraph, request: Request) -> Answer:
+    return {"type": graph.service_types.get(_text(request, "service"), "")}
+
+
+def _services_for_type(graph: RosGraph, request: Request) -> Answer:
+    kind = _text(request, "type")
+    return {"services": [name for name, one in graph.service_types.items() if one == kind]}
+
+
+def _service_node(graph: RosGraph, request: Request) -> Answer:
+    service = _text(request, "service")
+    return {"node": NODE if service in graph.service_types else ""}
+
+
+def _service_providers(graph: RosGraph, request: Request) -> Answer:
+    kind = _text(request, "service")
+    return {"providers": [name for name, one in graph.service_types.items() if one == kind]}
+
+
+def _service_details(make: Callable[[Any], str]) -> Callable[[RosGraph, Request], Answer]:
+    def answer(graph: RosGraph, request: Request) -> Answer:
+        kind = _text(request, "type")
+        for one in SERVICES.values():
+            if kind in (f"{PACKAGE}/srv/{one.kind}", f"{PACKAGE}/{one.kind}"):
+                return {"typedefs": type_details(make(one))}
+        raise InputError(f"the service type {kind[:80]!r} is unknown")
+
+    return answer
+
+
+def _nodes(graph: RosGraph, request: Request) -> Answer:
+    return {"nodes": [NODE, *(f"/rosbridge_client_{k + 1}" for k in range(len(graph.sessions)))]}
+
+
+def _node_details(graph: RosGraph, request: Request) -> Answer:
+    if _text(request, "node") != NODE:
+        return {"subscribing": [], "publishing": [], "services": []}
+    inputs = [one.name for one in graph.interface.inputs]
+    outputs = [one.name for one in graph.interface.outputs]
+    return {"subscribing": inputs, "publishing": outputs, "services": [one.name for one in graph.interface.services]}
+
+
+def _publishers(graph: RosGraph, request: Request) -> Answer:
+    topic = _text(request, "topic")
+    own = [NODE] if topic in {one.name for one in graph.interface.outputs} else []
+    clients = [f"/rosbridge_client_{graph.sessions.index(one) + 1}" for one in graph.advertised.get(topic, {})]
+    return {"publishers": own + clients}
+
+
+def _subscribers(graph: RosGraph, request: Request) -> Answer:
+    topic = _text(request, "topic")
+    own = [NODE] if topic in {one.name for one in graph.interface.inputs} else []
+    rows = [f"/rosbridge_client_{k + 1}" for k, one in enumerate(graph.sessions) if topic in one.subscriptions]
+    return {"subscribers": own + rows}
+
+
+def _time(graph: RosGraph, request: Request) -> Answer:
+    seconds, rest = divmod(graph.now, 10**9)
+    return {"time": {"sec": seconds, "nanosec": rest, "secs": seconds, "nsecs": rest}}  # ROS 2, and ROS 1 for roslibpy
+
+
+def _message_details(graph: RosGraph, request: Request) -> Answer:
+    return {"typedefs": type_details(_text(request, "type"))}
+
+
+def _action_servers(graph: RosGraph, request: Request) -> Answer:
+    return {"action_servers": ["/crowdbot/simulate_steps", *graph.actions]}
+
+
+ROSAPI: dict[str, Callable[[RosGraph, Request], Answer]] = {
+    "topics": _topics,
+    "topics_and_raw_types": _raw_types,
+    "topic_type": _topic_type,
+    "topics_for_type": _topics_for_type,
+    "publishers": _publishers,
+    "subscribers": _subscribers,
+    "services": _services,
+    "service_type": _service_type,
+    "services_for_type": _services_for_type,
+    "service_node": _service_node,
+    "service_providers": _service_providers,
+    "service_request_details": _service_details(request_kind),
+    "service_response_details": _service_details(response_kind),
+    "nodes": _nodes,
+    "node_details": _node_details,
+    "message_details": _message_details,
+    "action_servers": _action_servers,
+    "get_time": _time,
+    "get_ros_version": lambda graph, request: {"version": 2, "distro": "humble"},
+    "interfaces": lambda graph, request: {"interfaces": sorted(interface_store().fielddefs)},
+    "get_param_names": lambda graph, request: {"names": []},
+    "has_param": lambda graph, request: {"exists": False},
+    "get_param": lambda graph, request: {"value": request.get("default_value", request.get("default", ""))},
+}
+"""Functions by the last part of the name of the service."""
+
+
+SIMULATE_STEPS, STEP = "/crowdbot/simulate_steps", "/crowdbot/step_simulation"
+"""The action of the simulation, ``simulation_interfaces/action/SimulateSteps``, and the service that does its work."""
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+"""States of goals, as in ``action_msgs/GoalStatus``."""
+PORTIONS, MOST_CALLS, MOST_OFFERS = 20, 200, 200
+Frame = Mapping[str, Any]
+
+
+class CallRelay:
+    """Calls of a client, and services and actions that it offers.
+
+    Args:
+        session: the client.
+        graph: topics and services.
+    """
+
+    def __init__(self, session: Peer, graph: RosGraph) -> None:
+        self.session, self.graph = session, graph
+        self._numbers = itertools.count(1)
+        self._asked: dict[str, tuple[Peer, Frame]] = {}
+        """Calls of other clients that this one has not answered: caller and frame."""
+        self._goals: dict[str, bool] = {}
+        """Goals of the action of the simulation, and whether each goes on."""
+        self._open = 0
+
+    @property
+    def operations(self) -> dict[str, Callable[[Frame], None]]:
+        """Functions by operation."""
+        return {
+            "call_service": self._call_service,
+            "advertise_service": lambda frame: self._offer(frame, "service", self.graph.services),
+            "unadvertise_service": lambda frame: self._withdraw(frame, "service", self.graph.services),
+            "service_response": lambda frame: self._answer(frame, done=True),
+            "advertise_action": lambda frame: self._offer(frame, "action", self.graph.actions),
+            "unadvertise_action": lambda frame: self._withdraw(frame, "action", self.graph.actions),
+            "send_action_goal": self._send_goal,
+            "cancel_action_goal": self._cancel_goal,
+            "action_feedback": lambda frame: self._answer(frame, done=False),
+            "action_result": lambda frame: self._answer(frame, done=True),
+        }
+
+    def close(self) -> None:
+        """Tell the callers that this client has gone."""
+        for caller, frame in list(self._asked.values()):
+            caller.calls.fail(frame, "the client that offers it has gone")
+        self._asked.clear()
+        self._goals.clear()
+
+    def forget(self, caller: Peer) -> None:
+        """Drop the calls of a client that has gone."""
+        for number in [number for number, (one, _) in self._asked.items() if one is caller]:
+            del self._asked[number]
+
+    def fail(self, frame: Frame, text: str) -> None:
+        """Answer a call or a goal of this client with an error."""
+        if frame["op"] == "call_service":
+            self._respond(frame, text, False)
+        else:
+            self._result(frame, {}, ABORTED, False, text)
+
+    def _call_service(self, frame: Frame) -> None:
+        service, values = field(frame, "service", str), field(frame, "args", (dict, list), {})
+        try:
+            self.graph.check_name(service)
+            request = self.graph.positional(service, values) if isinstance(values, list) else values
+            if service in self.graph.services:
+                provider = self.graph.services[service][0]
+                provider.calls.hand(self.session, frame, {**frame, "args": request})
+            elif service.rpartition("/")[2] in ROSAPI and "rosapi" in service:
+                self._respond(frame, answer_rosapi(self.graph, service.rpartition("/")[2], request), True)
+            else:
+                self._ask(service, request, lambda response: self._respond(frame, response, True))
+        except InputError as error:
+            self._respond(frame, str(error), False)
+
+    def _ask(self, service: str, request: Frame, answer: Callable[[dict[str, Any]], None]) -> None:
+        """Call a service of the simulation; the answer comes in the thread of the graph."""
+        if self._open >= MOST_CALLS:
+            raise InputError(f"{MOST_CALLS} calls wait; wait for their responses")
+
+        def finish(response: dict[str, Any]) -> None:
+            self._open -= 1
+            answer(response)
+
+        self.graph.inbox.call(service, request, lambda response: self.graph.later(finish, response), "rosbridge")
+        self._open += 1
+
+    def _respond(self, frame: Frame, values: Any, good: bool) -> None:
+        name = _identity(frame)
+        size, compression = frame.get("fragment_size"), frame.get("compression", "none")
+        size = size if isinstance(size, int) and size > 0 else None
+        row = {"op": "service_response", **name, "service": frame["service"], "values": values, "result": good}
+        self.session.reply(row, size, compression if compression == "png" else "none")
+
+    def _offer(self, frame: Frame, what: str, offered: dict[str, tuple[Peer, str]]) -> None:
+        name, kind = field(frame, what, str), field(frame, "type", str)
+        self.graph.check_name(name)
+        if (name in self.graph.service_types and name not in self.graph.services) or name == SIMULATE_STEPS:
+            raise InputError(f"{name!r} is offered by the simulation")
+        if name in offered and offered[name][0] is not self.session:
+            raise InputError(f"{name!r} is offered by another client")
+        if len(offered) >= MOST_OFFERS:
+            raise InputError(f"{MOST_OFFERS} of them are too many")
+        offered[name] = (self.session, ros2_type(kind))
+
+    def _withdraw(self, frame: Frame, what: str, offered: dict[str, tuple[Peer, str]]) -> None:
+        name = field(frame, what, str)
+        if name not in offered or offered[name][0] is not self.session:
+            raise InputError(f"{name[:60]!r} is not offered by this client")
+        del offered[name]
+
+    def hand(self, caller: Peer, asked: Frame, sent: Frame) -> None:
+        """Give this client a call or a goal of another one.
+
+        Raises:
+            InputError: too many calls wait for it.
+        """
+        if len(self._asked) >= MOST_CALLS:
+            raise InputError("too many calls wait for the client that offers it")
+        number = f"{asked['op']}:{next(self._numbers)}"
+        self._asked[number] = (caller, asked)
+        self.session.reply({**sent, "id": number})
+
+    def cancel(self, caller: Peer, name: str, action: str) -> bool:
+        """Tell this client that a goal of another one is cancelled; return whether it has the goal."""
+        for number, (one, asked) in self._asked.items():
+            if one is caller and asked.get("id") == name:
+                self.session.reply({"op": "cancel_action_goal", "id": number, "action": action})
+                return True
+        return False
+
+    def _answer(self, frame: Frame, done: bool) -> None:
+        """Give a response, feedback or result of this client to the caller."""
+        number = field(frame, "id", str)
+        if number not in self._asked:
+            raise InputError(f"nobody waits for {number[:60]!r}")
+        caller, asked = self._asked.pop(number) if done else self._asked[number]
+        name = _identity(asked)
+        try:
+            caller.reply({key: value for key, value in frame.items() if key != "id"} | name)
+        except ValueError:
+            if done:
+                caller.calls.fail(asked, "the response has numbers that are not finite")
+            raise
+
+    def _send_goal(self, frame: Frame) -> None:
+        action, name = field(frame, "action", str), field(frame, "id", str, "")
+        values = field(frame, "args", (dict, list), {})
+        try:
+            self.graph.check_name(action)
+            if action in self.graph.actions:
+                self.graph.actions[action][0].calls.hand(self.session, frame, frame)
+                return
+            if action != SIMULATE_STEPS:
+                raise InputError(f"there is no action {action[:60]!r}")
+            steps = values.get("steps", 1) if isinstance(values, dict) else values[0] if values else 1
+            if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+                raise InputError("steps must be a whole number from 1")
+            if name in self._goals or len(self._goals) >= MOST_CALLS:
+                raise InputError(f"a goal {name[:40]!r} is active, or there are too many")
+            self._goals[name] = True
+            self._go_on(frame, 0, steps)
+        except InputError as error:
+            self._goals.pop(name, None)
+            self._result(frame, {}, ABORTED, False, str(error))
+
+    def _go_on(self, frame: Frame, done: int, steps: int) -> None:
+        """Do the next portion of the steps of a goal."""
+        portion = min(max(1, steps // PORTIONS), steps - done)
+
+        def finish(response: dict[str, Any]) -> None:
+            name = str(frame.get("id", ""))
+            if name not in self._goals:
+                return
+            good, now = response["result"]["result"] == 1, done + portion
+            if frame.get("feedback") and good:
+                values = {"completed_steps": now, "remaining_steps": steps - now}
+                self._feedback(frame, values)
+            if good and now < steps and self._goals[name]:
+                self._go_on(frame, now, steps)
+                return
+            going = self._goals.pop(name)
+            state = ABORTED if not good else SUCCEEDED if going else CANCELED
+            self._result(frame, {"result": response["result"]}, state, good)
+
+        self._ask(STEP, {"steps": portion}, finish)
+
+    def _cancel_goal(self, frame: Frame) -> None:
+        action, name = field(frame, "action", str), field(frame, "id", str, "")
+        if action in self.graph.actions and self.graph.actions[action][0].calls.cancel(self.session, name, action):
+            return
+        if name not in self._goals:
+            raise InputError(f"there is no goal {name[:60]!r}")
+        self._goals[name] = False
+
+    def _feedback(self, frame: Frame, values: Frame) -> None:
+        name = _identity(frame)
+        self.session.reply({"op": "action_feedback", **name, "action": frame["action"], "values": values})
+
+    def _result(self, frame: Frame, values: Any, state: int, good: bool, text: str = "") -> None:
+        name = _identity(frame)
+        row = {"op": "action_result", **name, "action": frame["action"], "status": state, "result": good}
+        self.session.reply({**row, "values": values if good else text or values})
+
+
+def _identity(frame: Frame) -> dict[str, Any]:
+    """Return the id of a frame, if it is one."""
+    name = frame.get("id")
+    return {"id": name} if isinstance(name, str | int) else {}

@@ -19,8 +19,7 @@ from crowdbot.bridges.interface import RobotInterface
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-from .encoding import OutgoingMessage
-from .frames import MOST_TEXT
+from .frames import MOST_TEXT, OutgoingMessage
 from .graph import RosGraph
 from .session import ClientSession
 

@@ -1,26 +1,243 @@
-"""StackLink: the connection between a run and the robot software that drives its robots, step by step."""
+"""StackLink: robot software in processes of its own that drives the robots of a trial, step by step."""
 
 from __future__ import annotations
 
 import atexit
+import contextlib
+import dataclasses
 import math
 import os
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
 import time
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any
 
 import numpy as np
 
-from crowdbot.bridges.instant_repeat import InstantRepeat
-from crowdbot.bridges.ros2.domain_lock import lock_domain
-from crowdbot.bridges.transport import Transport
-from crowdbot.bridges.transports import open_transport
-from crowdbot.core import InputError
+from crowdbot.bridges.interface import LATCHED, OutputTopic, RobotInterface
+from crowdbot.bridges.port import BridgePort
+from crowdbot.bridges.run_control import InstantRepeat
+from crowdbot.bridges.transport import Transport, open_transport
+from crowdbot.core import InputError, check_programs, lock_file, refuse_system
+from crowdbot.messages import MAP, Messages
 from crowdbot.navigation import Ros2Navigator, RosbridgeNavigator
+from crowdbot.recording import StepMessage
 from crowdbot.simulation import Order, RobotControl, Simulation, VelocityOrder
+from crowdbot.trials import Trial
 
-from .stack_port import StackPort
-from .stack_program import StackProgram
+SHARED = ("/clock", "/tf", "/tf_static", "/map")
+"""Topics of the scene that every robot software gets."""
+TRUE = ("/ground_truth/odom", "/reading", "/labels")
+"""Ends of the topics of a robot that hold the truth."""
+DRIVEN = ("cmd_vel", "joint_command", "joint_trajectory")
+"""Inputs of a robot that its software may use."""
+
+
+GOAL = "geometry_msgs/msg/PoseStamped"
+
+
+def _goal_topic(robot: str) -> OutputTopic:
+    return OutputTopic(f"/{robot}/goal", GOAL, MAP, 0.0, LATCHED, robot, "goal")
+
+
+class StackPort(BridgePort):
+    """A port for the software of some robots of a trial.
+
+    It offers the topics of these robots and of the scene that a real robot has, too, and the goals. It takes velocities
+    and joint targets only: no goals, no other orders, no services.
+
+    Args:
+        trial: the trial.
+        transports: connections to the software.
+        robots: names of its robots.
+        truth: whether the topics with the truth are sent, too, and readings say which agent each beam met.
+
+    >>> from crowdbot.trials import load_trial
+    >>> port = StackPort(load_trial("frontal"), [], ["robot"])
+    >>> [one.name for one in port.interface.inputs], port.interface.services
+    (['/robot/cmd_vel'], ())
+    """
+
+    def __init__(
+        self, trial: Trial, transports: Sequence[Transport], robots: Sequence[str], truth: bool = False
+    ) -> None:
+        self.robots, self.truth = tuple(robots), truth
+        self.labelled = truth
+        self._goals: dict[str, tuple[float, float]] = {}
+        self._make = Messages()
+        super().__init__(trial, transports)
+
+    def describe(self, trial: Trial) -> RobotInterface:
+        """Return the topics of the robots of the software."""
+        whole = RobotInterface.of(trial)
+        inputs = tuple(
+            one for one in whole.inputs if one.robot in self.robots and one.name.rpartition("/")[2] in DRIVEN
+        )
+        outputs = [*filter(self._offers, whole.outputs), *(_goal_topic(name) for name in self.robots)]
+        return dataclasses.replace(whole, outputs=tuple(outputs), inputs=inputs, services=())
+
+    def begin(self, simulation: Simulation) -> None:
+        """Send the map, the goals and the first instant of a run."""
+        self._goals.clear()
+        super().begin(simulation)
+
+    def publish(self, simulation: Simulation) -> None:
+        """Send the messages of the current instant, and goals that have changed."""
+        self._send(list(self._new_goals(simulation)))
+        super().publish(simulation)
+
+    def _new_goals(self, simulation: Simulation) -> Iterator[StepMessage]:
+        make, now = self._make, simulation.world.clock.nanoseconds
+        for control in simulation.robots:
+            name, goal = control.robot.name, (float(control.goal[0, 0]), float(control.goal[0, 1]))
+            if name in self.robots and self._goals.get(name) != goal:
+                self._goals[name] = goal
+                pose = make.make(GOAL, header=make.header(now), pose=make.pose(*goal, 0.0))
+                yield StepMessage(f"/{name}/goal", GOAL, now, make, pose)
+
+    def _offers(self, one: OutputTopic) -> bool:
+        if not one.robot:
+            return self.truth or one.name in SHARED
+        return one.robot in self.robots and (self.truth or not one.name.endswith(TRUE))
+
+    def _is_wanted(self, topic: str) -> bool:
+        """Return whether the software subscribes a topic that it may have."""
+        place = topic.rstrip("/")
+        names = [one.name for one in self.interface.outputs]
+        offered = place in names or (topic != place and any(one.startswith(topic) for one in names))
+        return offered and super()._is_wanted(topic)
+
+
+PATIENCE = 3.0
+"""Real time [s] between the request to end and the end by force."""
+LAST_CHARACTERS = 500
+"""Characters of the error output in a message."""
+
+
+def _check_process_groups(what: str) -> None:
+    """Raise InputError on Windows, where a program would end without the programs that it has started."""
+    if sys.platform == "win32":
+        refuse_system(f"the start of {what} by a run", "Linux or macOS", "start it yourself, and leave out command")
+
+
+class StackProgram:
+    """A program with its children, in a process group of its own.
+
+    Args:
+        command: program and arguments, as in a shell without its special characters.
+        places: values of ``{port}`` and ``{domain}`` in the command.
+        environment: variables in addition to those of this process.
+
+    Raises:
+        InputError: the program cannot be started, or the system is Windows, which has no process groups to end.
+
+    >>> program = StackProgram("sh -c 'echo no map >&2; exit 3'", {}, {})
+    >>> _ = program.wait(10.0)
+    >>> program.ending
+    '(exit status 3): no map'
+    >>> program.close()
+    """
+
+    def __init__(self, command: str, places: Mapping[str, object], environment: Mapping[str, str]) -> None:
+        check_programs(f"{command[:80]!r}")
+        _check_process_groups(f"{command[:80]!r}")
+        words = shlex.split(command)
+        for name, value in places.items():
+            words = [word.replace(f"{{{name}}}", str(value)) for word in words]
+        self.name = words[0] if words else ""
+        self._log: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 (closed by close())
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 (the trial names the program)
+                words,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=self._log,
+                env=os.environ | dict(environment),
+                start_new_session=True,
+            )
+        except (OSError, IndexError, ValueError) as error:
+            self._log.close()
+            reason = error.strerror if isinstance(error, OSError) else str(error)
+            raise InputError(f"the program {command[:80]!r} cannot be started: {reason}") from None
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the program runs."""
+        return self._process.poll() is None
+
+    def wait(self, seconds: float) -> int | None:
+        """Wait for the end and return the exit status, None if it still runs."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return self._process.wait(seconds)
+        return None
+
+    @property
+    def ending(self) -> str:
+        """Exit status and last line of the error output, for messages."""
+        code = self._process.poll()
+        end = self._log.seek(0, os.SEEK_END)
+        self._log.seek(max(0, end - LAST_CHARACTERS))
+        lines = [line.strip() for line in self._log.read().decode("utf-8", "replace").splitlines() if line.strip()]
+        status = "" if code is None else (f"killed by signal {-code}" if code < 0 else f"exit status {code}")
+        return f"({status})" * bool(status) + (f": {lines[-1]}" if lines else "")
+
+    def close(self) -> None:
+        """End the program and its children."""
+        if self._log.closed:
+            return
+        self._end_group()
+        if self.wait(PATIENCE) is None:
+            self._end_group(by_force=True)
+            self._process.wait()
+        self._end_group(by_force=True)  # children that have ignored the request
+        self._log.close()
+
+    def _end_group(self, by_force: bool = False) -> None:
+        if sys.platform != "win32":
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL if by_force else signal.SIGTERM)
+
+
+FIRST_DOMAIN, LAST_DOMAIN = 101, 200
+"""Domains that are given to runs; those below are left to people."""
+
+
+def lock_domain() -> tuple[int, Callable[[], None]]:
+    """Return a ROS domain that no other run on this computer has, and a function that releases it.
+
+    Raises:
+        InputError: all domains are in use.
+
+    >>> first, release = lock_domain()
+    >>> second, also = lock_domain()
+    >>> first != second
+    True
+    >>> release(), also()
+    (None, None)
+    """
+    for number in range(FIRST_DOMAIN, LAST_DOMAIN + 1):
+        stream = os.fdopen(os.open(_lock_path(number), os.O_CREAT | os.O_RDWR, 0o600), "r+b")
+        try:
+            lock_file(stream)
+        except OSError:
+            stream.close()
+            continue
+        return number, stream.close
+    raise InputError(f"the ROS domains from {FIRST_DOMAIN} to {LAST_DOMAIN} are all in use")
+
+
+def _lock_path(number: int) -> Path:
+    folder = Path(tempfile.gettempdir())
+    if sys.platform == "win32":  # the folder belongs to one user
+        return folder / f"crowdbot-domain-{number}.lock"
+    else:
+        return folder / f"crowdbot-domain-{os.getuid()}-{number}.lock"
+
 
 StackNavigator = RosbridgeNavigator | Ros2Navigator
 LOOK = 0.02

@@ -1,1 +1,0 @@
-"""Robot software in processes of its own as the navigator of a trial."""

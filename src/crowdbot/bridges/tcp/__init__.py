@@ -1,1 +1,0 @@
-"""The TCP protocol of the challenge "Crowd against the machine"."""
