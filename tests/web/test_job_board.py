@@ -1,7 +1,9 @@
 """Jobs: progress, log, cancel, limits, the list after a restart, and results equal to those of the command line."""
 
+import importlib
 import json
 import re
+import shlex
 import sys
 import threading
 import time
@@ -10,7 +12,11 @@ from pathlib import Path
 import pytest
 from job_functions import burn, count, die, fail, fill_disk, fill_memory, fill_memory_of_a_child
 
+from crowdbot.cli import main
+from crowdbot.cli.parser import CommandParser
 from crowdbot.core import InputError
+from crowdbot.data import FILE_OPTIONS
+from crowdbot.trials import load_trial
 from crowdbot.web import JobBoard, SessionLimits, Workspace, call_command
 from crowdbot.web.jobs import JobWork, job_process
 from crowdbot.web.jobs.job_desk import JobDesk
@@ -222,8 +228,55 @@ class TestDesk:
         wait(session.jobs, 300)
 
     @pytest.mark.parametrize(
+        ("kind", "values", "words"),
+        [
+            ("train", {"data": ["hall.csv"], "columns": "id=who time=when", "scale": 0.02},
+             "crowdbot train anchor-net --data hall.csv --epochs=100 --seed=0 --columns id=who time=when --scale=0.02"
+             " --out trainings/mine"),
+            ("train", {"data": ["walks"], "topic": "/people", "frame": "map"},
+             "crowdbot train anchor-net --data walks --epochs=100 --seed=0 --topic=/people --frame=map"
+             " --out trainings/mine"),
+            ("recorded", {"data": "walks", "units": "cm"}, "crowdbot new trial mine.xml --recorded=walks --units=cm"),
+            ("recorded", {"data": "hall.csv", "mode": "reactive", "replace": 3, "agents": "pedestrians"},
+             "crowdbot new trial mine.xml --recorded=hall.csv --reactive --replace=3 --agents=pedestrians"),
+            ("logs", {"data": ["hall.csv"], "robot_id": "7", "goal": "8, -1", "homography": "H.txt"},
+             "crowdbot evaluate --logs hall.csv --robot-id=7 --robot-radius=0.3 --goal 8.0 -1.0 --homography=H.txt"
+             " --out evaluations/mine"),
+            ("real", {"data": "hall.csv", "robot_file": "walks/1.csv", "fps": 25},
+             "crowdbot evaluate --real hall.csv --navigators=own --seeds=0:100 --robot-file walks/1.csv"
+             " --robot-radius=0.3 --fps=25.0 --out evaluations/mine"),
+        ],
+    )  # fmt: skip
+    def test_forms_of_recordings_have_the_options_of_the_command_line(self, session, call, kind, values, words):
+        for name in ("hall.csv", "walks/1.csv", "walks/2.csv", "H.txt"):
+            session.workspace.writable(name).write_text("time,id,x,y\n")
+        (form,) = (form for form in call("forms") if form["kind"] == kind)
+        assert set(FILE_OPTIONS) <= {row["name"] for row in form["rows"]}
+        assert call("words", kind=kind, values={**values, "name": "mine"}) == words
+        name, *rest = shlex.split(words)[1:]
+        parser = CommandParser()
+        importlib.import_module(f"crowdbot.cli.{name}").arguments(parser)
+        assert parser.parse_args(rest)
+
+    def test_a_trial_is_made_from_a_folder_of_one_file_a_person(self, session, call, monkeypatch):
+        for person in (1, 2):
+            rows = "".join(f"{0.4 * k:.1f},{100 * (k if person > 1 else 20 - k) * 0.5},{person}\n" for k in range(20))
+            session.workspace.writable(f"walks/{person}.csv").write_text("time,x,y\n" + rows)
+        values = {"data": "walks", "units": "cm", "name": "hall", "replace": 1}
+        monkeypatch.chdir(session.workspace.folder)
+        assert main(shlex.split(call("words", kind="recorded", values=values))[1:]) == 0
+        (people,) = load_trial("hall.xml").recorded
+        assert (people.data, people.units, people.exclude) == ("walks", "cm", "1")
+
+    @pytest.mark.parametrize(
         ("kind", "values", "sentence"),
         [
+            ("recorded", {"data": "../x.csv"}, "is not a value of this setting"),
+            ("recorded", {"data": "example:bottleneck", "replace": 1.5}, "expected a whole number"),
+            ("logs", {"data": ["example:bottleneck"], "goal": "here"}, "expected two numbers, x and y"),
+            ("logs", {"data": ["example:bottleneck"], "fps": -1}, "expected a number from 0"),
+            ("real", {"data": "example:bottleneck", "homography": "/etc/passwd"}, "is not a value of this setting"),
+            ("train", {"data": ["example:bottleneck"], "columns": "--out=x"}, "columns: unknown '--out'"),
             ("generat", {}, "kind of job 'generat' does not exist, did you mean 'generate'"),
             ("generate", {"sources": []}, "Trials or a recipe: choose at least one"),
             ("generate", {"sources": ["../x.xml"]}, "is not a value of this setting"),

@@ -3,6 +3,7 @@
 import io
 import json
 import math
+import re
 import shlex
 
 import numpy as np
@@ -12,7 +13,7 @@ from prediction_session import DeskCaller
 
 from crowdbot.cli import main
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, save
+from crowdbot.data import FILE_OPTIONS, Trajectories, save
 from crowdbot.web.prediction import EXAMPLES, PredictorChoice
 
 ORCA = {
@@ -203,9 +204,71 @@ def test_time_base_units_and_rows_can_be_corrected(desk):
     assert second["summary"]["mean_speed"] == pytest.approx(first["summary"]["mean_speed"] * 2 / 100)
     desk("add", settings={"predictor": "constant-velocity"})
     assert desk("command_line") == (
-        "crowdbot predict --data files/two.csv --fps 5.0 --units cm --observe 4 --predict 6"
+        "crowdbot predict --data files/two.csv --fps=5.0 --units=cm --observe 4 --predict 6"
         " --predictor constant-velocity"
     )
+
+
+def foreign_table(path, head="", per=1.0):
+    """Write two people in columns of unusual names or without names, in pixels if ``per`` is pixels per metre."""
+    rows = [
+        (0.4 * k, 3 + 5 * side, per * (10 - 0.5 * k if side else 0.5 * k), per * side)
+        for k in range(24)
+        for side in (0, 1)
+    ]
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(head + "".join(f"{t:.1f};{who};{x};{y}\n" for t, who, x, y in rows))
+
+
+@pytest.mark.parametrize(
+    ("head", "per", "options", "words"),
+    [
+        ("when;who;east;north\n", 1.0, {"columns": "id=who time=when x=east y=north"},
+         "--columns id=who time=when x=east y=north"),
+        ("", 1.0, {"columns": "time=1 id=2 x=3 y=4"}, "--columns time=1 id=2 x=3 y=4"),
+        ("time;id;x;y\n", 50.0, {"scale": 0.02}, "--scale=0.02"),
+        ("time;id;x;y\n", 50.0, {"homography": "H.txt"}, "--homography=files/H.txt"),
+        ("time;id;x;y\n", 1000.0, {"units": "mm", "agents": "all", "format": "csv"},
+         "--format=csv --units=mm --agents=all"),
+        ("time;id;x;y\n", 0.001, {"units": "km", "topic": "", "frame": None}, "--units=km"),
+    ],
+)  # fmt: skip
+def test_every_option_of_the_command_line_is_in_the_form(desk, capsys, head, per, options, words):
+    foreign_table(desk.folder / "own.csv", head, per)
+    (desk.folder / "H.txt").write_text("0.02 0 0\n0 0.02 0\n0 0 1\n")
+    assert [row["name"] for row in desk("file_options")] == [*FILE_OPTIONS]
+    facts = desk("open", file="own.csv", options=options)["recording"]
+    assert facts["summary"]["mean_speed"] == pytest.approx(1.25)
+    assert {name: value for name, value in facts["options"].items() if name in options} == options
+    desk("add", settings={"predictor": "constant-velocity"})
+    line = desk("command_line")
+    assert line == f"crowdbot predict --data files/own.csv {words} --predictor constant-velocity"
+    assert command_json(capsys, line)["results"]
+    again = DeskCaller(desk.folder)
+    assert again("restore")["recording"]["options"] == facts["options"]
+    again.desk.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"columns": "who"}, "columns who: write NAME=COLUMN"),
+        ({"columns": "speed=3"}, "columns: unknown 'speed'"),
+        ({"scale": 0.02, "homography": "H.txt"}, "coordinates have one scale"),
+        ({"homography": "../H.txt"}, "is outside the folder of the app"),
+        ({"homography": "none.txt"}, "does not exist"),
+        ({"homography": "own.csv"}, "the homography own.csv line 1 has 1 columns"),
+        ({"scale": "wide"}, "scale = 'wide' must be a number"),
+        ({"topic": "/people"}, "they need a ROS bag"),
+        ({"frame": 3}, "frame = 3 must be a word"),
+        ({"units": "parsec"}, "unknown units 'parsec'"),
+    ],
+)
+def test_wrong_options_of_a_file_are_refused(desk, options, sentence):
+    foreign_table(desk.folder / "own.csv", "time;id;x;y\n")
+    (desk.folder / "H.txt").write_text("1 0 0\n0 1 0\n0 0 1\n")
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        desk("open", file="own.csv", options=options)
 
 
 @pytest.mark.live

@@ -1,4 +1,4 @@
-// Opens recordings: files of the session, dropped files, examples; shows and corrects format, time base and units.
+// Opens recordings: files of the session, dropped files, examples; shows and corrects how a file is read.
 import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
@@ -6,7 +6,7 @@ import { upload } from "../ui/upload.mjs";
 
 export function makeRecordingPanel(store, root) {
   const facts = h("div", {}, h("p", {}, "No recording is open."));
-  const correct = h("button", { type: "button", onclick: () => openOptions(store), disabled: true }, "Time base, units…");
+  const correct = h("button", { type: "button", onclick: () => openOptions(store), disabled: true }, "Options of the file…");
   const ground = h("button", { type: "button", onclick: () => openBackground(store), disabled: true }, "Background…");
   const element = h(
     "section",
@@ -90,15 +90,15 @@ function listenForDrops(store, root) {
   });
 }
 
-function openOptions(store) {
+async function openOptions(store) {
   const { options, file, format } = store.recording;
+  const fields = await store.call("file_options");
+  if (!fields) return;
+  const detected = (row) => (row.name === "format" ? [["", `detected: ${format}`], ...row.choices.slice(1)] : row.choices);
   const names = (rows) => rows.map((one) => [one.name, `${one.name}: ${one.about}`]);
-  const { formats, protocols, time_bases } = store.tables;
+  const { protocols } = store.tables;
   const form = makeForm([
-    { name: "format", label: "Format", kind: "choice", value: options.format ?? "", choices: [["", `found in the content: ${format}`], ...names(formats)] },
-    { name: "fps", label: "Frames per second of the frame counter", unit: "1/s", kind: "number", value: options.fps, low: 0, note: "empty: from the file" },
-    { name: "time_base", label: "Time base of the ETH recording", kind: "choice", value: options.time_base, choices: names(time_bases) },
-    { name: "units", label: "Units of the coordinates in the file", kind: "choice", value: options.units ?? "", choices: [["", "from the file"], "m", "cm", "mm", "px"] },
+    ...fields.map((row) => ({ ...row, choices: detected(row), value: options[row.name] ?? row.value })),
     { name: "step", label: "Time step after resampling", unit: "s", kind: "number", value: options.step, low: 0, note: "empty: the step of the file" },
     { name: "observe", label: "Observed rows", kind: "whole", value: options.observe, low: 1 },
     { name: "predict", label: "Predicted rows", kind: "whole", value: options.predict, low: 1 },
@@ -110,7 +110,7 @@ function openOptions(store) {
   ]);
   const path = store.recording.path;
   const load = async () => (await store.call("open", { file: path, options: form.values() })) !== undefined;
-  openDialog(`Time base and units of ${file}`, form.element, [["Cancel", () => true], ["Load", load]]);
+  openDialog(`Options of ${file}`, form.element, [["Cancel", () => true], ["Load", load]]);
 }
 
 function openBackground(store) {

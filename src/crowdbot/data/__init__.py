@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .degrade import Degradation, DegradedTracks
     from .example import example_windows
     from .file_formats import FORMATS, TIME_BASES, detect_format, load
-    from .file_options import FILE_OPTIONS, FileOption, parse_columns, split_columns
+    from .file_options import AGENTS, FILE_OPTIONS, UNITS, FileOption, parse_columns, split_columns
     from .forecast import Forecast
     from .forecast_files import FORECAST_SUFFIXES, check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .motion import fill_gaps, observed_velocity, resample_rows, slice_rows, steady_velocity
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
+    from .readers.columns import check_quantities
     from .readers.hdf5_arrays import read_hdf5_arrays
     from .readers.ros.detections import DETECTIONS, PERSON_CLASSES, detected_people
     from .readers.ros.episode import PEOPLE_TYPES
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
+    "AGENTS",
     "DETECTIONS",
     "FILE_OPTIONS",
     "FORECAST_SUFFIXES",
@@ -49,6 +51,7 @@ __all__ = [
     "TIME_BASES",
     "TRAJNET_CATEGORIES",
     "UCY_TO_METRES",
+    "UNITS",
     "Degradation",
     "DegradedTracks",
     "FileOption",
@@ -65,6 +68,7 @@ __all__ = [
     "Trajectories",
     "Windows",
     "check_forecast_suffix",
+    "check_quantities",
     "detect_format",
     "detected_people",
     "example_windows",

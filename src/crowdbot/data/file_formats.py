@@ -100,7 +100,7 @@ def load(
             step of 10 frames at ``fps=25``, which is 0.4 s. Without a frame column, or where frames number the rows
             (``social-ways``, ``episode``), ``fps`` is rows per second.
         format: one of ``FORMATS`` (default: detected).
-        units: units of the coordinates in the file, ``m``, ``cm``, ``mm``, ``ft``, ``px``, or ``deg`` for longitude and
+        units: units of the coordinates in the file, one of :data:`crowdbot.data.UNITS`; ``deg`` is longitude and
             latitude (default: from the file).
         time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong time step.
         columns: columns of a CSV or Parquet file by quantity (``id``, ``frame``, ``time``, ``x``, ``y``, ``label``),
@@ -157,8 +157,12 @@ def _finish(tracks: Trajectories, transform: ArrayLike | None, options: ReadOpti
     return tracks if transform is None else check_walkers(tracks.metres(transform), options)
 
 
-def detect_format(path: str | PathLike[str]) -> str:
+def detect_format(path: str | PathLike[str], columns: bool = False) -> str:
     """Return the name of the format of a recording, from its content: one of ``FORMATS``.
+
+    Args:
+        path: the file.
+        columns: whether the user names columns, so that the file is a table.
 
     Raises:
         DataError: the file is missing, empty, larger than 2 GiB, or of no supported format.
@@ -170,7 +174,8 @@ def detect_format(path: str | PathLike[str]) -> str:
     ...     detect_format(path)
     'sgan'
     """
-    return _detect(Source.of(Path(path))).name
+    source = Source.of(Path(path))
+    return (_table(source) if columns else _detect(source)).name
 
 
 def _table(source: Source) -> Reader:

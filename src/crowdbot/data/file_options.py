@@ -6,6 +6,10 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
+AGENTS = ("pedestrians", "all")
+"""Who is read where a file has labels."""
+UNITS = ("m", "cm", "mm", "km", "ft", "px", "deg")
+"""Units of coordinates in a file."""
 NEXT_COLUMN = re.compile(r"\s+(?=[a-z_]+=)")
 
 
@@ -26,7 +30,9 @@ FILE_OPTIONS = {
     "fps": FileOption("frame rate of the frame column in Hz", "from the file", "FRAMES", number=True, per_file=True),
     "format": FileOption("file format, see `crowdbot list formats`", "detected"),
     "units": FileOption(
-        "units of the coordinates: m, cm, mm, ft, px, or deg for longitude and latitude", "from the file", per_file=True
+        "units of the coordinates: m, cm, mm, km, ft, px, or deg for longitude and latitude",
+        "from the file",
+        per_file=True,
     ),
     "columns": FileOption(
         "columns of a table by name or number: id, frame, time (time_ms, time_us, time_ns), x, y, label",

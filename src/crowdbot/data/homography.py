@@ -35,7 +35,10 @@ def read_homography(path: str | PathLike[str]) -> NDArray[np.float64]:
     source = Source.of(Path(path))
     if source.path.stat().st_size > LARGEST:
         raise DataError(f"{path} is larger than {LARGEST} bytes; a homography has three lines of three numbers")
-    matrix, _ = source.table(3)
+    try:
+        matrix, _ = source.table(3)
+    except DataError as error:
+        raise DataError(f"the homography {error}; it must have three lines of three numbers") from None
     if matrix.shape != (3, 3) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix)) < 1e-300:
         raise DataError(f"{path} is not a homography: three lines of three finite numbers, a matrix with an inverse")
     return matrix

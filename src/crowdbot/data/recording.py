@@ -11,11 +11,11 @@ from pathlib import Path
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from .file_formats import load
+from .file_options import AGENTS
 from .place_layout import PlaceLayout
 from .trajectories import Trajectories
 from .windows import Windows
 
-AGENTS = ("pedestrians", "all")
 EPISODE_STEP = 0.4
 """Time step [s] of recorded trials, which have no annotation rate."""
 

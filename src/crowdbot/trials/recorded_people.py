@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from crowdbot.core import InputError
-from crowdbot.data import FILE_OPTIONS, parse_columns, split_columns
+from crowdbot.data import AGENTS, FILE_OPTIONS, UNITS, parse_columns, split_columns
 from crowdbot.typing import Floats
 
 from .distribution import Distribution
@@ -60,14 +60,14 @@ class RecordedPeople:
     )
     fps: float | None = attribute(None, about=FILE_OPTIONS["fps"].about, unit="1/s", exclusive_min=0.0)
     format: str = attribute("", about=FILE_OPTIONS["format"].about)
-    units: str = attribute("", about=FILE_OPTIONS["units"].about, choices=("", "m", "cm", "mm", "ft", "px", "deg"))
+    units: str = attribute("", about=FILE_OPTIONS["units"].about, choices=("", *UNITS))
     columns: str = attribute("", about=f"{FILE_OPTIONS['columns'].about}, such as id=who x=east")
     scale: float | None = attribute(None, about=FILE_OPTIONS["scale"].about, unit="m", exclusive_min=0.0)
     homography: str = attribute("", about=f"{FILE_OPTIONS['homography'].about}, in the folder of the trial")
     topic: str = attribute("", about=FILE_OPTIONS["topic"].about)
     frame: str = attribute("", about=FILE_OPTIONS["frame"].about)
     time_base: str = attribute("true", about=FILE_OPTIONS["time_base"].about, choices=("true", "published"))
-    agents: str = attribute("all", about=FILE_OPTIONS["agents"].about, choices=("all", "pedestrians"))
+    agents: str = attribute("all", about=FILE_OPTIONS["agents"].about, choices=AGENTS[::-1])
     mode: str = attribute("scripted", about="whether people react to robots", choices=("scripted", "reactive"))
     reaction_distance: float = attribute(
         5.0, about="distance to a robot below which people react", unit="m", exclusive_min=0.0, max=1000.0

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.cli.output import number, print_json, print_table, progress
+from crowdbot.cli.output import json_text, number, print_json, print_table, progress
 from crowdbot.cli.recordings import add_file_options, check_no_file_options, check_parts, recording
 from crowdbot.cli.settings import settings
 
@@ -57,10 +57,15 @@ def present_recordings(options: argparse.Namespace) -> int:
     if options.real:
         return _simulate(options)
     values = {log: _load(log, options).metrics() for log in options.logs}
+    rows = {"logs": [{"log": log, "metrics": row} for log, row in values.items()]}
+    if options.out is not None:
+        _write(options.out, {"logs.json": json_text(rows) + "\n"})
     if options.json:
-        print_json({"logs": [{"log": log, "metrics": row} for log, row in values.items()]})
+        print_json(rows)
         return 0
     _print_metrics(values, options.metrics)
+    if options.out is not None:
+        print(f"result    {options.out / 'logs.json'}")
     return 0
 
 
@@ -134,7 +139,8 @@ def _simulate(options: argparse.Namespace) -> int:
             results.append((result.cells[0], place_reality(real, result.cells[0].valid, not method.type)))
     values = [_values(options, cell, rows) for cell, rows in results]
     if options.out is not None:
-        _write(options.out, values, results)
+        texts = {"reality.html": _page(results), "reality.json": json_text({"real": values}) + "\n"}
+        _write(options.out, texts)
     if options.json:
         print_json({"real": values})
         return 0
@@ -190,23 +196,27 @@ def _print_placements(cell: CellResult, rows: list[RealPlacement]) -> None:
     print_table(f"{cell.trial}, {_name(cell)}", head, told, caption)
 
 
-def _write(out: Path, values: list[dict[str, Any]], results: list[tuple[CellResult, list[RealPlacement]]]) -> None:
+def _page(results: list[tuple[CellResult, list[RealPlacement]]]) -> str:
     import html
 
-    from crowdbot.cli.output import json_text
-    from crowdbot.core import explain_write_errors
     from crowdbot.evaluation import reality_svg
 
     parts = []
     for cell, rows in results:
         title = html.escape(f"{cell.trial}, {_name(cell)}")
         parts.append(f"<h2>{title}</h2><p>{len(cell.valid)} runs</p>{reality_svg(rows)}")
-    page = (
+    return (
         "<!doctype html><html lang='en'><meta charset='utf-8'><title>Reality in the simulations</title>"
         "<body style='max-width:760px;margin:2rem auto;font-family:system-ui'><h1>Reality in the simulations</h1>"
         f"<p>Share of simulated runs below the recording; band: central 95 %.</p>{''.join(parts)}</body></html>"
     )
-    for name, text in (("reality.html", page), ("reality.json", json_text({"real": values}) + "\n")):
+
+
+def _write(out: Path, texts: Mapping[str, str]) -> None:
+    """Write files of results."""
+    from crowdbot.core import explain_write_errors
+
+    for name, text in texts.items():
         with explain_write_errors(out / name):
             out.mkdir(parents=True, exist_ok=True)
             (out / name).write_text(text, encoding="utf-8")

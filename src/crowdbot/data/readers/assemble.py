@@ -16,7 +16,9 @@ from .plausibility import METRES_PER_DEGREE, FileColumns, check_walkers
 from .reader import ReadOptions
 from .time_base import row_rate_of
 
-PER_METRE = {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "px": 1.0, "deg": 1.0 / METRES_PER_DEGREE}
+PER_METRE = {
+    "m": 1.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1.0 / 0.3048, "px": 1.0, "deg": 1.0 / METRES_PER_DEGREE,
+}  # fmt: skip
 """Units per metre; pixels are not converted, and degrees of longitude depend on the latitude, too."""
 
 
@@ -43,7 +45,7 @@ def assemble(
         id, frame, x, y: columns ``[N]`` of the file.
         fps: frames per second of the frame counter [1/s], if the file or its format defines it.
         row_rate: rows per second of a track [1/s], if the file defines that instead.
-        units: default units: ``m``, ``cm``, ``mm``, ``ft``, ``deg`` or ``px``.
+        units: default units, one of :data:`crowdbot.data.UNITS`.
         note: remarks on the data.
         line: ``[N]`` line of each row in the file, for messages.
         columns: names of the time column and of the third coordinate, for the plausibility check.

@@ -16,7 +16,7 @@ class ReadOptions:
 
     Fields:
         fps: frames per second of the frame counter [1/s]; of files without one, rows per second.
-        units: units of the coordinates in the file: ``m``, ``cm``, ``mm``, ``ft`` or ``px``.
+        units: units of the coordinates in the file, one of :data:`crowdbot.data.UNITS`.
         time_base: ``true`` or ``published``.
         columns: columns of a table by quantity, ``id``, ``frame``, ``time``, ``x``, ``y`` or ``label``.
         topic: topic of people of a bag.

@@ -111,8 +111,10 @@ class JobDesk(Desk):
             raise InputError(f"kind of job {kind!r:.40} does not exist{did_you_mean(kind, FORMS)}")
         form, space = FORMS[kind], self.session.workspace
         found = read_values(form, space, values)
-        results = f"{form.folder}/{results_name(found['name'])}"
-        return command_work(found["name"], (*form.words(space, found), "--out", results), space.folder, results)
+        name = results_name(found["name"])
+        results = f"{form.folder}/{name}" if form.folder else ""
+        out = ("--out", results) if results else ()
+        return command_work(name, (*form.words(space, found), *out), space.folder, results)
 
     def _results(self, number: int) -> Path:
         record = self.session.jobs.record(number)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import Any
 
 from crowdbot import calibration
@@ -14,11 +17,15 @@ from crowdbot.generation import FORMATS, RECIPES
 from crowdbot.prediction import WEIGHTS_FIELDS
 from crowdbot.trials import builtin_trials
 from crowdbot.web.prediction.example_recordings import EXAMPLES, copy_example
+from crowdbot.web.recording_rows import check_options, option_words, recording_rows
 from crowdbot.web.workspace import Workspace
 
 Row = dict[str, Any]
 
-RECORDINGS = (".txt", ".csv", ".tsv", ".parquet", ".mcap", ".json", ".ndjson", ".h5", ".hdf5", ".bag", ".vsp")
+RECORDINGS = (
+    ".txt", ".csv", ".tsv", ".parquet", ".mcap", ".json", ".ndjson", ".h5", ".hdf5", ".bag", ".vsp", ".db3", ".sqlite",
+    ".traj", ".pp", ".fzp", ".gz",
+)  # fmt: skip
 """Endings of files that may be recordings of people."""
 MOST_RUNS = 1_000_000
 
@@ -29,7 +36,7 @@ class JobForm:
 
     Fields:
         title, about: for the page.
-        folder: where the results go, a folder each.
+        folder: where the results go, a folder each; empty if the command names its files itself.
         rows: function that returns the fields of the form for a session.
         words: function that returns the words of the command from the values, without ``--out``.
     """
@@ -87,8 +94,12 @@ def _read(row: Row, value: Any) -> Any:
         if not row.get("low", 0) <= value <= row.get("high", MOST_RUNS):
             raise InputError(f"{name} = {value}: expected {row.get('low', 0)} to {row.get('high', MOST_RUNS)}")
         return value
+    if kind == "number" and (value is None or (isinstance(value, int | float) and not isinstance(value, bool))):
+        if value is not None and not (math.isfinite(value) and value >= row.get("low", -math.inf)):
+            raise InputError(f"{name} = {value}: expected a number from {row.get('low', 0)}")
+        return value
     if kind == "text" and isinstance(value, str):
-        return check_text(value.strip(), name)
+        return check_text(value.strip(), name) if row.get("names_files", True) else value.strip()
     choices = [one[0] if isinstance(one, list | tuple) else one for one in row.get("choices", ())]
     if kind == "choice" and value in choices:
         return value
@@ -107,22 +118,117 @@ def _trials(space: Workspace) -> list[str]:
 def _recordings(space: Workspace) -> list[tuple[str, str]]:
     skipped = ("sessions/", "examples/", "trainings/", "evaluations/", "generated/")
     names = [one for one in space.files() if one.endswith(RECORDINGS) and not one.startswith(skipped)]
-    return [*((one, one) for one in names), *((f"example:{one}", f"{one} (example)") for one in EXAMPLES)]
+    held = Counter(PurePosixPath(one).parent.as_posix() for one in names)
+    folders = [
+        (one, f"{one}/ ({count} files as one recording)") for one, count in held.items() if one != "." and count > 1
+    ]
+    examples = [(f"example:{one}", f"{one} (example)") for one in EXAMPLES]
+    return [*((one, one) for one in names), *folders, *examples]
+
+
+def _paths(space: Workspace, names: list[str]) -> list[str]:
+    """Return recordings of a form as paths; an example is copied."""
+    return [copy_example(space, name[8:]) if name.startswith("example:") else name for name in names]
+
+
+def _several_recordings(space: Workspace) -> Row:
+    choices = _recordings(space)
+    return {"name": "data", "label": "Recordings", "kind": "several", "value": [], "choices": choices}
+
+
+def _one_recording(space: Workspace) -> Row:
+    choices = _recordings(space)
+    return {"name": "data", "label": "Recording", "kind": "choice", "value": choices[0][0], "choices": choices}
 
 
 def _train_rows(space: Workspace) -> list[Row]:
     return [
         _choice("predictor", "Predictor", list(WEIGHTS_FIELDS)),
-        {"name": "data", "label": "Recordings", "kind": "several", "value": [], "choices": _recordings(space)},
+        _several_recordings(space),
         _whole("epochs", "Epochs", 100, 1, 100_000),
         _whole("seed", "Seed", 0, 0, 2**31),
         _text("name", "Name of the results", "first"),
+        *recording_rows(space),
     ]
 
 
 def _train_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
-    data = [copy_example(space, one[8:]) if one.startswith("example:") else one for one in values["data"]]
-    return ["train", values["predictor"], "--data", *data, *_numbers(values, "epochs", "seed")]
+    return [
+        "train", values["predictor"], "--data", *_paths(space, values["data"]), *_numbers(values, "epochs", "seed"),
+        *option_words(check_options(values)),
+    ]  # fmt: skip
+
+
+def _recorded_rows(space: Workspace) -> list[Row]:
+    return [
+        _one_recording(space),
+        _choice("mode", "People", ["scripted", "reactive"]),
+        {"name": "replace", "label": "Id of the person that a robot replaces", "kind": "number", "value": None,
+         "step": 1, "note": "empty: there is no robot"},
+        _text("name", "Name of the trial", "recorded"),
+        *recording_rows(space, "all"),
+    ]  # fmt: skip
+
+
+def _recorded_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    (path,) = _paths(space, [values["data"]])
+    reactive = ["--reactive"] if values["mode"] == "reactive" else []
+    if values["replace"] is not None and values["replace"] != int(values["replace"]):
+        raise InputError(f"Id of the person = {values['replace']}: expected a whole number")
+    replace = [] if values["replace"] is None else [f"--replace={int(values['replace'])}"]
+    options = option_words(check_options(values), "all")
+    return ["new", "trial", f"{values['name']}.xml", f"--recorded={path}", *reactive, *replace, *options]
+
+
+def _robot_rows(space: Workspace) -> list[Row]:
+    return [
+        {"name": "robot_id", "label": "Id of the robot", "kind": "text", "value": "", "note": "empty: the only robot"},
+        {"name": "robot_file", "label": "Recording of the robot", "kind": "choice", "value": "",
+         "choices": [("", "in the recording of people"), *_recordings(space)]},
+        {"name": "robot_radius", "label": "Radius of the robot", "kind": "number", "value": 0.3, "low": 0, "unit": "m"},
+        {**_text("goal", "Goal of the robot", ""), "note": "x and y, such as 8 -1.5; empty: its last position"},
+    ]  # fmt: skip
+
+
+def _robot_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    """Return the options of the robot and of the recordings."""
+    words = [f"--robot-id={values['robot_id']}"] if values["robot_id"] else []
+    if values["robot_file"]:
+        words += ["--robot-file", *_paths(space, [values["robot_file"]])]
+    words += [] if values["robot_radius"] is None else [f"--robot-radius={values['robot_radius']}"]
+    goal = values["goal"].replace(",", " ").split()
+    try:
+        numbers = [float(word) for word in goal]
+    except ValueError:
+        numbers = []
+    if goal and len(numbers) != 2:
+        raise InputError(f"Goal of the robot = {values['goal']!r:.60}: expected two numbers, x and y")
+    return [*words, *(["--goal", *map(str, numbers)] if goal else []), *option_words(check_options(values), "all")]
+
+
+def _logs_rows(space: Workspace) -> list[Row]:
+    name = _text("name", "Name of the results", "first")
+    return [_several_recordings(space), *_robot_rows(space), name, *recording_rows(space, "all")]
+
+
+def _logs_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    return ["evaluate", "--logs", *_paths(space, values["data"]), *_robot_words(space, values)]
+
+
+def _real_rows(space: Workspace) -> list[Row]:
+    return [
+        _one_recording(space),
+        {**_text("navigator", "Navigators", "own"), "note": "own: the recorded path; or such as orca,stop"},
+        _text("seeds", "Seeds", "0:100"),
+        *_robot_rows(space),
+        _text("name", "Name of the results", "first"),
+        *recording_rows(space, "all"),
+    ]
+
+
+def _real_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    own = [f"--navigators={values['navigator']}", f"--seeds={values['seeds']}"]
+    return ["evaluate", "--real", *_paths(space, [values["data"]]), *own, *_robot_words(space, values)]
 
 
 def _generate_rows(space: Workspace) -> list[Row]:
@@ -193,6 +299,18 @@ def _switch(name: str, label: str) -> Row:
 FORMS = {
     "train": JobForm(
         "Train a predictor", "AnchorNet or Social Ways on recordings of people.", "trainings", _train_rows, _train_words
+    ),
+    "recorded": JobForm(
+        "Trial from a recording", "A trial whose people are those of a recording, as a file of the folder.",
+        "", _recorded_rows, _recorded_words,
+    ),
+    "logs": JobForm(
+        "Measure recordings of robots", "Metrics of recordings of robots among people.",
+        "evaluations", _logs_rows, _logs_words,
+    ),
+    "real": JobForm(
+        "Recording and simulations", "Where a recording of a robot lies among simulations of the same place.",
+        "evaluations", _real_rows, _real_words,
     ),
     "generate": JobForm(
         "Generate data", "Sensor readings with the true people, from trials and many seeds.",

@@ -11,7 +11,7 @@ from typing import Any
 
 from crowdbot import calibration, models, prediction
 from crowdbot.core import InputError, Parameter, builtin_classes, did_you_mean, parameters, required_fields
-from crowdbot.data import FORMATS, PROTOCOLS, TIME_BASES, Degradation
+from crowdbot.data import PROTOCOLS, Degradation
 
 Row = dict[str, Any]
 
@@ -105,9 +105,8 @@ def scheme_tables() -> dict[str, Any]:
     for row in lists["degradations"]:
         kind = builtin_kinds("degradations")[row["name"]]
         row["level"], row["levels"] = kind.level, list(kind.levels)  # type: ignore[attr-defined]
-    words = {"formats": FORMATS, "protocols": PROTOCOLS, "time_bases": TIME_BASES}
-    plain = {key: [{"name": name, "about": str(about)} for name, about in one.items()] for key, one in words.items()}
-    return {**lists, **plain, "crowd": crowd}
+    protocols = [{"name": name, "about": str(about)} for name, about in PROTOCOLS.items()]
+    return {**lists, "protocols": protocols, "crowd": crowd}
 
 
 def _draws(kind: type) -> bool:

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.data import FORMATS, Recording, Trajectories, Windows, detect_format
+from crowdbot.data import FILE_OPTIONS, FORMATS, Recording, Trajectories, Windows, detect_format
 from crowdbot.prediction import PredictorSpec
 
 from .background_picture import BackgroundPicture
 from .prediction_results import PredictorResults, clean_json
-from .prediction_setup import OPTIONS, DegradationChoice, PredictionSetup, recording_of
+from .prediction_setup import WINDOW_OPTIONS, DegradationChoice, PredictionSetup, open_setup
 from .prediction_worker import PredictionTask, TaskMember, input_windows
 from .predictor_choice import PredictorChoice
 from .scene_frame import recording_bounds
@@ -102,25 +102,29 @@ class PredictionBoard:
         """The tracks of the open recording."""
         return self.recording.rest
 
-    def open(self, path: Path, options: Mapping[str, Any], name: str) -> None:
+    def open(self, path: Path, options: Mapping[str, Any], name: str, find: Callable[[str], Path] = Path) -> None:
         """Open a recording; results of the recording before are dropped, the predictors stay.
 
         Args:
             path: the file.
             options: options of the recording; None or an empty word takes the default.
             name: name of the file in the folder of the session.
+            find: returns the path of another file of the session by its name.
 
         Raises:
             InputError: the file cannot be read, an option is not allowed, or there is no window.
         """
-        recording = recording_of(path, options)
-        found = recording.format or detect_format(path)
+        setup = open_setup(path, options, find)
+        recording = setup.recording
+        found = recording.format or detect_format(path, bool(recording.columns))
         windows = recording.windows
         if len(windows[0]) > MOST_WINDOWS:
             raise InputError(f"{path.name} has {len(windows[0])} windows, more than {MOST_WINDOWS}; use every n-th one")
         same = self.setup is not None and self.setup.recording.path == recording.path
-        self.setup, self._format, self._inputs = PredictionSetup(recording), found, {CLEAN: windows}
-        self._facts = {**self._fixed_facts(), "path": name}
+        self.setup, self._format, self._inputs = setup, found, {CLEAN: windows}
+        given = {option: options.get(option) for option in FILE_OPTIONS}
+        windows_of = {option: getattr(recording, option) for option in WINDOW_OPTIONS}
+        self._facts = {**self._fixed_facts(), "path": name, "options": {**given, **windows_of}}
         if not same:
             self.background, self.degradation = None, None
         for member in self.members:
@@ -259,7 +263,6 @@ class PredictionBoard:
             "file": Path(recording.path).name,
             "format": self._format,
             "about": str(FORMATS[self._format]),
-            "options": {name: getattr(recording, name) for name in OPTIONS},
             "fps": tracks.fps,
             "frame_step": tracks.frame_step,
             "dt": tracks.dt,

@@ -12,6 +12,7 @@ from crowdbot.core import InputError
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.draft_file import DraftFile
+from crowdbot.web.recording_rows import recording_rows
 from crowdbot.web.workspace import shown_path
 
 from .background_picture import BackgroundPicture, parse_homography
@@ -68,7 +69,8 @@ class PredictionDesk(Desk):
             with contextlib.suppress(*lenient):
                 for settings in found["predictors"]:
                     self.board.add({name: value for name, value in settings.items() if value is not None})
-                self.board.open(self.session.workspace.readable(found["file"]), found["options"], found["file"])
+                space = self.session.workspace
+                self.board.open(space.readable(found["file"]), found["options"], found["file"], space.readable)
                 self.board.resume(int(found.get("seed", 0)), bool(found.get("live")), found.get("degradation"))
                 self._results.load(self.board)
         return self._changed()
@@ -91,6 +93,11 @@ class PredictionDesk(Desk):
         return {"files": rows[:RECENT], "examples": [{"name": n, "about": a} for n, a in EXAMPLES.items()]}
 
     @command
+    def file_options(self) -> list[dict[str, Any]]:
+        """Return the fields of the options of a file; a homography is a file of the session."""
+        return recording_rows(self.session.workspace)
+
+    @command
     def weights(self) -> list[str]:
         """Return the weights that were trained in the folder of the session."""
         return self.session.workspace.files("trainings/*/best.npz")
@@ -101,7 +108,7 @@ class PredictionDesk(Desk):
         self._must_rest()
         path = self.session.workspace.readable(file)
         try:
-            self.board.open(path, options or {}, file)
+            self.board.open(path, options or {}, file, self.session.workspace.readable)
         except InputError as error:
             raise InputError(str(error).replace(str(path), file)) from None
         return self._changed()

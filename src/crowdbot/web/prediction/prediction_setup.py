@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import shlex
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, from_attributes
-from crowdbot.data import Degradation, Recording
+from crowdbot.data import FILE_OPTIONS, Degradation, Recording
+from crowdbot.web.recording_rows import check_options, option_words, recording_fields
 from crowdbot.web.workspace import shown_path
 
 from .form_rows import builtin_kinds, written_values
 from .predictor_choice import PredictorChoice
 
-OPTIONS = (
-    "format",
-    "fps",
-    "units",
-    "time_base",
+WINDOW_OPTIONS = (
     "step",
     "observe",
     "predict",
@@ -30,7 +27,7 @@ OPTIONS = (
     "learn",
     "every",
 )
-"""Options of a recording, in the order of the form."""
+"""Options of the windows of a recording, in the order of the form; those of its file come before."""
 WHOLE = ("observe", "predict", "every")
 
 
@@ -86,12 +83,14 @@ class PredictionSetup:
         seed: seed of all random draws.
         best_of: rule that selects the best future.
         live: whether each calibration starts from the fit of the frame before.
+        file_options: options of the file that are given, as in the form; a homography by its path.
     """
 
     recording: Recording
     seed: int = 0
     best_of: str = "person"
     live: bool = False
+    file_options: Mapping[str, Any] = field(default_factory=dict)
 
     def command(self, choice: PredictorChoice, degradation: DegradationChoice | None = None) -> str:
         """Return the command line that gives the same numbers for a predictor."""
@@ -154,8 +153,11 @@ class PredictionSetup:
         )
 
     def _words(self) -> list[str]:
-        found = ["--data", shown_path(self.recording.path)]
-        for name in OPTIONS:
+        given = dict(self.file_options)
+        if "homography" in given:
+            given["homography"] = shown_path(given["homography"])
+        found = ["--data", shown_path(self.recording.path), *option_words(given)]
+        for name in WINDOW_OPTIONS:
             value = getattr(self.recording, name)
             if value != Recording.__dataclass_fields__[name].default:
                 found += [f"--{name.replace('_', '-')}", str(value)]
@@ -163,28 +165,40 @@ class PredictionSetup:
         return found + (["--best-of", self.best_of] if self.best_of != "person" else [])
 
 
-def recording_of(path: Path, options: Mapping[str, Any]) -> Recording:
-    """Return a recording with the options of the form; None takes the default.
+def open_setup(path: Path, options: Mapping[str, Any], find: Callable[[str], Path] = Path) -> PredictionSetup:
+    """Return a recording with the options of the form; None and an empty word take the default.
+
+    Args:
+        path: the file.
+        options: options of the file and of its windows by name.
+        find: returns the path of a file of the session by its name.
 
     Raises:
-        InputError: an option is unknown or not of its kind.
+        InputError: an option is unknown or not of its kind, or the homography cannot be read.
     """
-    wrong = next((key for key in options if key not in OPTIONS), None)
+    known = (*FILE_OPTIONS, *WINDOW_OPTIONS)
+    wrong = next((key for key in options if key not in known), None)
     if wrong is not None:
-        raise InputError(f"a recording has no option {wrong!r}{did_you_mean(wrong, OPTIONS)}")
+        raise InputError(f"a recording has no option {wrong!r}{did_you_mean(wrong, known)}")
+    of_file = check_options(options)
+    homography = find(of_file["homography"]) if "homography" in of_file else None
+    if homography is not None:
+        of_file["homography"] = str(homography)
     given: dict[str, Any] = {}
-    for key, value in options.items():
+    for key in WINDOW_OPTIONS:
+        value = options.get(key)
         if value is None or value == "":
             continue
-        number = key in ("fps", "step", "near", "learn") and isinstance(value, int | float)
-        kind = float if key in ("fps", "step", "near", "learn") else int if key in WHOLE else str
+        number = key in ("step", "near", "learn") and isinstance(value, int | float)
+        kind = float if key in ("step", "near", "learn") else int if key in WHOLE else str
         given[key] = float(value) if number else value
         if isinstance(value, bool) or not isinstance(given[key], kind):
             words = {float: "a number", int: "a whole number", str: "a word"}
             raise InputError(f"{key} = {value!r:.60} must be {words[kind]}")
     if max(given.get("observe", 8), given.get("predict", 12)) > 500:
         raise InputError("observe and predict must be at most 500 rows")
-    return Recording(str(path), **given)
+    recording = Recording(str(path), **recording_fields(of_file, homography), **given)
+    return PredictionSetup(recording, file_options=of_file)
 
 
 def _imports(body: str) -> str:
