@@ -11,6 +11,9 @@ A test that needs a real clock, a browser, another program, a port or a kill has
 ``make live``. Who asks for a browser, ROS 1 or RViz as a fixture gets the marker by that.
 
 Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
+
+PyTorch computes with one thread, unless ``OMP_NUM_THREADS`` says otherwise: its sums are then the same on every
+machine, and no thread of one worker spins while it waits for a core that another worker uses. numba does not read it.
 """
 
 from __future__ import annotations
@@ -32,6 +35,8 @@ from hypothesis import HealthCheck, settings
 
 import missing_packages
 from gate_guard import GateGuard
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # before a test imports torch
 
 settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("hunt", deadline=None)
@@ -185,10 +190,16 @@ def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(GateGuard())
 
 
-def pytest_collection_finish() -> None:
-    """Take what the collection made out of the collector: hundreds of thousands of objects that stay."""
-    gc.collect()
-    gc.freeze()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[object]:
+    """Keep what the collection makes out of the garbage collector: hundreds of thousands of objects that stay."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(trylast=True)

@@ -5,14 +5,16 @@ import pytest
 from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.simulation import simulate_seeds
 from crowdbot.trials import load_trial
+from samples import sizes
 
 CROSSING = load_trial("circle-crossing")
 
 
-def test_mpc_succeeds_where_straight_and_orca_fail():
-    plan = EvaluationPlan([CROSSING], parse_methods("straight, orca, mpc"), seeds=range(12))
+@pytest.mark.parametrize("seeds", sizes(6, 12))
+def test_mpc_succeeds_where_straight_and_orca_fail(seeds):
+    plan = EvaluationPlan([CROSSING], parse_methods("straight, orca, mpc"), seeds=range(seeds))
     straight, orca, mpc = evaluate(plan).cells
-    assert sum(mpc.values("success")) == 12
+    assert sum(mpc.values("success")) == seeds
     assert sum(mpc.values("success")) > sum(orca.values("success")) > sum(straight.values("success"))
 
 
