@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.humans.asset import shapes
-from crowdbot.humans.looks.atlas import CHARTS
+from crowdbot.humans.wardrobe import CHARTS
 
 SIDE = 512
 HEAD_AXIS, HEAD_LOW, HEAD_TALL = 0.03, 1.40, 0.345

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crowdbot.humans.rigged.edge_collapse import EdgeCollapse
+from crowdbot.humans.rigged.simplify import EdgeCollapse
 
 SNAP = 0.04
 """Cuts this near to the end of an edge, as a share of it, go through its vertex."""

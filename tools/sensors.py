@@ -16,7 +16,7 @@ import crowdbot as cb
 from crowdbot.core import Bodies, SpatialPose, stream
 from crowdbot.sensors import DepthCamera, Infrared, Lidar2D, Lidar3D, Ultrasound
 from crowdbot.sensors.beams import cone_directions
-from crowdbot.sensors.ultrasound import teardrop
+from crowdbot.sensors.range_finders import teardrop
 
 PARTS = ("head", "trunk", "arm", "leg")
 ROOM = [(-6.0, -5.0), (-6.0, 5.0), (6.0, 5.0), (6.0, -5.0)]

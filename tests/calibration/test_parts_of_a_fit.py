@@ -24,8 +24,8 @@ from crowdbot.calibration import (
     ResimulatedTracks,
     Rollout,
 )
-from crowdbot.calibration.annealing import _spread
-from crowdbot.calibration.fit_prediction import futures
+from crowdbot.calibration.fit import futures
+from crowdbot.calibration.searches import _spread
 from crowdbot.core import InputError, Scene
 from crowdbot.data import Windows
 from crowdbot.models import CurrentDirection, Goal
@@ -124,7 +124,7 @@ def test_who_comes_late_leaves_early_or_is_a_robot_moves_as_recorded(away: str) 
 
 
 def test_velocities_are_known_only_between_two_observed_rows() -> None:
-    from crowdbot.calibration.resimulation import _recorded_tracks
+    from crowdbot.calibration.rollout import _recorded_tracks
 
     position = np.arange(8.0).reshape(1, 4, 1, 2) ** 2
     present = np.array([True, True, False, True]).reshape(1, 4, 1)

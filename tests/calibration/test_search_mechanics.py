@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.calibration import Annealing, Genetic, Geometric, RandomSearch, Search
-from crowdbot.calibration.genetic import breed, keep_fittest
-from crowdbot.calibration.search_state import SearchState
+from crowdbot.calibration.search import SearchState
+from crowdbot.calibration.searches import breed, keep_fittest
 from crowdbot.core import stream
 
 Function = Callable[[np.ndarray, np.ndarray], np.ndarray]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from crowdbot.core import SMALL, InputError, Neighbors
 from crowdbot.core.model_parameter import dense
 from crowdbot.core.neighbors import CROWD, FEW, SPARE, Seekers, nearest, nearest_of_rows
-from crowdbot.core.neighbors.copies import fill_copies, find_period
+from crowdbot.core.neighbors.search import fill_copies, find_period
 from samples import sample
 
 

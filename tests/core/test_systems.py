@@ -16,10 +16,10 @@ from crowdbot.core import (
     peak_memory,
     refuse_system,
     system_name,
+    systems,
     user_data_folder,
 )
-from crowdbot.core.systems import file_lock, memory
-from crowdbot.core.systems.user_folders import user_cache_folder
+from crowdbot.core.systems import user_cache_folder
 
 PEAK = """
 import numpy as np
@@ -76,7 +76,7 @@ def test_the_lock_of_windows_is_beyond_the_content(monkeypatch, tmp_path):
     with (tmp_path / "log").open("w+b") as stream:
         stream.write(b"abc")
         lock = SimpleNamespace(LK_NBLCK=2, locking=lambda number, mode, size: seen.append((stream.tell(), mode, size)))
-        monkeypatch.setattr(file_lock, "msvcrt", lock, raising=False)
+        monkeypatch.setattr(systems, "msvcrt", lock, raising=False)
         monkeypatch.setattr(sys, "platform", "win32")
         lock_file(stream)
         assert stream.tell() == 3
@@ -96,7 +96,7 @@ def test_peak_memory_counts_an_array_that_is_gone():
 def test_peak_memory_without_proc(monkeypatch, tmp_path, system, factor):
     import resource
 
-    monkeypatch.setattr(memory, "STATUS", tmp_path / "nowhere")
+    monkeypatch.setattr(systems, "STATUS", tmp_path / "nowhere")
     monkeypatch.setattr(resource, "getrusage", lambda who: SimpleNamespace(ru_maxrss=5000))
     monkeypatch.setattr(sys, "platform", system)
     assert peak_memory() == 5000 * factor

@@ -29,11 +29,11 @@ from crowdbot.experiments import (
     read_log,
     read_streams,
     read_trial_clock,
+    streams,
     view_track,
     withdraw,
 )
 from crowdbot.experiments.comparison import looking_shares
-from crowdbot.experiments.streams import lab_streaming_layer
 from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder
 from crowdbot.trials import parse_trial
@@ -208,7 +208,7 @@ def test_missing_streams_and_texts_are_refused(tmp_path, monkeypatch):
     assert not (tmp_path / "streams").exists()
     monkeypatch.setitem(__import__("sys").modules, "pylsl", None)
     with pytest.raises(ImportError, match=r"crowdbot\[lsl\]"):
-        lab_streaming_layer.load_pylsl()
+        streams.load_pylsl()
 
 
 def test_damaged_streams_and_clocks_say_where(tmp_path):

@@ -15,7 +15,7 @@ from crowdbot.perception import (
     JointProbabilisticDataAssociation,
     PredictorMotion,
 )
-from crowdbot.perception.joint_association import association_probabilities
+from crowdbot.perception.trackers import association_probabilities
 from crowdbot.prediction import ConstantVelocity, Simulated
 
 DT = 0.1

@@ -7,7 +7,7 @@ import pytest
 
 from crowdbot.core import DataError, InputError, Pose, Scene, SpatialPose
 from crowdbot.perception import BoxDetector, Boxes, DepthClusters, HogPeople, NetworkPeople
-from crowdbot.perception.camera.box_detector import select_boxes
+from crowdbot.perception.camera import select_boxes
 from crowdbot.sensors import DepthCamera, Lens, RgbImage
 
 LENS = Lens(640, 480, 550.0, 550.0, 319.5, 239.5)

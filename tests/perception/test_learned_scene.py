@@ -8,7 +8,7 @@ import pytest
 
 from crowdbot.core import DataError, InputError, Pose, Scene
 from crowdbot.perception import LearnedScene, LearnedState, TrackedScene, Tracks, train_learned_scene
-from crowdbot.perception.scan_prediction.track_features import (
+from crowdbot.perception.scan_prediction.learned_scene import (
     FEATURES,
     FREE,
     EarlierTracks,

@@ -7,8 +7,7 @@ import pytest
 
 from crowdbot.core import DataError, InputError, Pose, Scene, stream
 from crowdbot.perception import ScanNetwork, train_scan_network
-from crowdbot.perception.scan_network import generate_scan
-from crowdbot.perception.scan_network.cutouts import SAMPLES, cut_windows
+from crowdbot.perception.scan_network import SAMPLES, cut_windows, generate_scan
 from crowdbot.sensors import Gaussian, Lidar2D, Scan
 
 

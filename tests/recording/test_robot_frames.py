@@ -16,8 +16,7 @@ from rosbags.highlevel import AnyReader
 from crowdbot import data
 from crowdbot.core import Pose, SpatialPose
 from crowdbot.recording import branch, export, open_run, read_episode, replay, run
-from crowdbot.recording.link_frames import LinkFrames
-from crowdbot.recording.robot_messages import relative
+from crowdbot.recording.robot_messages import LinkFrames, relative
 from crowdbot.sensors import spatial_pose
 from crowdbot.simulation import Episode, JointOrder
 from crowdbot.trials import Trial, parse_trial

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, stream
 from crowdbot.sensors.bumper import _limbs
 from crowdbot.sensors.lens import MOST_PIXELS, Lens, distort_image, pixel_directions
-from crowdbot.sensors.ultrasound import teardrop
+from crowdbot.sensors.range_finders import teardrop
 
 some = settings(max_examples=25, deadline=None)
 seeds = st.integers(0, 10_000)

@@ -22,7 +22,7 @@ from crowdbot.sensors import (
     Ultrasound,
 )
 from crowdbot.sensors.beams import cone_directions
-from crowdbot.sensors.ultrasound import teardrop
+from crowdbot.sensors.range_finders import teardrop
 
 HIGH = SpatialPose.of((0.0, 0.0, 1.0))
 

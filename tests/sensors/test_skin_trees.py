@@ -11,7 +11,7 @@ from crowdbot.humans import Gait, People
 from crowdbot.sensors import Lidar3D
 from crowdbot.sensors.beams import cone_directions, sort_beams, unit_vectors
 from crowdbot.sensors.ray_casting import cast_rays
-from crowdbot.sensors.skins.skin_casting import SkinCasting, skin_casting
+from crowdbot.sensors.skin_casting import SkinCasting, skin_casting
 
 FIELDS = ("distance", "cos_incidence", "normal", "hit", "part")
 CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])

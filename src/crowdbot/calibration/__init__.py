@@ -1,25 +1,24 @@
 """Calibration: fit the parameters of crowd models to recorded people; a scheme is model x cost x search x goal."""
 
-from .annealing import Annealing
-from .calibrator import Calibrator
-from .cma_es import CMAES
-from .contract import check_cost
-from .cooling import Cooling, Geometric
-from .cost import Absolute, Cost, InterPedestrian, Progressive, WeightedSum
-from .fit import Fit
-from .fit_prediction import futures
-from .genetic import Genetic
-from .greedy import Greedy
+from .calibrator import (
+    CalibrationChunk,
+    Calibrator,
+    RecordingCalibration,
+    goal_class,
+    goal_for,
+    resolve_cost,
+    resolve_goal,
+    resolve_model,
+    resolve_search,
+)
+from .cost import Absolute, Cost, InterPedestrian, Progressive, WeightedSum, check_cost
+from .fit import Fit, futures
 from .identifiability import ParameterProfile, plot_profiles, profile_parameters
 from .parameter_space import ParameterSpace
 from .population_prior import PopulationPrior
-from .random_search import RandomSearch
-from .recording_calibration import CalibrationChunk, RecordingCalibration
-from .resimulation import ResimulatedTracks, Resimulation
-from .rollout import Rollout
-from .scheme_parts import goal_class, goal_for, resolve_cost, resolve_goal, resolve_model, resolve_search
-from .search import Search, SearchResult
-from .time_limit import TimeLimit
+from .rollout import ResimulatedTracks, Resimulation, Rollout
+from .search import Search, SearchResult, TimeLimit
+from .searches import CMAES, Annealing, Cooling, Genetic, Geometric, Greedy, RandomSearch
 
 __all__ = [
     "CMAES",

@@ -1,30 +1,93 @@
-"""Calibrator: fit the parameters of a crowd model to recorded people."""
+"""Calibration of windows and of whole recordings with a scheme of model, goal, cost and search."""
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
+import pickle
+import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, kebab_case, stream
-from crowdbot.data import Windows
-from crowdbot.models import CrowdModel, Goal
+from crowdbot import models
+from crowdbot.core import InputError, Scene, find_class, kebab_case, run_saved_jobs, source_digest, stream
+from crowdbot.data import Recording, Windows
+from crowdbot.models import CrowdModel, Goal, GroundTruth, goals
 from crowdbot.typing import Floats, Ints
 
 from .cost import Cost
 from .fit import Fit
 from .parameter_space import RADIUS, ParameterSpace
 from .population_prior import PopulationPrior
-from .resimulation import Resimulation
-from .rollout import Rollout
-from .scheme_parts import resolve_cost, resolve_goal, resolve_model, resolve_search
-from .search import Search, SearchResult
-from .time_limit import TimeLimit
+from .rollout import Resimulation, Rollout
+from .search import Search, SearchResult, TimeLimit
+
+
+def resolve_model(value: CrowdModel | str) -> CrowdModel:
+    """Return a crowd model from an instance, a name or an address, with default parameters."""
+    return cast(CrowdModel, _resolve(value, models, CrowdModel))
+
+
+def resolve_goal(value: Goal | str) -> Goal:
+    """Return a goal from an instance, a name or an address, with default parameters."""
+    return cast(Goal, _resolve(value, goals, Goal))
+
+
+def goal_class(name: str) -> type[Goal]:
+    """Return the class of a goal by its name or address."""
+    return cast(type[Goal], find_class(name, goals, Goal))
+
+
+def goal_for(name: str, recording: Recording) -> Goal:
+    """Return a goal for a recording: with its true future, fitted to its learning part, or for its layout.
+
+    Raises:
+        InputError: the name is unknown, or the goal is learned and the recording has no learning part.
+    """
+    kind = goal_class(name)
+    if issubclass(kind, GroundTruth):
+        return GroundTruth(*recording.windows)
+    if kind.learns:
+        known = recording.layout is not None and recording.learn == 0.0
+        return kind.at(recording.layout) if known and recording.layout else kind.learn(recording.learning_part)
+    return resolve_goal(name)
+
+
+def resolve_cost(value: Cost | str) -> Cost:
+    """Return a cost from an instance, a name or an address."""
+    return cast(Cost, _resolve(value, sys.modules[__package__ or ""], Cost))
+
+
+def resolve_search(value: Search | str) -> Search:
+    """Return a search from an instance, a name or an address, with default parameters."""
+    return cast(Search, _resolve(value, sys.modules[__package__ or ""], Search))
+
+
+def _resolve(value: object, room: ModuleType, contract: type) -> object:
+    """Return the value itself, or an instance of the class with this name.
+
+    Raises:
+        InputError: the name is unknown, the class has no default values, or the value does not fulfil the contract.
+    """
+    if isinstance(value, str):
+        kind = find_class(value, room, contract)
+        try:
+            return kind()
+        except TypeError:
+            raise InputError(
+                f"{kebab_case(kind.__name__)} has no default values; pass an instance instead of the name"
+            ) from None
+    if not isinstance(value, contract):
+        raise InputError(f"{value!r} is not a {contract.__name__} or the name of one")
+    return value
+
 
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
@@ -319,3 +382,107 @@ def _part_of(progress: Progress | None, first: int, whole: int, budget: int) -> 
     if progress is None:
         return None
     return lambda done: progress(min(1.0, (first + done / budget) / whole))
+
+
+PIECES = 8
+"""Minimum number of chunks of a recording."""
+AGENTS = 2_000
+"""Approximate number of people in a chunk, summed over its windows; an interrupted run loses at most a chunk."""
+
+
+@dataclass(frozen=True)
+class CalibrationChunk:
+    """Calibration of the windows ``first`` to ``last`` (not included) of a recording.
+
+    Fields:
+        frame, people: ``[W]``, last observed frame of each window, and number of people present.
+        arrays: arrays of :class:`Fit` by name.
+    """
+
+    first: int
+    last: int
+    frame: NDArray[np.int64]
+    people: NDArray[np.int64]
+    arrays: dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class RecordingCalibration:
+    """The calibration of a recording with a scheme.
+
+    Fields:
+        recording: the recording; only observed rows are used, unless the goal requires the future.
+        calibrator: calibrator with individual parameters; ``goal`` replaces its goal, if given.
+        goal: name of a goal that depends on the recording, see :func:`goal_for`.
+        seed: seed of the search; each window has its own random stream.
+    """
+
+    recording: Recording
+    calibrator: Calibrator
+    goal: str | None = None
+    seed: int = 0
+
+    @property
+    def goal_calibrator(self) -> Calibrator:
+        """The calibrator with the goal of this recording."""
+        if self.goal is None:
+            return self.calibrator
+        return dataclasses.replace(self.calibrator, goal=goal_for(self.goal, self.recording))
+
+    @property
+    def key(self) -> str:
+        """Hash of all inputs that determine the result."""
+        content = pickle.dumps((source_digest(), self, self.recording.digest))
+        return hashlib.blake2b(content, digest_size=12).hexdigest()
+
+    @property
+    def past(self) -> Windows:
+        """The windows used for the calibration."""
+        return self.recording.windows[0]
+
+    def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[CalibrationChunk]:
+        """Yield finished chunks; chunks stored in the folder ``keep`` come first."""
+        past = self.past
+        people = int(past.present[:, -1].sum())
+        size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
+        jobs = [(self, first, min(first + size, len(past))) for first in range(0, len(past), size)]
+        files = [] if keep is None else [keep / f"{self.key}-{first}.npz" for _, first, _ in jobs]
+        for _, chunk in run_saved_jobs(_calibrate_chunk, jobs, files, _save, _load, workers, cluster):
+            yield chunk
+
+    def merge(self, chunks: Sequence[CalibrationChunk]) -> Fit:
+        """Return the fit of the whole recording from all its chunks."""
+        ordered = sorted(chunks, key=lambda chunk: chunk.first)
+        calibrator = self.goal_calibrator
+        whole = {name: np.concatenate([chunk.arrays[name] for chunk in ordered]) for name in ordered[0].arrays}
+        seconds = float(whole.pop("seconds").sum())
+        return Fit(
+            calibrator.scheme, calibrator.space, calibrator.rollout, **whole, seconds=seconds, windows=len(self.past)
+        )
+
+
+ARRAYS = ("values", "given", "id", "counted", "cost", "given_cost", "evaluations", "history")
+
+
+def _calibrate_chunk(job: tuple[RecordingCalibration, int, int]) -> CalibrationChunk:
+    campaign, first, last = job
+    past = campaign.past[first:last]
+    rngs = [stream(campaign.seed, "calibrate", window) for window in range(first, last)]
+    fit = campaign.goal_calibrator.fit_each(past, rngs)
+    arrays = {name: getattr(fit, name) for name in ARRAYS}
+    arrays["seconds"] = np.array([fit.seconds])
+    return CalibrationChunk(first, last, past.frame[:, -1], past.present[:, -1].sum(axis=1), arrays)
+
+
+def _save(chunk: CalibrationChunk, file: Path) -> None:
+    with file.open("wb") as stream_:
+        bounds = np.array([chunk.first, chunk.last])
+        arrays: dict[str, Any] = {"bounds": bounds, "frame": chunk.frame, "people": chunk.people, **chunk.arrays}
+        np.savez_compressed(stream_, **arrays)
+
+
+def _load(file: Path) -> CalibrationChunk:
+    with file.open("rb") as stream_, np.load(stream_, allow_pickle=False) as kept:
+        first, last = kept["bounds"].tolist()
+        arrays = {name: kept[name] for name in (*ARRAYS, "seconds")}
+        return CalibrationChunk(first, last, kept["frame"], kept["people"], arrays)

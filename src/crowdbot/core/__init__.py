@@ -8,9 +8,9 @@ from crowdbot.lazy import lazy_exports
 
 from . import tree
 from .bodies import STAGE, Bodies, Skins
-from .bounds import Bounds, check_number
-from .clock import Clock, ExternalClock, FreeClock, PacedClock
+from .clock import Clock, ExternalClock, FreeClock, PacedClock, TickSchedule, whole_ticks
 from .errors import (
+    PROGRAMS,
     CrowdbotError,
     DataError,
     EpisodeError,
@@ -19,14 +19,26 @@ from .errors import (
     RobotError,
     TrialError,
     UnknownName,
+    check_programs,
     did_you_mean,
+    explain_write_errors,
+    import_optional,
     nearest_name,
 )
 from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
-from .model_parameter import Parameter, PerAgent, check_parameters, dense, parameter, parameters, per_agent
-from .optional_imports import import_optional
+from .model_parameter import (
+    Bounds,
+    Paper,
+    Parameter,
+    PerAgent,
+    check_number,
+    check_parameters,
+    dense,
+    parameter,
+    parameters,
+    per_agent,
+)
 from .output_lock import lock_output, release_stale_lock
-from .paper import Paper
 from .plugins.class_source import UnreadableValue, reads_only, unread_fields, without_running_code
 from .plugins.plugin import (
     attribute_names,
@@ -40,29 +52,29 @@ from .plugins.plugin import (
 )
 from .plugins.plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
-from .programs import PROGRAMS, check_programs
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
-from .system_errors import explain_write_errors
-from .systems.file_lock import lock_file
-from .systems.memory import machine_memory, peak_memory
-from .systems.refusal import refuse_system, system_name
-from .systems.user_folders import user_data_folder
-from .tick_schedule import TickSchedule, whole_ticks
+from .systems import lock_file, machine_memory, peak_memory, refuse_system, system_name, user_data_folder
 from .tree import StateError, StateMark, Storage, storable
 from .version import source_digest
 from .walls import Walls
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling
-    from .hashes.blake2b import HASH_BLOCK, hash_blocks, hash_start
     from .kernels import cache_folder, cache_root, is_cold, kernel, prange
-    from .markup.gltf import GltfFile, read_gltf
-    from .markup.gltf_table import MOST_PARTS, MOST_TRIANGLES, check_gltf_table, glb_table, table_rows
+    from .markup.gltf import MOST_PARTS, MOST_TRIANGLES, GltfFile, check_gltf_table, glb_table, read_gltf, table_rows
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .markup.yaml import parse_yaml
     from .neighbors import CHUNK, SMALL, Neighbors
-    from .random_streams import RandomStreams, draw_uniform, next_uniform, stream_states
+    from .random_streams import (
+        HASH_BLOCK,
+        RandomStreams,
+        draw_uniform,
+        hash_blocks,
+        hash_start,
+        next_uniform,
+        stream_states,
+    )
     from .workers import each, run_saved_jobs
 
 __getattr__, __dir__, _ = lazy_exports(__name__)

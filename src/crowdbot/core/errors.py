@@ -15,8 +15,13 @@ A message is one sentence: what is wrong, the value, where, what is allowed. The
 
 from __future__ import annotations
 
+import contextlib
 import difflib
-from collections.abc import Iterable
+import importlib
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
 
 
 class CrowdbotError(Exception):
@@ -93,3 +98,66 @@ def nearest_name(word: str, known: Iterable[str]) -> str:
     known = list(known)
     near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.6)
     return next(k for k in known if k.lower() == near[0]) if near else ""
+
+
+@contextlib.contextmanager
+def explain_write_errors(path: Path) -> Iterator[None]:
+    """Replace an ``OSError`` inside the block, such as a full disk, by an ``InputError`` that names the file.
+
+    Args:
+        path: file or folder that is written; named if the error names no file.
+
+    Raises:
+        InputError: a file cannot be written.
+
+    >>> with explain_write_errors(Path("nowhere")):
+    ...     raise OSError(28, "No space left on device")
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: cannot write nowhere: No space left on device
+    """
+    try:
+        yield
+    except (CrowdbotError, BrokenPipeError):
+        raise
+    except OSError as error:
+        raise InputError(f"cannot write {error.filename or path}: {error.strerror or error}") from None
+
+
+def import_optional(module: str, what: str, extra: str) -> Any:
+    """Import an optional dependency.
+
+    Args:
+        module: name of the module.
+        what: feature that requires it, for the message.
+        extra: the extra of crowdbot that installs it.
+
+    Raises:
+        MissingExtra: the module is not installed.
+
+    >>> import_optional("nothing_of_this_name", "a dream", "sim")
+    Traceback (most recent call last):
+    crowdbot.core.errors.MissingExtra: a dream needs the extra [sim]: pip install 'crowdbot[sim]'
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise MissingExtra(what, extra) from None
+
+
+PROGRAMS = "CROWDBOT_PROGRAMS"
+"""Variable of the environment; ``refuse`` for processes that start no programs named by trials. Children inherit it."""
+
+
+def check_programs(what: str) -> None:
+    """Raise :class:`InputError` if this process must not start programs that a trial names.
+
+    Args:
+        what: who needs the program, for the message.
+
+    >>> check_programs("navigator mine")
+    """
+    if os.environ.get(PROGRAMS) == "refuse":
+        raise InputError(
+            f"{what} is a program, and this server starts no programs named by trials;"
+            " the person who runs it can allow them with --programs"
+        )

@@ -24,7 +24,7 @@ from typing import Any, TypeVar, cast, overload
 
 import numpy as np
 
-from .systems.user_folders import user_cache_folder
+from .systems import user_cache_folder
 
 PACKAGE = Path(__file__).parents[1]
 STALE_DAYS = 30

@@ -13,9 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from .errors import CrowdbotError, InputError
-from .optional_imports import import_optional
-from .system_errors import explain_write_errors
+from .errors import CrowdbotError, InputError, explain_write_errors, import_optional
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")

@@ -24,23 +24,54 @@ from .comparison import (
 )
 from .console import Console, ConsoleClosed
 from .emulation import EmulatedPedestrian
-from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start, event_of, record_of
 from .experiment import Block, Experiment, Screen, TrialEntry
-from .experiment_files import FILE, builtin_experiments, is_experiment, load_experiment
 from .leader_follower import EmulatedParticipant, roles_of
-from .log import SessionLog, read_log
-from .order import orders, rows_of, seed_of, williams
+from .log import (
+    Abort,
+    Answered,
+    Begin,
+    Event,
+    Fail,
+    Finish,
+    Next,
+    Pause,
+    Repeat,
+    Resume,
+    SessionLog,
+    Start,
+    event_of,
+    read_log,
+    record_of,
+)
 from .original import import_experiment
 from .page import page_of, sanitise_html
-from .parser import check_experiment, experiment_xml, parse_experiment
-from .question import Choice, ChoiceOption, FreeText, Number, Scale
-from .questionnaires import QUESTIONNAIRES, questionnaire_questions, questionnaire_scores
+from .parser import (
+    FILE,
+    builtin_experiments,
+    check_experiment,
+    experiment_xml,
+    is_experiment,
+    load_experiment,
+    parse_experiment,
+)
+from .question import (
+    QUESTIONNAIRES,
+    SYMPTOMS,
+    Choice,
+    ChoiceOption,
+    FreeText,
+    Number,
+    Scale,
+    questionnaire_questions,
+    questionnaire_scores,
+    sickness_scores,
+)
 from .respondent import ConsoleRespondent, EmulatedRespondent, Respondent, ScriptedRespondent
 from .session import Session
-from .session_plan import plan
+from .session_folder import withdraw
+from .session_plan import orders, plan, rows_of, seed_of, williams
 from .session_runner import SessionRunner
 from .session_summary import save_summary, summary
-from .sickness import SYMPTOMS, sickness_scores
 from .streams import (
     RecordedStream,
     StreamOutlets,
@@ -51,7 +82,6 @@ from .streams import (
     read_trial_clock,
 )
 from .studies import STUDIES, analyse_sessions, emulated_participant, study_of
-from .withdrawal import withdraw
 
 __all__ = [
     "FILE",

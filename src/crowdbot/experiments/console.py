@@ -14,7 +14,7 @@ from crowdbot.simulation import OrderSource
 from crowdbot.trials import Trial
 
 from .background_run import BackgroundRun
-from .event import Abort, Answered, Event, Next, Pause, Repeat, Resume, Start
+from .log import Abort, Answered, Event, Next, Pause, Repeat, Resume, Start
 from .page import CONTROL
 from .question import Choice, Question
 from .respondent import Respondent

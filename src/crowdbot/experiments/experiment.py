@@ -8,8 +8,7 @@ from pathlib import Path
 
 from crowdbot.trials import attribute, check, children
 
-from .question import QUESTIONS, SHORT, Question
-from .questionnaires import QUESTIONNAIRES, questionnaire_questions
+from .question import QUESTIONNAIRES, QUESTIONS, SHORT, Question, questionnaire_questions
 
 ORDERS = ("fixed", "random", "latin-square")
 SEEDS = ("same", "by-repetition", "by-participant")

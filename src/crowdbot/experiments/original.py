@@ -11,7 +11,7 @@ from crowdbot.core import TrialError
 from crowdbot.trials import Plan, Trial, plan_of, trials_of
 
 from .experiment import Block, Experiment, TrialEntry
-from .order import orders
+from .session_plan import orders
 
 
 @dataclass(frozen=True)

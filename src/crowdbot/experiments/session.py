@@ -23,8 +23,8 @@ from typing import Any
 
 from crowdbot.core import InputError, kebab_case
 
-from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment
+from .log import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .question import Answer, Choice, Question
 from .session_plan import SessionStep, plan
 

@@ -16,16 +16,14 @@ from crowdbot.recording import as_json, versions
 from crowdbot.simulation import Episode, Sink
 from crowdbot.trials import Trial, trial_xml
 
-from .event import Answered, Begin, Event, Fail, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
-from .log import SessionLog
-from .order import seed_of
+from .log import Answered, Begin, Event, Fail, Finish, Repeat, Resume, SessionLog, event_of, record_of
 from .page import Page, page_of
-from .parser import check_experiment, experiment_xml
+from .parser import check_experiment, experiment_xml, trial_of
 from .session import Session
 from .session_folder import ANSWERS, COPY, LOG, folder_of, withdrawn
+from .session_plan import seed_of
 from .streams import StreamOutlets, TrialClockLog
-from .trial_source import trial_of
 
 Clock = Callable[[], float]
 

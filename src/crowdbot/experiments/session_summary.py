@@ -10,10 +10,9 @@ from typing import Any
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.trials import read_trial_bytes
 
-from .event import event_of
-from .log import read_log
+from .log import event_of, read_log
 from .parser import parse_experiment
-from .questionnaires import questionnaire_scores
+from .question import questionnaire_scores
 from .session import Session
 from .session_folder import COPY, LOG
 

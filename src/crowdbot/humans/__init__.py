@@ -1,32 +1,22 @@
 """Human bodies: walking animation, capsules for contacts and range sensors, skins for cameras."""
 
 from .activities import ACTIVITIES
-from .asset import LEVELS, shapes
-from .body_pose import BodyPose
+from .asset import LEVELS, Person, names, person, persons, shapes
+from .body_pose import BodyPose, PoseMotion, PoseSource, PoseTrack, read_pose_file
 from .body_reach import eye_offsets, reach_poses
-from .clips.bvh import Bvh, read_bvh
-from .clips.clip import Clip, read_clip, write_clip
-from .clips.retarget import clip_of
-from .effective_mass import limb_chain, striking_mass
-from .falls.fall_pose import LYING, FallPose, blend_fall_poses, fall_postures
+from .clip import Bvh, Clip, clip_of, read_bvh, read_clip, write_clip
+from .fall_pose import LYING, FallPose, blend_fall_poses, fall_postures
 from .feet import Gaits
-from .gait import Gait, posing_and_skinning
-from .limbs import LIMBS, REGIONS, Limb, mass_shares
-from .looks.atlas import body_uv, paint_body
-from .looks.keypoints import KEYPOINT_EDGES, KEYPOINTS, keypoint_places
+from .gait import CHAIR, WHEELCHAIR, Gait, Seat, posing_and_skinning
+from .keypoints import KEYPOINT_EDGES, KEYPOINTS, RestSkeleton, keypoint_places, rest_skeleton
+from .limbs import LIMBS, REGIONS, Limb, limb_chain, mass_shares, striking_mass
 from .people import Capsules, People
-from .person import Person, names, person, persons
-from .pose_file import read_pose_file
-from .pose_source import PoseMotion, PoseSource, PoseTrack
 from .posture import Posture
-from .rest_bones import RestSkeleton, rest_skeleton
 from .rigged.body_rows import BodyRows
-from .rigged.importer import ImportedBody, import_body
-from .rigged.picture import material_picture
+from .rigged.importer import ImportedBody, import_body, material_picture
 from .rigged.rigged_body import BODY_NAME, RiggedBody, RiggedLevel, read_body, write_body
-from .seat import CHAIR, WHEELCHAIR, Seat
 from .uneven import ankle_positions, stand_on_ground
-from .wardrobe import Outfit, outfit, region_colors, worn_parts
+from .wardrobe import Outfit, body_uv, outfit, paint_body, region_colors, worn_parts
 
 __all__ = [
     "ACTIVITIES",

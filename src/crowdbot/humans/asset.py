@@ -1,16 +1,18 @@
-"""Body asset: rest shapes, skeleton, skin weights and regions. The file is read once."""
+"""Body asset: shapes, skeleton, skin weights and regions of the available persons."""
 
 from __future__ import annotations
 
 import functools
 import importlib.resources
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import UnknownName
 from crowdbot.typing import Floats, Ints
 
 LEVELS = 3
@@ -97,3 +99,76 @@ def _level(stored: dict[str, NDArray[Any]], k: int, adult: NDArray[np.bool_]) ->
 
 def _append_mean(values: Floats, adult: NDArray[np.bool_]) -> Floats:
     return np.concatenate([values, values[adult].mean(axis=0, keepdims=True)])
+
+
+WORD = {("m", True): "man", ("f", True): "woman", ("m", False): "boy", ("f", False): "girl"}
+
+
+@dataclass(frozen=True)
+class Person:
+    """One available body.
+
+    Fields: ``name`` (kind and age, such as ``woman-36``), ``sex`` (``m``, ``f``, or empty for the mannequin),
+    ``years``, ``height`` [m], ``mass`` [kg] (body volume times the density of water), ``index`` in the asset.
+    """
+
+    name: str
+    sex: str
+    years: int
+    height: float
+    mass: float
+    index: int
+
+
+@functools.cache
+def persons() -> tuple[Person, ...]:
+    """Return all persons, adults first, the mannequin last.
+
+    >>> everyone = persons()
+    >>> len(everyone), everyone[0].name, everyone[-1].name, sum(p.sex == "f" and p.years >= 18 for p in everyone)
+    (45, 'man-20', 'mannequin', 20)
+    """
+    found = [
+        Person(
+            name=f"{WORD[row['sex'], row['years'] >= 18]}-{row['years']:02d}",
+            sex=row["sex"],
+            years=int(row["years"]),
+            height=float(row["H"]),
+            mass=float(row["mass"]),
+            index=i,
+        )
+        for i, row in enumerate(shapes().people)
+    ]
+    adults = [p for p in found if p.years >= 18]
+    mean = [float(np.mean([getattr(p, field) for p in adults])) for field in ("height", "mass")]
+    return (*found, Person("mannequin", "", 0, mean[0], mean[1], len(found)))
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all persons, such as ``man-20`` or ``mannequin``.
+
+    >>> names()[20:23]
+    ('woman-20', 'woman-22', 'woman-24')
+    """
+    return tuple(p.name for p in persons())
+
+
+def person(name: str) -> Person:
+    """Return the person with this name.
+
+    Raises:
+        UnknownName: there is no person with this name.
+
+    >>> person("boy-08").height
+    1.28
+    """
+    found = {p.name: p for p in persons()}
+    if name not in found:
+        raise UnknownName("person", name, found)
+    return found[name]
+
+
+def drawable(kinds: Iterable[str]) -> tuple[Person, ...]:
+    """Return the persons whose kind (``man``, ``woman``, ``boy``, ``girl``, ``mannequin``) is among ``kinds``."""
+    wanted = set(kinds)
+    return tuple(p for p in persons() if p.name.split("-")[0] in wanted)

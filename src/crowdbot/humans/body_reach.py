@@ -19,7 +19,7 @@ from .asset import shapes
 from .body_pose import PARTS
 from .people import People
 from .posture import Posture, place_chain
-from .quaternions import limit_rotation, multiply, to_matrix, transpose_times, twist_angle
+from .vectors import limit_rotation, multiply, to_matrix, transpose_times, twist_angle
 
 
 @kernel

@@ -14,12 +14,10 @@ from crowdbot.core import InputError, kernel
 from crowdbot.typing import Floats, Ints
 
 from .activities import ACTIVITIES
-from .asset import LEVELS, Level, shapes
-from .clips.clip import Clip
+from .asset import LEVELS, Level, Person, drawable, person, persons, shapes
+from .clip import Clip
 from .limbs import LIMBS, mass_shares
-from .measures import Measures, measures
-from .person import Person, drawable, person, persons
-from .posture import Posture
+from .posture import Measures, Posture, measures
 from .rigged.body_rows import BodyRows, body_rows
 from .rigged.rigged_body import RiggedBody
 from .wardrobe import Outfit, outfit, region_colors, worn_parts

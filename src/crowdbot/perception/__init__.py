@@ -4,15 +4,8 @@ Contracts: :class:`Detector`, :class:`Tracker` and :class:`ScanPredictor`.
 """
 
 from .camera import BoxDetector, Boxes, HogPeople, NetworkPeople
-from .cloud_clusters import CloudClusters
-from .cluster_kernels import hide_walls
-from .depth_clusters import DepthClusters
-from .detections import Coverage, Detections
-from .detector import Detector
-from .joint_association import JointProbabilisticDataAssociation
-from .lidar_clusters import LidarClusters
-from .nearest_neighbor_tracker import GlobalNearestNeighbor, InteractingMultipleModel
-from .predictor_motion import PredictorMotion
+from .clusters import CloudClusters, DepthClusters, LidarClusters, hide_walls
+from .detector import Coverage, Detections, Detector
 from .scan_network import NetworkFit, ScanNetwork, train_scan_network
 from .scan_prediction import (
     LastScan,
@@ -29,9 +22,13 @@ from .scan_prediction import (
     walk_straight,
 )
 from .track_forecast import predict_uncertain
-from .tracker import Tracker
-from .tracker_state import TrackerState
-from .tracks import Tracks
+from .tracker import Tracker, TrackerState, Tracks
+from .trackers import (
+    GlobalNearestNeighbor,
+    InteractingMultipleModel,
+    JointProbabilisticDataAssociation,
+    PredictorMotion,
+)
 
 __all__ = [
     "BoxDetector",

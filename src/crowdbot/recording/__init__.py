@@ -1,23 +1,19 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
-from .attachments import AttachedFile, SkippedAttachmentWarning, named_files
+from .attachments import AttachedFile, SkippedAttachmentWarning, named_files, write_trial_files
 from .episode_branch import branch
-from .episode_export import export
+from .episode_export import READING_TABLES, export, folder_of
 from .episode_reader import RecordedEpisode, iterate_steps, read_episode
 from .episode_repair import repair
 from .episode_replay import Replay, replay
-from .episode_rerun import EpisodeRerun, open_rerun
 from .episode_writer import Recorder
-from .image_export import folder_of
 from .keyframes import KeyframeWarning, keyframe_ticks
-from .link_frames import LinkFrames
 from .metadata import as_json, versions
-from .reading_tables import READING_TABLES
 from .recorded_run import episode_path, open_run, record, run
-from .recorded_simulation import RecordedSimulation
+from .recorded_simulation import EpisodeRerun, RecordedSimulation, open_rerun
+from .robot_messages import LinkFrames
 from .step_messages import StepMessage, StepMessages
 from .step_records import RecordedStep
-from .trial_files import write_trial_files
 
 __all__ = [
     "READING_TABLES",

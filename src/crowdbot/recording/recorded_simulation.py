@@ -1,20 +1,22 @@
-"""RecordedSimulation: the simulation of a recorded episode at any of its instants."""
+"""Recorded episodes that run again."""
 
 from __future__ import annotations
 
 import contextlib
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
+from typing import NamedTuple
 
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.simulation import EpisodeDigest, Simulation, SimulationRun, StopRequest
+from crowdbot.simulation import EpisodeDigest, OrderSource, Simulation, SimulationRun, StopRequest
+from crowdbot.trials import Trial
 
 from .attachments import unpack_attachments
 from .episode_reader import read_metadata
 from .keyframes import Keyframe, KeyframeWarning, keyframe_ticks, latest_keyframe
-from .provenance import DigestComparison, OrderReplay, Provenance, digests
+from .provenance import DigestComparison, OrderReplay, Provenance, digests, replay_decisions
 
 LATE = "the episode is simulated from its beginning"
 
@@ -198,3 +200,49 @@ def continue_from(
         return None
     comparison.digest = digest
     return simulation
+
+
+class EpisodeRerun(NamedTuple):
+    """The trial of an episode with its seed and its orders.
+
+    Fields:
+        trial, seed: the trial and its seed.
+        sources: the recorded orders.
+        prepare: to be called with a new simulation; decisions miss their deadline or hang as recorded.
+    """
+
+    trial: Trial
+    seed: int
+    sources: tuple[OrderSource, ...]
+    prepare: Callable[[Simulation], None]
+
+
+@contextlib.contextmanager
+def open_rerun(path: Path | str, *, folder: Path | None = None, trust: bool = False) -> Iterator[EpisodeRerun]:
+    """Return a context in which an episode can run again, with the files that it holds.
+
+    Args:
+        path: the episode, which is not a branch.
+        folder, trust: see :func:`crowdbot.recording.replay`.
+
+    Raises:
+        EpisodeError: the file cannot be read, is a branch, or a file of its trial is missing or not trusted.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.recording import record
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as out:
+    ...     summary = record(Trial(name="empty", duration=1.0, crowd=ORCA()), out=out)
+    ...     with open_rerun(f"{out}/episode.mcap") as rerun:
+    ...         rerun.trial.name, rerun.seed
+    ('empty', 0)
+    """
+    path = Path(path)
+    with unpack_attachments(path, read_metadata(path), folder, trust) as place:
+        provenance = Provenance.of(path, place.folder, trust)
+        if len(provenance.parts) > 1:
+            raise EpisodeError(f"{path} is a branch; render the episode from which it was made")
+        (part,) = provenance.parts
+        yield EpisodeRerun(
+            part.trial, part.seed, (OrderReplay(part.orders),), lambda one: replay_decisions(one, part.orders)
+        )

@@ -5,26 +5,21 @@ from .contract import check_sensor
 from .depth_camera import DepthCamera, DepthImage
 from .ground_truth_people import GroundTruthPeople, TrackedPeople
 from .imu import IMU, ImuReading, ImuState
-from .infrared import Infrared
 from .lens import ImageSource, Lens, distort_image
 from .lidar import Lidar2D, Scan, cast_plane, main_scan, main_scanner
 from .lidar3d import Lidar3D, PointCloud
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
-from .odometry.arcs import arc_between
-from .odometry.wheel_odometry import Odometry, OdometryState, WheelOdometry
-from .odometry.wheel_rotation import WheelGeometry, WheelRotation
 from .presets import PRESETS, SensorPreset, preset
-from .range_reading import RangeReading
+from .range_finders import Infrared, RangeReading, Ultrasound
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
-from .realism.exposed_camera import ExposedCamera
-from .realism.pulsed_lidar import PulsedLidar2D, PulsedScan
+from .realism import ExposedCamera, PulsedLidar2D, PulsedScan
 from .rgb_camera import RENDERERS, SAMPLE_COUNTS, RGBCamera, RgbImage, check_renderer
-from .schedule import SensorSchedule
-from .sensor import Reading, Sensor, join_readings, planar_pose, spatial_pose
-from .skins.skin_scans import triangles_one_by_one
+from .sensor import Reading, Sensor, SensorSchedule, join_readings, planar_pose, spatial_pose
+from .skin_scans import triangles_one_by_one
 from .state_rows import StateGroups, measure_rows, put_state_rows, take_state_rows
-from .ultrasound import Ultrasound
 from .view import SensorView
+from .wheel_odometry import Odometry, OdometryState, WheelOdometry, arc_between
+from .wheel_rotation import WheelGeometry, WheelRotation
 
 __all__ = [
     "FLOOR",

@@ -11,13 +11,12 @@ from typing import Any
 from crowdbot.core import UnknownName
 
 from .depth_camera import DepthCamera
-from .infrared import Infrared
 from .lidar import Lidar2D
 from .lidar3d import Lidar3D
 from .noise import Gaussian
-from .realism.pulsed_lidar import PulsedLidar2D
+from .range_finders import SLIM, Infrared, Ultrasound
+from .realism import PulsedLidar2D
 from .sensor import Sensor
-from .ultrasound import SLIM, Ultrasound
 
 ASSUMED = "assumed: "
 """Prefix of the source of an assumed value."""

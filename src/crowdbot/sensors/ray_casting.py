@@ -40,7 +40,7 @@ from crowdbot.typing import Floats, Ints
 
 from .beams import TURN, Beams, cell_columns, first_cells, hull_cells, sees_hull
 from .ray_shapes import FLOOR, NOTHING, PROP, RayShapes, collect_shapes
-from .skins.skin_casting import SkinCasting, skin_casting
+from .skin_casting import SkinCasting, skin_casting
 
 SKIN = -2
 """Index of the shape of the first triangle of skins; those of the others are below."""

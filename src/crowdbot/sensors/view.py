@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, tree
 
 from .lens import ImageSource
-from .odometry.wheel_rotation import WheelRotation
+from .wheel_rotation import WheelRotation
 
 
 @dataclass(frozen=True)

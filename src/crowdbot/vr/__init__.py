@@ -1,25 +1,34 @@
 """Virtual reality: a person in a headset moves an avatar of a running simulation."""
 
-from .avatar_contacts import AvatarContacts
-from .body_estimate import BodyEstimator, BodySize
-from .calibration_pose import BodyMeasure, measure_pose
+from .body_estimate import BodyEstimator, BodyMeasure, BodySize, measure_pose
 from .capture import Suit
-from .certificate import certificate_files, local_addresses, tls_context
-from .headset_access import session_of_token, token_of_session
-from .headset_recording import HeadsetClock, HeadsetRecord, HeadsetRecorder, read_headset_clock, read_headset_recording
-from .headset_sample import HeadsetSample
+from .headset_sample import (
+    HeadsetClock,
+    HeadsetRecord,
+    HeadsetRecorder,
+    HeadsetSample,
+    read_headset_clock,
+    read_headset_recording,
+)
 from .headset_stream import HeadsetStream, StreamSettings
-from .headset_window import HEADSET_COMMANDS, HeadsetWindow, headset_frame, pack_triples
 from .latency import ClockSync, HeadsetLatency, LatencyLog, read_headset_latency
-from .link_code import link_picture, link_text
 from .rigid_transform import RigidFit, RigidTransform, fit_rigid
-from .robot_stop import RobotStop
-from .room_limits import RoomLimits
-from .shared_rooms import RealRoom, SharedRooms
-from .trial_seats import TrialSeats
+from .server_address import certificate_files, link_picture, link_text, local_addresses, tls_context
+from .shared_rooms import RealRoom, RoomLimits, SharedRooms
+from .trial_seats import RobotStop, TrialSeats
 from .vr_desk import VrDesk
-from .vr_participant import VrParticipant
-from .vr_server import VR_DESKS, VrServer, with_captures
+from .vr_participant import AvatarContacts, VrParticipant
+from .vr_server import (
+    HEADSET_COMMANDS,
+    VR_DESKS,
+    HeadsetWindow,
+    VrServer,
+    headset_frame,
+    pack_triples,
+    session_of_token,
+    token_of_session,
+    with_captures,
+)
 
 __all__ = [
     "HEADSET_COMMANDS",

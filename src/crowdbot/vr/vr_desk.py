@@ -21,17 +21,25 @@ from crowdbot.simulation import OrderSource, Simulation
 from crowdbot.trials import Trial, add_element
 from crowdbot.web import AppSession, Desk, DeskWindows, ExperimentDesk, LiveRun, Resource, SimulatorDesk
 
-from .body_estimate import BodySize
-from .calibration_pose import BodyMeasure, measure_pose
+from .body_estimate import BodyMeasure, BodySize, measure_pose
 from .capture import Suit
-from .headset_recording import HeadsetRecorder
+from .headset_sample import HeadsetRecorder
 from .headset_stream import StreamSettings
-from .link_code import link_picture
 from .rigid_transform import RigidTransform
-from .robot_stop import RobotStop, hold_sources, linked_robots, movable_robots, source_problems
-from .room_limits import RoomLimits
-from .shared_rooms import PERSON, SharedRooms
-from .trial_seats import TrialSeats, external_avatars, free_place, link_captures, with_bodies
+from .server_address import link_picture
+from .shared_rooms import PERSON, RoomLimits, SharedRooms
+from .trial_seats import (
+    RobotStop,
+    TrialSeats,
+    external_avatars,
+    free_place,
+    hold_sources,
+    link_captures,
+    linked_robots,
+    movable_robots,
+    source_problems,
+    with_bodies,
+)
 from .vr_participant import VrParticipant, avatar_body
 
 TICK = 0.1

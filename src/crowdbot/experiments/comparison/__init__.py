@@ -1,12 +1,31 @@
 """Comparison of conditions within participants: measures of trials, paired tests, report."""
 
-from .paired_test import PairedTest, paired_test
-from .path_figure import draw_paths
-from .study import COLORS, EmulatedPerson, Measure, RecordedTrial, Study, TrialMeasures
-from .study_analysis import LOOKING, SETTLING, StudyAnalysis, analyse_study, experiment_of, rating_measures
-from .study_report import measures_figure, write_study_report
-from .trial_latency import LATENCY_FILE, TrialLatency, read_trial_latency, write_trial_latency
-from .view_track import ViewTrack, looking_shares, view_track
+from .study import (
+    COLORS,
+    EmulatedPerson,
+    Measure,
+    RecordedTrial,
+    Study,
+    TrialMeasures,
+    ViewTrack,
+    looking_shares,
+    view_track,
+)
+from .study_analysis import (
+    LATENCY_FILE,
+    LOOKING,
+    SETTLING,
+    PairedTest,
+    StudyAnalysis,
+    TrialLatency,
+    analyse_study,
+    experiment_of,
+    paired_test,
+    rating_measures,
+    read_trial_latency,
+    write_trial_latency,
+)
+from .study_report import draw_paths, measures_figure, write_study_report
 
 __all__ = [
     "COLORS",

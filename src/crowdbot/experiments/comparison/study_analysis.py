@@ -1,17 +1,19 @@
-"""Analysis of sessions: the measures of each trial, and tests between the conditions within participants."""
+"""Analysis of a study: measures of trials, latencies, and paired tests of conditions."""
 
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import CrowdbotError, EpisodeError, InputError
+from crowdbot.core import CrowdbotError, EpisodeError, InputError, explain_write_errors
 from crowdbot.experiments.emulation import participant_agent
 from crowdbot.experiments.experiment import Experiment
 from crowdbot.experiments.parser import parse_experiment
@@ -20,12 +22,147 @@ from crowdbot.experiments.session_folder import COPY, folder_of
 from crowdbot.experiments.session_summary import summary
 from crowdbot.metrics import correct_p_values
 from crowdbot.recording import read_episode
-from crowdbot.trials import parse_trial, read_trial_bytes
+from crowdbot.trials import Avatar, parse_trial, read_trial_bytes
 
-from .paired_test import PairedTest, paired_test
-from .study import Measure, RecordedTrial, Study, TrialMeasures
-from .trial_latency import LATENCY_FILE, read_trial_latency
-from .view_track import looking_shares
+from .study import Measure, RecordedTrial, Study, TrialMeasures, looking_shares
+
+
+class PairedTest(NamedTuple):
+    """The difference of two conditions, second minus first, within participants.
+
+    Fields:
+        participants: number of participants with both conditions.
+        difference: mean difference.
+        low, high: 95 % confidence interval of the difference.
+        p_value: of the paired t-test, or of the sign test for shares; two-sided.
+        effect: Cohen's d_z, the mean in relation to the standard deviation of the differences.
+        bound: largest difference that counts as equivalent.
+        equivalence: p-value of the two one-sided tests; below 0.05 the conditions are equivalent within the bound.
+    """
+
+    participants: int
+    difference: float
+    low: float
+    high: float
+    p_value: float
+    effect: float
+    bound: float
+    equivalence: float
+
+    @property
+    def equivalent(self) -> bool:
+        """Whether the difference is smaller than the bound, at a level of 5 %."""
+        return self.equivalence < 0.05
+
+
+def paired_test(first: ArrayLike, second: ArrayLike, bound: float, *, binary: bool = False) -> PairedTest:
+    """Compare two conditions of the same participants.
+
+    Pairs with a value that is not finite are left out. With fewer than 3 pairs, or no spread of the differences, only
+    the mean is known. Shares of binary outcomes get the exact sign test over the participants who differ, which is the
+    exact test of McNemar for one trial in each condition; the normal approximation of the interval and of the
+    equivalence needs many participants.
+
+    Source: Lakens (2013), Calculating and reporting effect sizes, doi 10.3389/fpsyg.2013.00863; Schuirmann (1987), A
+    comparison of the two one-sided tests procedure, doi 10.1007/BF01068419; McNemar (1947), doi 10.1007/BF02295996.
+
+    Args:
+        first, second: ``[N]`` values of N participants.
+        bound: largest difference that counts as equivalent, above 0.
+        binary: whether the values are shares of binary outcomes.
+
+    Raises:
+        InputError: the shapes differ, or the bound is not above 0.
+
+    >>> test = paired_test([1.0, 1.2, 0.9, 1.1, 1.0], [1.1, 1.25, 1.05, 1.1, 1.1], bound=0.3)
+    >>> test.participants, round(test.difference, 3), round(test.effect, 2), test.equivalent
+    (5, 0.08, 1.4, True)
+    """
+    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    if one.ndim != 1 or one.shape != other.shape:
+        raise InputError(f"the values have the shapes {one.shape} and {other.shape}; both must be [N]")
+    if not bound > 0.0:
+        raise InputError(f"bound = {bound} must be above 0")
+    gap = (other - one)[np.isfinite(one) & np.isfinite(other)]
+    count, mean = len(gap), float(gap.mean()) if len(gap) else math.nan
+    spread = float(gap.std(ddof=1)) if count > 2 else 0.0
+    if spread == 0.0:
+        return PairedTest(count, mean, math.nan, math.nan, math.nan, math.nan, bound, math.nan)
+    from scipy import stats  # takes longer to import than the app to start
+
+    error, law = spread / math.sqrt(count), stats.t(count - 1)
+    half = float(law.ppf(0.975)) * error
+    p_value = _sign_test(gap) if binary else 2.0 * float(law.sf(abs(mean) / error))
+    equivalence = max(float(law.sf((mean + bound) / error)), float(law.sf((bound - mean) / error)))
+    return PairedTest(count, mean, mean - half, mean + half, p_value, mean / spread, bound, equivalence)
+
+
+def _sign_test(gap: NDArray[np.float64]) -> float:
+    """Return the two-sided p-value of the exact sign test; pairs without a difference do not count."""
+    from scipy import stats
+
+    up, down = int((gap > 0.0).sum()), int((gap < 0.0).sum())
+    return float(stats.binomtest(up, up + down, 0.5).pvalue) if up + down else 1.0
+
+
+LATENCY_FILE = "latency.json"
+
+
+class TrialLatency(NamedTuple):
+    """Latencies of a trial [s] with all added delays; None: unknown.
+
+    Fields:
+        motion, motion_p95: age of the pose of the participant when a step of the simulation uses it: median, and 95th
+            percentile.
+        picture, picture_p95: age of a state of the simulation when the headset begins to draw it.
+        dropped: pictures that were not drawn in time.
+        lost: messages of the headset that did not arrive.
+    """
+
+    motion: float | None = None
+    motion_p95: float | None = None
+    picture: float | None = None
+    picture_p95: float | None = None
+    dropped: int = 0
+    lost: int = 0
+
+
+def write_trial_latency(folder: Path, latencies: Mapping[str, TrialLatency]) -> None:
+    """Write latencies by the names of the avatars to the folder of a trial.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    text = json.dumps({name: one._asdict() for name, one in latencies.items()}, indent=1, allow_nan=False)
+    with explain_write_errors(folder / LATENCY_FILE):
+        (folder / LATENCY_FILE).write_text(text + "\n", encoding="utf-8")
+
+
+def read_trial_latency(folder: Path, avatar: Avatar) -> TrialLatency:
+    """Return the latencies of the participant who moved an avatar in a trial.
+
+    Without a headset, the motion is as late as the ``delay`` of the avatar, and the picture is reality.
+
+    Raises:
+        InputError: the file is damaged.
+
+    >>> read_trial_latency(Path("nowhere"), Avatar(name="guest", source="external", x=0, y=0, delay=0.08)).motion
+    0.08
+    """
+    path = folder / LATENCY_FILE
+    if not path.is_file():
+        return TrialLatency(avatar.delay, avatar.delay, 0.0, 0.0)
+    try:
+        given = json.loads(path.read_text(encoding="utf-8")).get(avatar.name)
+        if given is None:
+            return TrialLatency(avatar.delay, avatar.delay, 0.0, 0.0)
+        numbers = [given[name] for name in TrialLatency._fields]
+    except (OSError, ValueError, AttributeError, KeyError, TypeError) as error:
+        raise InputError(f"{path} is damaged: {error!r}; delete it to analyse the trial without latencies") from None
+    if not all(one is None or (isinstance(one, int | float) and math.isfinite(one)) for one in numbers):
+        raise InputError(f"{path} is damaged: a latency is not a finite number")
+    return TrialLatency(*numbers)
+
 
 SETTLING = 2.0
 """Time at the start of a trial that is left out of steady motions [s]."""

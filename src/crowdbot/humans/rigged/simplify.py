@@ -1,4 +1,6 @@
-"""Levels of detail of a character: dense meshes by clusters of points, coarser levels edge by edge.
+"""Levels of detail of a character.
+
+Source: Garland and Heckbert 1997, Surface simplification using quadric error metrics, doi:10.1145/258734.258849.
 
 Source of the clusters: Rossignac and Borrel 1993, Multi-resolution 3D approximations for rendering complex scenes,
 doi:10.1007/978-3-642-78114-8_29.
@@ -6,6 +8,7 @@ doi:10.1007/978-3-642-78114-8_29.
 
 from __future__ import annotations
 
+import heapq
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +17,169 @@ from numpy.typing import NDArray
 from crowdbot.humans.asset import shapes
 from crowdbot.typing import Floats, Ints
 
-from .edge_collapse import EdgeCollapse
 from .rigged_body import RiggedLevel
+
+Point = tuple[float, ...]
+BORDER = 30.0
+"""Weight of planes that hold the lines between labels, over those of the faces."""
+
+
+class EdgeCollapse:
+    """Moves points into neighbours, so that all that stay are old ones.
+
+    Lines between labels and open borders are held: their points move along them only, ends and forks stay.
+
+    Args:
+        points: ``[V, 3]`` [m].
+        faces: ``[F, 3]``.
+        label: label of each triangle ``[F]``.
+        care: weight of the faces of each point ``[V]``.
+    """
+
+    def __init__(self, points: Floats, faces: Ints, label: Ints, care: Floats) -> None:
+        self.p: list[Point] = [tuple(x) for x in points.tolist()]
+        self.faces: dict[int, list[int]] = dict(enumerate(faces.tolist()))
+        self.label: list[int] = label.tolist()
+        self.of: list[set[int]] = [set() for _ in self.p]
+        for f, face in self.faces.items():
+            for v in face:
+                self.of[v].add(f)
+        self.line: list[set[int]] = [set() for _ in self.p]
+        self.quadric: list[Point] = [tuple(q) for q in self._quadrics(points, faces, care).tolist()]
+        self.version = [0] * len(self.p)
+        self.heap: list[tuple[float, int, int, int, int]] = []
+        for v in range(len(self.p)):
+            self._push(v)
+
+    def _quadrics(self, points: Floats, faces: Ints, care: Floats) -> Floats:
+        """Return the quadrics ``[V, 10]`` of all points, and note the lines that are held."""
+        found = np.zeros((len(points), 10))
+        a, b, c = (points[faces[:, k]] for k in range(3))
+        normal = np.cross(b - a, c - a)
+        size = np.linalg.norm(normal, axis=1, keepdims=True)
+        normal = normal / np.maximum(size, 1e-12)
+        for k in range(3):
+            weight = size[:, 0] * care[faces[:, k]]
+            np.add.at(found, faces[:, k], weight[:, None] * _planes(normal, a))
+        edges: dict[tuple[int, int], list[int]] = {}
+        for f, face in self.faces.items():
+            for k in range(3):
+                i, j = face[k], face[(k + 1) % 3]
+                edges.setdefault((min(i, j), max(i, j)), []).append(f)
+        for (i, j), own in edges.items():
+            if len(own) == 2 and self.label[own[0]] == self.label[own[1]]:
+                continue
+            self.line[i].add(j)
+            self.line[j].add(i)
+            edge = points[j] - points[i]
+            for f in own:
+                aside = np.cross(edge, normal[f])
+                long = np.linalg.norm(aside)
+                if long > 1e-12:
+                    plane = _planes((aside / long)[None], points[i][None])[0] * BORDER * float(edge @ edge)
+                    found[i] += plane
+                    found[j] += plane
+        return found
+
+    def _around(self, v: int) -> set[int]:
+        return {w for f in self.of[v] for w in self.faces[f]} - {v}
+
+    def _push(self, v: int) -> None:
+        """Note the best way of a point into a neighbour."""
+        self.version[v] += 1
+        fixed = self.line[v]
+        if fixed and len(fixed) != 2:
+            return
+        best = None
+        for w in fixed or self._around(v):
+            cost = _error(self.quadric[v], self.p[w]) + _error(self.quadric[w], self.p[w])
+            far = sum((x - y) ** 2 for x, y in zip(self.p[v], self.p[w], strict=True))
+            cost += 1e-9 * far
+            if (best is None or cost < best[0]) and self._allowed(v, w):
+                best = (cost, w)
+        if best is not None:
+            heapq.heappush(self.heap, (best[0], v, self.version[v], best[1], self.version[best[1]]))
+
+    def _allowed(self, v: int, w: int) -> bool:
+        shared = self.of[v] & self.of[w]
+        common = self._around(v) & self._around(w)
+        if len(common) != len(shared) or not shared:
+            return False  # the surface would close on itself
+        if self.line[v] and len(self.line[v] & self.line[w]) > 0:
+            return False  # a ring of three stays one
+        if any(len(self.of[u]) <= 3 and not self.line[u] for u in common):
+            return False
+        for f in self.of[v] - shared:
+            before = [self.p[u] for u in self.faces[f]]
+            after = [self.p[w if u == v else u] for u in self.faces[f]]
+            n, m = _cross(before), _cross(after)
+            dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
+            size = ((n[0] ** 2 + n[1] ** 2 + n[2] ** 2) * (m[0] ** 2 + m[1] ** 2 + m[2] ** 2)) ** 0.5
+            if dot < 0.15 * size or size < 1e-18:
+                return False
+        return True
+
+    def collapse(self, count: int) -> None:
+        """Collapse edges until ``count`` triangles are left, or as far as it goes."""
+        while len(self.faces) > count and self.heap:
+            _, v, own, w, other = heapq.heappop(self.heap)
+            if own != self.version[v]:
+                continue
+            if other != self.version[w] or not self.of[w] or not self._allowed(v, w):
+                self._push(v)
+                continue
+            self._merge(v, w)
+
+    def _merge(self, v: int, w: int) -> None:
+        near = self._around(v) | self._around(w)
+        for f in self.of[v] & self.of[w]:
+            for u in self.faces.pop(f):
+                self.of[u].discard(f)
+        for f in self.of[v]:
+            self.faces[f] = [w if u == v else u for u in self.faces[f]]
+            self.of[w].add(f)
+        self.of[v] = set()
+        self.quadric[w] = tuple(x + y for x, y in zip(self.quadric[v], self.quadric[w], strict=True))
+        for u in self.line[v]:
+            self.line[u].discard(v)
+            if u != w:
+                self.line[u].add(w)
+                self.line[w].add(u)
+        self.line[v] = set()
+        self.version[v] += 1
+        for u in near | {w}:
+            if self.of[u]:
+                self._push(u)
+
+    def remaining(self) -> tuple[Ints, Ints]:
+        """Return the numbers of the triangles that are left ``[F]``, and their points ``[F, 3]``."""
+        order = sorted(self.faces)
+        corners = np.array([self.faces[f] for f in order], dtype=np.int64).reshape(-1, 3)
+        return np.array(order, dtype=np.int64), corners
+
+
+def _planes(normal: Floats, point: Floats) -> Floats:
+    """Return the quadrics ``[N, 10]`` of planes."""
+    a, b, c = normal.T
+    d = -(normal * point).sum(axis=1)
+    return np.stack([a * a, a * b, a * c, a * d, b * b, b * c, b * d, c * c, c * d, d * d], axis=1)
+
+
+def _error(q: Point, p: Point) -> float:
+    x, y, z = p
+    return (
+        x * (q[0] * x + 2 * (q[1] * y + q[2] * z + q[3]))
+        + y * (q[4] * y + 2 * (q[5] * z + q[6]))
+        + z * (q[7] * z + 2 * q[8])
+        + q[9]
+    )
+
+
+def _cross(t: list[Point]) -> Point:
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = t
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+
 
 TRIANGLES = (30_000, 3000, 900)
 """Largest number of triangles of each level of detail."""

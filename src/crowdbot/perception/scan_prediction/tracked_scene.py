@@ -10,16 +10,14 @@ import numpy as np
 
 from crowdbot.core import Pose, check_number, stream
 from crowdbot.perception.detector import Detector
-from crowdbot.perception.nearest_neighbor_tracker import GlobalNearestNeighbor
 from crowdbot.perception.scan_network import ScanNetwork
-from crowdbot.perception.tracker import Tracker
-from crowdbot.perception.tracks import Tracks
+from crowdbot.perception.tracker import Tracker, Tracks
+from crowdbot.perception.trackers import GlobalNearestNeighbor
 from crowdbot.sensors import Scan, cast_plane
 from crowdbot.typing import Floats
 
-from .scan_forecast import ScanForecast
-from .scan_predictor import ScanPredictor, continue_motion
-from .static_segments import static_segments
+from .last_scan import static_segments
+from .scan_predictor import ScanForecast, ScanPredictor, continue_motion
 
 MARGIN = 0.15
 """Points this far [m] outside the body of a person still belong to the person."""

@@ -1,1 +1,0 @@
-"""Hashes in kernels."""

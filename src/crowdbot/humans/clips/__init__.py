@@ -1,1 +1,0 @@
-"""Motion beside the gait: poses of activities, and clips from motion capture."""

@@ -1,1 +1,0 @@
-"""Postures of people who lose their balance."""

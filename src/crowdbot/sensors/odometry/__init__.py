@@ -1,1 +1,0 @@
-"""Wheel odometry: the rotation of wheels, and the pose that a robot integrates from it."""

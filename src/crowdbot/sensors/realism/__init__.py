@@ -1,1 +1,0 @@
-"""Sensors with the effects of real ones: pulsed laser scanners, and cameras with exposure and a rolling shutter."""
