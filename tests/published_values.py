@@ -19,6 +19,7 @@ import numpy as np
 
 HERE = Path(__file__).parent
 FILE = "published_values.json"
+ADVICE = "if the change is meant: python tools/fix.py published-values, and a line in CHANGELOG.md"
 
 
 def plain(value: Any) -> Any:
@@ -139,10 +140,11 @@ def lines(value: Any, path: str = "") -> list[str]:
 
 
 def differences(room: str) -> list[str]:
-    """Return the values of a room that are not those in its file, ``-`` for the file and ``+`` for today."""
+    """Return what to do and the values of a room that differ from its file: ``-`` in the file, ``+`` today."""
     kept = lines(json.loads((HERE / room / FILE).read_text(encoding="utf-8")))
     today = lines(json.loads(json.dumps(ROOMS[room]())))
-    return sorted([f"- {line}" for line in set(kept) - set(today)] + [f"+ {line}" for line in set(today) - set(kept)])
+    found = sorted([f"- {line}" for line in set(kept) - set(today)] + [f"+ {line}" for line in set(today) - set(kept)])
+    return [ADVICE, *found] if found else []
 
 
 def main() -> None:

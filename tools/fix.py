@@ -153,6 +153,13 @@ def build_page() -> None:
         raise StepFailure(done.stderr.strip())
 
 
+def write_readings() -> None:
+    """Write the message types of sensor readings into the page on recordings."""
+    from crowdbot.messages import reading_table
+
+    replace_once("docs/reference/recording.md", r"^\| reading \| sensor \|.*\n(?:\|.*\n)+", reading_table())
+
+
 def files_with_inputs() -> list[str]:
     """Return the test files that may ask for recordings or robot files: they, or a helper beside them, name these."""
     words = re.compile(r"\b(recordings|urdf)\b")
@@ -209,6 +216,7 @@ STEPS = (
          functools.partial(command, "-m", "crowdbot", "new", "schema", SCHEMA, "--force")),
     page_step("crowd-models", "reference of crowd models", "docs/reference/crowd-models.md", "tools/models.py"),
     page_step("robot-interface", "topics and services of a trial", INTERFACE, "tools/robot_interface.py"),
+    Step("readings", "message types of sensor readings", ("docs/reference/recording.md",), write_readings),
     Step("metrics", "reference of metrics", (METRICS,),
          functools.partial(command, "-m", "crowdbot.metrics.social.page", METRICS)),
     Step("navigators", "page of navigators, from the rows that it has", ("docs/results/navigators.md",),

@@ -226,8 +226,6 @@ def test_every_noise_composes_on_every_range_sensor(name):
 
 
 def test_the_room_shows_its_contracts():
-    expected = {"lidar2d", "lidar3d", "ultrasound", "infrared", "depth-camera", "rgbcamera", "bumper", "imu"}
-    assert expected | {"wheel-odometry", "ground-truth-people", "pulsed-lidar2d", "exposed-camera"} == set(SENSORS)
     assert set(NOISES) == set(EXAMPLES)
     assert all(hasattr(sensors, name) for name in sensors.__all__)
     assert len(set(sensors.__all__)) == len(sensors.__all__)

@@ -21,7 +21,7 @@ from .marker_array import markers
 from .message_store import Messages
 from .point_clouds import points_in
 from .reading_codecs import CODECS, KIND, REST, codec_of, decode_reading, encode_reading, unencoded_fields
-from .reading_topics import reading_topics
+from .reading_topics import reading_table, reading_topics
 from .ros1 import Ros1Messages
 
 __all__ = [
@@ -58,6 +58,7 @@ __all__ = [
     "read_fall_poses",
     "read_falls",
     "read_forces",
+    "reading_table",
     "reading_topics",
     "unencoded_fields",
     "unpack_arrays",

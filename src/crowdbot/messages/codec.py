@@ -59,6 +59,8 @@ class Codec:
     """Conversion of a class of readings to messages and back.
 
     Fields:
+        types: types of the standard messages by suffix of the topic.
+        about: what the messages hold beyond their type, for the reference page.
         write: returns standard messages with the suffixes of their topics.
         read: returns the fields in standard messages by suffix; receives the remaining fields, too.
         rest: fields that the standard messages do not contain.
@@ -66,6 +68,8 @@ class Codec:
         frames: static frames of the messages by robot and topic: parent, child, and pose of the child.
     """
 
+    types: Mapping[str, str]
+    about: str
     write: Callable[[Messages, MeasuredReading], Rows]
     read: Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]]
     rest: tuple[str, ...] = ()

@@ -122,6 +122,15 @@ def _frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
     return [(topic, topic + OPTICAL, SpatialPose.of((0.0, 0.0, 0.0), -0.5 * math.pi, 0.0, -0.5 * math.pi))]
 
 
-depth_codec = Codec(_write_depth, _read_depth, rest=("part",), frames=_frames)
-picture_codec = Codec(_write_picture, _read_picture, frames=_frames)
+IMAGES = {
+    "/image": "sensor_msgs/msg/Image",
+    "/labels": "sensor_msgs/msg/Image",
+    "/camera_info": "sensor_msgs/msg/CameraInfo",
+}
+depth_codec = Codec(
+    IMAGES, "`image` is 32FC1, `labels` 32SC1 with agent ids", _write_depth, _read_depth, rest=("part",), frames=_frames
+)
+picture_codec = Codec(
+    IMAGES, "`image` is rgb8, `labels` 32SC1 with agent ids", _write_picture, _read_picture, frames=_frames
+)
 """Codec of readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` is ``[E, H, W]`` or None."""

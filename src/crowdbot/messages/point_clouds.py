@@ -123,5 +123,17 @@ def _read_touch(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str,
     }
 
 
-cloud_codec = Codec(_write_cloud, _read_cloud, rest=("elevation", "azimuth", "part"))
-touch_codec = Codec(_write_touch, _read_touch)
+POINT_CLOUD = {"": "sensor_msgs/msg/PointCloud2"}
+cloud_codec = Codec(
+    POINT_CLOUD,
+    "x, y, z, intensity (cosine of incidence), range, label (agent hit), ring",
+    _write_cloud,
+    _read_cloud,
+    rest=("elevation", "azimuth", "part"),
+)
+touch_codec = Codec(
+    POINT_CLOUD,
+    "one point per sector, NaN without contact, as `kobuki_bumper2pc` writes it",
+    _write_touch,
+    _read_touch,
+)

@@ -4,18 +4,8 @@ A reading is stored as messages of standard ROS types and one ``crowdbot_msgs/Re
 and fields that the standard types do not contain (labels of body parts, biases, true velocities). Fields that a
 standard type stores in 32 bits have that precision when read back.
 
-=============== =======================================================================================================
-``Scan``        ``sensor_msgs/LaserScan``; intensities contain the id of the agent hit
-``PulsedScan``  ``sensor_msgs/LaserScan``; intensities contain the received power
-``Cloud``       ``sensor_msgs/PointCloud2``: x, y, z, intensity (cosine of incidence), range, label (agent hit), ring
-``Echo``        ``sensor_msgs/Range``
-``DepthImage``  ``sensor_msgs/Image`` 32FC1 on ``image`` and 32SC1 (agent ids) on ``labels``, ``CameraInfo``
-``Inertial``    ``sensor_msgs/Imu``
-``Odometry``    ``nav_msgs/Odometry``, in the frame ``<robot>/odom``
-``Touch``       ``sensor_msgs/PointCloud2``, one point per sector, NaN without contact; ROS has no type for
-                bumpers, and navigation stacks use this one (see ``kobuki_bumper2pc``)
-``Tracked``     ``people_msgs/People`` in the frame of the sensor
-=============== =======================================================================================================
+Add a class of readings with one row in :data:`CODECS`. The table in ``docs/reference/recording.md``, the types on the
+topics of a sensor and the bridges use this row.
 """
 
 from __future__ import annotations
@@ -267,17 +257,40 @@ def _read_tracked(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
     }
 
 
+LASER_SCAN = {"": "sensor_msgs/msg/LaserScan"}
 CODECS: dict[type[Reading], Codec] = {
-    Scan: Codec(_write_scan, _read_scan, rest=("cos_incidence", "part"), short=("facing",)),
+    Scan: Codec(
+        LASER_SCAN, "intensities hold the agent hit", _write_scan, _read_scan, ("cos_incidence", "part"), ("facing",)
+    ),
     PointCloud: cloud_codec,
-    RangeReading: Codec(_write_echo, _read_echo, rest=("hit", "part", "direction")),
+    RangeReading: Codec({"": "sensor_msgs/msg/Range"}, "", _write_echo, _read_echo, rest=("hit", "part", "direction")),
     DepthImage: depth_codec,
-    ImuReading: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
-    Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks")),
+    ImuReading: Codec(
+        {"": "sensor_msgs/msg/Imu"},
+        "no orientation",
+        _write_inertial,
+        _read_inertial,
+        rest=("velocity", "acceleration_bias", "turn_bias"),
+    ),
+    Odometry: Codec(
+        {"": "nav_msgs/msg/Odometry"},
+        "in the frame `<robot>/odom`",
+        _write_odometry,
+        _read_odometry,
+        rest=("estimate", "travelled", "ticks"),
+    ),
     RgbImage: picture_codec,
     BumperReading: touch_codec,
-    PulsedScan: Codec(_write_pulses, _read_pulses, rest=("hit", "cos_incidence", "part", "beam_time", "echoes")),
-    TrackedPeople: Codec(_write_tracked, _read_tracked, rest=("present",)),
+    PulsedScan: Codec(
+        LASER_SCAN,
+        "intensities hold the received power",
+        _write_pulses,
+        _read_pulses,
+        rest=("hit", "cos_incidence", "part", "beam_time", "echoes"),
+    ),
+    TrackedPeople: Codec(
+        {"": "people_msgs/msg/People"}, "in the frame of the sensor", _write_tracked, _read_tracked, rest=("present",)
+    ),
 }
 """Codecs by class of readings; a subclass uses the codec of its parent."""
 

@@ -1,44 +1,14 @@
-"""Message types on the topics of a sensor, known before its first reading."""
+"""Message types on the topics of a sensor, known before its first reading, and their reference table."""
 
 from __future__ import annotations
 
 import re
 
-from crowdbot.sensors import (
-    BumperReading,
-    DepthImage,
-    ImuReading,
-    Odometry,
-    PointCloud,
-    PulsedScan,
-    RangeReading,
-    Reading,
-    RgbImage,
-    Scan,
-    Sensor,
-    TrackedPeople,
-)
+from crowdbot import sensors
+from crowdbot.core import builtin_classes
+from crowdbot.sensors import Sensor
 
 from .reading_codecs import CODECS, KIND, REST
-
-IMAGES = {
-    "/image": "sensor_msgs/msg/Image",
-    "/labels": "sensor_msgs/msg/Image",
-    "/camera_info": "sensor_msgs/msg/CameraInfo",
-}
-KINDS: dict[type[Reading], dict[str, str]] = {
-    Scan: {"": "sensor_msgs/msg/LaserScan"},
-    PointCloud: {"": "sensor_msgs/msg/PointCloud2"},
-    RangeReading: {"": "sensor_msgs/msg/Range"},
-    DepthImage: IMAGES,
-    ImuReading: {"": "sensor_msgs/msg/Imu"},
-    Odometry: {"": "nav_msgs/msg/Odometry"},
-    RgbImage: IMAGES,
-    BumperReading: {"": "sensor_msgs/msg/PointCloud2"},
-    PulsedScan: {"": "sensor_msgs/msg/LaserScan"},
-    TrackedPeople: {"": "people_msgs/msg/People"},
-}
-"""Message types by suffix of the topic, for each class of readings in the table of codecs."""
 
 
 def reading_topics(sensor: Sensor) -> dict[str, str]:
@@ -48,11 +18,37 @@ def reading_topics(sensor: Sensor) -> dict[str, str]:
     >>> reading_topics(Lidar2D())
     {'': 'sensor_msgs/msg/LaserScan', '/reading': 'crowdbot_msgs/msg/Reading'}
     """
-    names = {cls.__name__: cls for cls in CODECS}
-    for kind in type(sensor).__mro__:
-        told = vars(kind).get("measure")
-        words = re.findall(r"\w+", str(getattr(told, "__annotations__", {}).get("return", "")))
+    name = _reading_class(type(sensor))
+    return next(({**codec.types, REST: KIND} for cls, codec in CODECS.items() if cls.__name__ == name), {})
+
+
+def _reading_class(sensor: type[Sensor]) -> str:
+    """Return the class of readings that the annotation of ``measure`` names, or an empty text."""
+    known = {cls.__name__ for cls in CODECS}
+    for kind in sensor.__mro__:
+        measure = vars(kind).get("measure")
+        words: list[str] = re.findall(r"\w+", str(getattr(measure, "__annotations__", {}).get("return", "")))
         for word in words:
-            if word in names:
-                return {**KINDS[names[word]], REST: KIND}
-    return {}
+            if word in known:
+                return word
+    return ""
+
+
+def reading_table() -> str:
+    """Return the messages of each class of readings and the sensors that return it, as a table in Markdown.
+
+    >>> reading_table().splitlines()[2]
+    '| `Scan` | lidar2d | sensor_msgs/LaserScan | intensities hold the agent hit |'
+    """
+    names: dict[str, list[str]] = {}
+    for name, kind in builtin_classes(sensors, Sensor).items():
+        names.setdefault(_reading_class(kind), []).append(name)
+    rows = ["| reading | sensor | type | content |", "|---|---|---|---|"]
+    for cls, codec in CODECS.items():
+        types = ", ".join(
+            kind.replace("/msg/", "/") + (f" on `{suffix[1:]}`" if suffix else "")
+            for suffix, kind in codec.types.items()
+        )
+        kinds = ", ".join(sorted(names.get(cls.__name__, [])))
+        rows.append(f"| `{cls.__name__}` | {kinds} | {types} | {codec.about} |")
+    return "\n".join(rows) + "\n"
