@@ -51,6 +51,11 @@ class Counter(Desk):
         raise ZeroDivisionError("a bug")
 
     @command
+    def answer(self, kind: str) -> object:
+        values = {"nan": float("nan"), "infinity": [1.0, {"far": -float("inf")}], "array": np.zeros(2)}
+        return {"value": values[kind]}
+
+    @command
     def burst(self, count: int) -> None:
         for number in range(count):
             self.session.show(StateFrame("count", float(number), {"n": np.array([number], dtype=np.int32)}))
@@ -144,6 +149,31 @@ def test_wrong_calls_are_answered_with_a_sentence(tmp_path, call, arguments, sen
     wrong, right = serve(tmp_path, talk)
     assert sentence in wrong["error"]
     assert right["result"] == 1  # the window goes on
+
+
+@pytest.mark.live
+@pytest.mark.parametrize(
+    ("kind", "answer"),
+    [
+        ("nan", {"id": 1, "result": {"value": None}}),
+        ("infinity", {"id": 1, "result": {"value": [1.0, {"far": None}]}}),
+        (
+            "array",
+            {
+                "id": 1,
+                "error": "counter.answer: TypeError: Object of type ndarray is not JSON serializable; this is a bug in "
+                "crowdbot or in your code",
+            },
+        ),
+    ],
+)
+def test_every_command_is_answered_even_with_what_json_cannot_hold(tmp_path, kind, answer):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            assert await ask(socket, "counter.answer", kind=kind) == answer
+            assert (await ask(socket, "counter.add"))["result"] == 1
+
+    serve(tmp_path, talk)
 
 
 @pytest.mark.live

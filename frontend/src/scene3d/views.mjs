@@ -111,6 +111,7 @@ export class Views {
     }
     this.controls.target.copy(middle);
     this.controls.update();
+    this._last = null; // or the way from the robot of the trial before would be added
   }
 
   /** In the first person how the head is turned; beside somebody the way from the target to the camera; else also the target. */

@@ -9,9 +9,10 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from crowdbot.core import CrowdbotError, InputError
+from crowdbot.core import CrowdbotError
 
 from .app_session import AppSession
+from .plain_json import clean_json
 from .state_frame import StateFrame
 
 CREDIT = 2
@@ -25,10 +26,10 @@ CALLS = 32
 class Window:
     """One browser window of a session.
 
-    Text messages are JSON. The window calls commands with ``{"id": 1, "call": "desk.command", "args": {...}}`` and gets
-    ``{"id": 1, "result": ...}`` or ``{"id": 1, "error": "sentence"}``. It confirms each state frame with
-    ``{"drawn": sequence}``; no more than two unconfirmed frames are sent, so that a slow window sees the newest state
-    and never slows the run.
+    Text messages are JSON; numbers that are not finite are null. The window calls commands with
+    ``{"id": 1, "call": "desk.command", "args": {...}}`` and gets ``{"id": 1, "result": ...}`` or
+    ``{"id": 1, "error": "sentence"}``. It confirms each state frame with ``{"drawn": sequence}``; no more than two
+    unconfirmed frames are sent, so that a slow window sees the newest state and never slows the run.
 
     Args:
         session: the session that the window shows.
@@ -105,15 +106,18 @@ class Window:
         except OSError as error:
             answer = {"id": number, "error": f"{error.filename or 'file'}: {error.strerror or error}"}
         except Exception as error:  # a bug must reach the user, and the server must go on
-            what = f"{type(error).__name__}: {error}"
-            answer = {"id": number, "error": f"{address}: {what}; this is a bug in crowdbot or in your code"}
-        self._put(answer)
+            answer = {"id": number, "error": _bug(address, error)}
+        try:
+            self._put(answer)
+        except TypeError as error:  # the result is no JSON
+            self._put({"id": number, "error": _bug(address, error)})
 
     def _put(self, message: dict[str, Any]) -> None:
         try:
-            self._events.append(json.dumps(message, allow_nan=False))
-        except ValueError as error:
-            raise InputError(f"message to a window is not JSON: {error}") from None
+            text = json.dumps(message, allow_nan=False)
+        except ValueError:  # a number is not finite
+            text = json.dumps(clean_json(message), allow_nan=False)
+        self._events.append(text)
         self._wake.set()
 
     async def _write(self) -> None:
@@ -130,3 +134,7 @@ class Window:
                 frame = self._frames.pop(next(iter(self._frames)))
                 self._sent += 1
                 await self._socket.send_bytes(replace(frame, sequence=self._sent).encode(), compress=0)
+
+
+def _bug(address: str, error: Exception) -> str:
+    return f"{address}: {type(error).__name__}: {error}; this is a bug in crowdbot or in your code"

@@ -24,6 +24,7 @@ from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.jobs import Job, command_work
+from crowdbot.web.plain_json import plain_number
 from crowdbot.world import builtin_robots
 
 from .evaluation_request import FILE, EvaluationRequest, describe_robots
@@ -252,15 +253,11 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
                 "seed": row.seed,
                 "outcome": row.outcome,
                 "message": row.message,
-                "values": [_plain(row.metrics.get(one.metric)) for one in statistics],
+                "values": [plain_number(row.metrics.get(one.metric)) for one in statistics],
             }
             for row in cell.runs
         ],
     }
-
-
-def _plain(value: float | None) -> float | None:
-    return None if value is None or not math.isfinite(value) else float(value)
 
 
 def _sentence(one: PairedComparison) -> str:

@@ -11,9 +11,10 @@ from typing import Any
 from crowdbot.core import InputError
 from crowdbot.data import FILE_OPTIONS, FORMATS, Recording, Trajectories, Windows, detect_format
 from crowdbot.prediction import PredictorSpec
+from crowdbot.web.plain_json import clean_json
 
 from .background_picture import BackgroundPicture
-from .prediction_results import PredictorResults, clean_json
+from .prediction_results import PredictorResults
 from .prediction_setup import WINDOW_OPTIONS, DegradationChoice, PredictionSetup, open_setup
 from .prediction_worker import PredictionTask, TaskMember, input_windows
 from .predictor_choice import PredictorChoice

@@ -19,7 +19,6 @@ from .background_picture import BackgroundPicture, parse_homography
 from .example_recordings import EXAMPLES, copy_example
 from .form_rows import scheme_tables
 from .prediction_board import CLEAN, DEGRADED, BoardMember, PredictionBoard
-from .prediction_results import clean_json
 from .prediction_run import PredictionRun
 from .prediction_setup import DegradationChoice, PredictionSetup
 from .result_tables import frame_table, horizon_rows, person_table, score_table, variable_names, variable_rows
@@ -79,7 +78,7 @@ class PredictionDesk(Desk):
     def tables(self) -> dict[str, Any]:
         """Return all lists of the dialogs."""
         if self._tables is None:
-            self._tables = clean_json(scheme_tables())
+            self._tables = scheme_tables()
         return self._tables
 
     @command
@@ -324,7 +323,7 @@ class PredictionDesk(Desk):
             if event == "progress":
                 self._share = data["share"]
                 data = {**data, "active": True}
-            self.session.tell(f"prediction.{event}", clean_json(data))
+            self.session.tell(f"prediction.{event}", data)
 
     def _changed(self) -> dict[str, Any]:
         facts = {**self.board.facts(), "run": self._run_facts()}

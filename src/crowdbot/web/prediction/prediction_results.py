@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from typing import Any
 
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.data import Windows
 from crowdbot.evaluation import FrameResults
 from crowdbot.metrics import PersonErrors, Score
+from crowdbot.web.plain_json import clean_json, plain_number
 
 from .prediction_worker import WindowPart
 
@@ -205,24 +205,3 @@ class PredictorResults:
             score = clean_json(self.score.as_dict())
         own = {"state": self.state, "problem": self.problem, "note": self.note, "done": self.count}
         return {**own, "windows": len(self.past), "score": score}
-
-
-def plain_number(value: Any) -> float | int | None:
-    """Return a number for JSON; None where it is not finite."""
-    number = value.item() if isinstance(value, np.generic) else value
-    return number if number is None or math.isfinite(number) else None
-
-
-def clean_json(value: Any) -> Any:
-    """Return a value with None in the place of numbers that are not finite."""
-    if isinstance(value, float):
-        return plain_number(value)
-    if isinstance(value, dict):
-        return {key: clean_json(one) for key, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [clean_json(one) for one in value]
-    return (
-        clean_json(dataclasses.asdict(value))
-        if dataclasses.is_dataclass(value) and not isinstance(value, type)
-        else value
-    )

@@ -8,9 +8,10 @@ import numpy as np
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.metrics import Score
+from crowdbot.web.plain_json import plain_number
 
 from .prediction_board import CLEAN, INPUTS, BoardMember, PredictionBoard
-from .prediction_results import VARIABLES, PredictorResults, plain_number
+from .prediction_results import VARIABLES, PredictorResults
 
 
 def variable_names(board: PredictionBoard) -> list[dict[str, str]]:
