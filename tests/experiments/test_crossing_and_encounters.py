@@ -56,7 +56,7 @@ def crossing(tmp_path_factory):
 @pytest.fixture(scope="module")
 def encounters(tmp_path_factory):
     """Return rehearsed sessions of the experiment on encounters."""
-    return rehearse("encounters", tmp_path_factory.mktemp("encounters"), 10)
+    return rehearse("encounters", tmp_path_factory.mktemp("encounters"), 7)
 
 
 @pytest.fixture(scope="module")

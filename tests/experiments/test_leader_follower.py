@@ -46,7 +46,7 @@ def study(tmp_path_factory):
     home = tmp_path_factory.mktemp("study")
     shutil.copytree(SHIPPED, home / "short")
     for path in (home / "short").glob("*.xml"):
-        text = path.read_text().replace('duration="48"', 'duration="18"').replace('step="0.05"', 'step="0.1"')
+        text = path.read_text().replace('duration="48"', 'duration="12"').replace('step="0.05"', 'step="0.1"')
         path.write_text(text.replace('cycles="6"', 'cycles="2"'))
     for who in ("1", "2"):
         words = ["experiment", "run", str(home / "short"), "--participant", who, "--out", str(home / "data")]

@@ -21,6 +21,8 @@ PACKAGES = [m.name for m in pkgutil.iter_modules(crowdbot.__path__) if m.ispkg]
 SKIPS = re.compile(r"@pytest\.mark\.(skip\b|xfail|skipif\((?!sys\.platform [!=]= \"))|pytest\.skip\(|importorskip")
 """Only a test of one operating system may name it: ``skipif(sys.platform == "win32", ...)``."""
 CLOCK = re.compile(r"time\.(time|perf_counter|monotonic|process_time)\(")
+CALL = re.compile(r"(time|perf_counter|monotonic|process_time)\s*\(")
+"""What stands in the text of a file with such a clock; unparsing every assertion takes ten times as long."""
 HEAVY = ("numba", "pandas", "torch", "matplotlib", "mujoco", "rosbags", "mcap", "h5py", "pyarrow", "shapely", "rich")
 
 
@@ -68,10 +70,12 @@ def test_no_test_lacks_an_assertion_is_skipped_or_reads_the_clock():
         text = path.read_text(encoding="utf-8")
         if SKIPS.search(text) and path != Path(__file__):
             breaches.append(f"{path.name} skips a test")
+        may_read = CALL.search(text) is not None
         for function in _functions(ast.parse(text)):
             if function.name.startswith("test") and not _asserts(function):
                 breaches.append(f"{path.name}: {function.name} asserts nothing")
-            if any(isinstance(n, ast.Assert) and CLOCK.search(ast.unparse(n)) for n in ast.walk(function)):
+            asserts = (n for n in ast.walk(function) if isinstance(n, ast.Assert)) if may_read else ()
+            if any(CLOCK.search(ast.unparse(n)) for n in asserts):
                 breaches.append(f"{path.name}: {function.name} asserts how long something takes")
     assert breaches == []
 

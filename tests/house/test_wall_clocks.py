@@ -66,6 +66,38 @@ class TestFile:
         return cls(path, tree, places, fixtures, always, full, modules, texts)
 
 
+@dataclass(frozen=True)
+class Contents:
+    """What a function, class or program contains, found in one walk through its syntax tree.
+
+    Attributes:
+        names: names that it uses.
+        texts: texts in it, which may name fixtures, as for ``getfixturevalue``.
+        attributes: attributes of a name, as the two words.
+        calls: line and dotted name of each call.
+    """
+
+    names: set[str]
+    texts: set[str]
+    attributes: list[tuple[str, str]]
+    calls: list[tuple[int, str]]
+
+    @classmethod
+    def of(cls, node: Part) -> Contents:
+        """Walk through the tree."""
+        names, texts, attributes, calls = set(), set(), [], []
+        for one in ast.walk(node):
+            if isinstance(one, ast.Name):
+                names.add(one.id)
+            elif isinstance(one, ast.Constant) and isinstance(one.value, str):
+                texts.add(one.value)
+            elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
+                attributes.append((one.value.id, one.attr))
+            elif isinstance(one, ast.Call):
+                calls.append((one.lineno, dotted_name(one.func)))
+        return cls(names, texts, attributes, calls)
+
+
 Found = tuple[TestFile, Part]
 
 
@@ -82,6 +114,8 @@ class Imports:
         self._paths: dict[str, list[Path]] = {}
         self._used: dict[Found, list[Found]] = {}
         self._clocks: dict[Found, set[tuple[Path, int, str]]] = {}
+        self._asked: dict[Part, tuple[set[str], bool]] = {}
+        self._contents: dict[Part, Contents] = {}
         for path in sorted(tests.rglob("*.py")):
             self._paths.setdefault(path.stem, []).append(path)
 
@@ -111,13 +145,29 @@ class Imports:
     def clocks_of(self, user: TestFile, node: Part) -> set[tuple[Path, int, str]]:
         """Return file, line and name of each clock that a function, class or program itself reads."""
         if (user, node) not in self._clocks:
-            self._clocks[user, node] = {(user.path, *call) for call in calls(node, user.full)}
+            self._clocks[user, node] = {
+                (user.path, line, name)
+                for line, called in self.contents(node).calls
+                if (name := full_name(called, user.full)) in CLOCKS
+            }
         return self._clocks[user, node]
+
+    def contents(self, node: Part) -> Contents:
+        """Return what a function, class or program contains."""
+        if node not in self._contents:
+            self._contents[node] = Contents.of(node)
+        return self._contents[node]
+
+    def asked(self, node: Part) -> tuple[set[str], bool]:
+        """Return the names of fixtures that a function or class asks for, and whether it is a fixture itself."""
+        if node not in self._asked:
+            self._asked[node] = asked_by(node), is_fixture(node)
+        return self._asked[node]
 
     def programs(self, user: TestFile, node: Part) -> Iterator[TestFile]:
         """Yield the programs among the tests whose file names are in a part of a file, or in a value that it uses."""
-        used = [self._value(user, name) for name in words_of(node)]
-        for text in texts_of(node).union(*used):
+        used = [self._value(user, name) for name in self.contents(node).names]
+        for text in self.contents(node).texts.union(*used):
             name = text.rpartition("/")[2]
             paths = self._paths.get(name.removesuffix(".py"), []) if name.endswith(".py") else []
             if paths and not name.startswith(("test_", "conftest")) and name != user.path.name:
@@ -132,19 +182,18 @@ class Imports:
     def _search(self, user: TestFile, node: Part) -> Iterator[Found]:
         for program in self.programs(user, node):
             yield program, program.tree
-        for name in words_of(node):
+        for name in self.contents(node).names:
             if found := self._named(user, name):
                 yield found
-        for name in asked_by(node) | texts_of(node):
+        for name in self.asked(node)[0] | self.contents(node).texts:
             for file in self.fixtures(user):
                 if (found := file.fixtures.get(name)) is not None:
                     yield file, found
                     break
-        for one in ast.walk(node):
-            if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id in user.modules:
-                file = self.module(user.modules[one.value.id], user)
-                if file and (found := self._named(file, one.attr)):
-                    yield found
+        for name, attribute in self.contents(node).attributes:
+            file = self.module(user.modules[name], user) if name in user.modules else None
+            if file and (found := self._named(file, attribute)):
+                yield found
 
     def _named(self, file: TestFile, name: str) -> Found | None:
         """Return what a name in a file means, if it is a function or class of the tests."""
@@ -170,7 +219,8 @@ def readings(path: Path, imports: Imports) -> list[str]:
                 if one not in seen:
                     seen[one] = None
                     waiting.append(one)
-        if LIVE_FIXTURES & {name for _, node in seen if node is test or is_fixture(node) for name in asked_by(node)}:
+        asked = [names for _, node in seen for names, fixture in [imports.asked(node)] if fixture or node is test]
+        if LIVE_FIXTURES & set().union(*asked):
             continue
         clocks = set().union(*(imports.clocks_of(*one) for one in seen))
         found += [
@@ -251,19 +301,22 @@ def texts_of(node: ast.AST) -> set[str]:
     return {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
 
 
-def words_of(node: Part) -> set[str]:
-    """Return the names that a function or class uses."""
-    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+def full_name(name: str, full: dict[str, str]) -> str:
+    """Return a dotted name with the full name of what is imported; ``full`` has the full names."""
+    first, _, rest = name.partition(".")
+    return ".".join(filter(None, (full.get(first, first), rest)))
 
 
-def calls(node: Part, full: dict[str, str]) -> Iterator[tuple[int, str]]:
-    """Yield line and name of each call of a clock; ``full`` has the full names of what is imported."""
-    for one in ast.walk(node):
-        if isinstance(one, ast.Call):
-            first, _, rest = ast.unparse(one.func).partition(".")
-            name = ".".join(filter(None, (full.get(first, first), rest)))
-            if name in CLOCKS:
-                yield one.lineno, name
+def dotted_name(node: ast.expr) -> str:
+    """Return the text of a name with attributes, such as ``time.monotonic``; empty for another expression.
+
+    ``ast.unparse`` takes ten times as long.
+    """
+    words = []
+    while isinstance(node, ast.Attribute):
+        words.append(node.attr)
+        node = node.value
+    return ".".join([node.id, *reversed(words)]) if isinstance(node, ast.Name) else ""
 
 
 def test_no_test_of_the_gate_reads_a_clock() -> None:
