@@ -10,7 +10,8 @@ HEAD = """# Trial elements
 
 Every element and attribute of a trial file, from the schema that `crowdbot new schema trial.xsd` writes.
 [Trial file](trial-file.md) is the overview. Required attributes are bold. An element with a `type` also accepts the
-parameters of that type as attributes."""
+parameters of that type as attributes. They are fields of its class: [Python](api/index.md) has their meanings, units
+and defaults, with `_` instead of `-`."""
 
 
 def elements_page(schema: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from crowdbot.metrics.proximity import ZONES
 from crowdbot.typing import Floats
 
+from .metric import undefined_metrics
 from .robot_log import RobotLog
 
 TOGETHER = 1.5
@@ -18,10 +19,6 @@ ALIKE = 0.3
 """... with a mean difference of their velocities [m/s] at most ..."""
 LONG = 2.0
 """... for at least this time together [s]."""
-NAMES = (
-    "groups", "group_intrusion", "group_collision", "group_space_share", "group_intimate_share",
-    "group_personal_share", "group_social_share", "min_group_distance",
-)  # fmt: skip
 
 
 def group_metrics(log: RobotLog) -> dict[str, float]:
@@ -29,7 +26,7 @@ def group_metrics(log: RobotLog) -> dict[str, float]:
     groups = detect_groups(log) if log.groups is None else log.groups
     groups = [list(one) for one in groups if len(one) > 1]
     if not groups:
-        return dict.fromkeys(NAMES, math.nan) | {"groups": 0.0, "group_collision": 0.0}
+        return undefined_metrics("groups") | {"groups": 0.0, "group_collision": 0.0}
     hull, space, centre = (np.full((len(groups), len(log.times)), np.inf) for _ in range(3))
     for k, members in enumerate(groups):
         hull[k], space[k], centre[k] = _group_distances(log, members)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from crowdbot.typing import Floats
 
+from .metric import undefined_metrics
 from .robot_log import RobotLog
 
 ANGLES = (-90.0, -45.0, 0.0, 45.0, 90.0)
@@ -17,7 +16,7 @@ ANGLES = (-90.0, -45.0, 0.0, 45.0, 90.0)
 def legibility_metrics(log: RobotLog) -> dict[str, float]:
     """Return the metric of the family ``legibility``; NaN without a goal or a time above 0."""
     if log.goal is None or log.duration <= 0.0:
-        return {"legibility": math.nan}
+        return undefined_metrics("legibility")
     turns = np.radians(ANGLES)
     way = log.goal - log.position[0]
     goals = log.position[0] + np.stack(

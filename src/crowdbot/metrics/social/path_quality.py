@@ -9,6 +9,7 @@ import numpy as np
 from crowdbot.metrics.motion import heading_change, path_length
 from crowdbot.typing import Floats
 
+from .metric import undefined_metrics
 from .robot_log import RobotLog
 
 SPACING = 0.25
@@ -17,9 +18,8 @@ SPACING = 0.25
 
 def path_metrics(log: RobotLog) -> dict[str, float]:
     """Return the metrics of the family ``path``; NaN without a shortest path."""
-    names = ("shortest_length", "spl", "stl", "ndtw", "sdtw", "heading_change_excess")
     if log.path is None:
-        return dict.fromkeys(names, math.nan)
+        return undefined_metrics("path")
     best = max(0.0, path_length(log.path) - log.tolerance)
     length, wins = path_length(log.position), float(log.success)
     fastest = best / log.max_speed if log.max_speed > 0.0 else math.nan

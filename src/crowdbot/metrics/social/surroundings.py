@@ -9,6 +9,7 @@ import numpy as np
 from crowdbot.metrics.proximity import ZONES
 from crowdbot.typing import Floats
 
+from .metric import undefined_metrics
 from .robot_log import RobotLog
 
 RADIUS = 2.5
@@ -109,13 +110,7 @@ def _nearest_speed(log: RobotLog, away: Floats, speed: Floats) -> float:
 def person_metrics(log: RobotLog) -> dict[str, float]:
     """Return the metrics of the family ``people``: values of the worst-off people, not means over time."""
     if not log.present.shape[1]:
-        names = (
-            "worst_decile_clearance",
-            "worst_person_intrusion_time",
-            "intimate_people_share",
-            "personal_people_share",
-        )
-        return dict.fromkeys(names, math.nan)
+        return undefined_metrics("people")
     least = np.sort(log.least_gap.min(axis=0))
     steps = np.diff(log.times, prepend=log.times[0])
     times = {zone: steps @ (log.gap < ZONES[zone]) for zone in ("intimate", "personal")}
