@@ -96,16 +96,6 @@ class Trajectories(TrackTable):
         ]
         return draw_svg([*beneath, *walls, *paths], ends, repr(self)[1:-1])
 
-    @property
-    def warnings(self) -> list[str]:
-        """The warnings in the note: units, times or columns that can hardly be those of people.
-
-        >>> Trajectories([7], [0], [0.0], [0.0], row_rate=2.5, note="2.5 Hz; warning: slow; warning: flat").warnings
-        ['slow', 'flat']
-        """
-        parts = self.note.split("; ")
-        return [part.removeprefix("warning: ") for part in parts if part.startswith("warning: ")]
-
     def track(self, id: int) -> Trajectories:
         """Return the track of one person or robot.
 
