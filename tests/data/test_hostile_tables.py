@@ -188,3 +188,16 @@ def test_five_columns_with_the_frame_first(tmp_path, height):
     with pytest.raises(NoWindowError, match="id and frame seem to be swapped"):
         tracks.windows(8, 12)
     same(load(path, columns={"frame": "1", "id": "2", "x": "3", "y": "4"}, fps=25.0))
+
+
+@pytest.mark.parametrize(
+    "last", [(0.05, 0.0, -0.5), (-0.05, 0.0, 0.5), (0.0, 0.1, -0.5), (0.0, -0.1, 0.9), (0.05, 0.05, -0.9)]
+)
+def test_a_homography_whose_horizon_lies_between_people(tmp_path, last):
+    path = save(tmp_path, text_of())
+    with pytest.raises(DataError, match=r"the horizon of the homography lies between the positions, such as person \d"):
+        load(path, transform=[[0.02, 0.0, 0.0], [0.0, 0.02, 0.0], last])
+    away = [[0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.001, 0.0, 1.0]]
+    assert len(load(path, transform=away)) == 240
+    same_place = load(path, transform=(-np.asarray(away)).tolist()).position
+    assert np.allclose(same_place, load(path, transform=away).position)
