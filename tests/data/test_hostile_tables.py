@@ -41,7 +41,7 @@ def save(tmp_path, data, name="own.csv"):
     return path
 
 
-def same(tracks: Trajectories) -> None:
+def assert_same(tracks: Trajectories) -> None:
     assert (len(tracks), tracks.dt, tracks.ids.tolist()) == (240, pytest.approx(0.4), [1, 2, 3, 4, 5, 6])
     expected = sorted(walkers(), key=lambda row: (row[0], row[1]))
     assert np.allclose(tracks.position, [row[2:] for row in expected], atol=1e-4)
@@ -68,7 +68,7 @@ def same(tracks: Trajectories) -> None:
     ids=lambda data: repr(data[:12]),
 )
 def test_delimiters_and_encodings(tmp_path, data):
-    same(load(save(tmp_path, data)))
+    assert_same(load(save(tmp_path, data)))
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_delimiters_and_encodings(tmp_path, data):
 )
 def test_a_table_without_names_keeps_its_first_row(tmp_path, delimiter, words):
     path = save(tmp_path, text_of(delimiter, None, words))
-    same(load(path, columns={"time": "1", "id": "2", "x": "3", "y": "4"}))
+    assert_same(load(path, columns={"time": "1", "id": "2", "x": "3", "y": "4"}))
 
 
 @pytest.mark.parametrize("delimiter", [";", "|"])
@@ -96,7 +96,7 @@ def test_stamps_in_two_columns(tmp_path, head):
         return (str(1_700_000_000 + sec), str(rest), *point(row)[1:])
 
     tracks = load(save(tmp_path, text_of(head=(*head, "id", "x", "y"), words=words)))
-    same(tracks)
+    assert_same(tracks)
     assert f"times are {head[0]} with the nanoseconds of {head[1]}" in tracks.note
 
 
@@ -111,7 +111,7 @@ def test_two_columns_of_one_name_are_not_chosen_by_chance(tmp_path, head, twice)
     path = save(tmp_path, text_of(head=head, words=lambda row: (*point(row)[: at + 1], "7", *point(row)[at + 1 :])))
     with pytest.raises(DataError, match=f"several columns called '{twice}'; choose one by its number"):
         load(path)
-    same(load(path, columns={twice.lower(): str(at + 1)}))
+    assert_same(load(path, columns={twice.lower(): str(at + 1)}))
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_kilometres(tmp_path):
     path = save(tmp_path, text_of(rows=rows, words=words))
     (warning,) = load(path).warnings
     assert "the places are probably in kilometres, give --units km" in warning
-    same(load(path, units="km"))
+    assert_same(load(path, units="km"))
 
 
 @pytest.mark.parametrize("height", ["1.7", "0.5", "0.0", "12", "-1"])
@@ -187,7 +187,7 @@ def test_five_columns_with_the_frame_first(tmp_path, height):
     assert any("id and frame seem to be swapped" in warning for warning in tracks.warnings)
     with pytest.raises(NoWindowError, match="id and frame seem to be swapped"):
         tracks.windows(8, 12)
-    same(load(path, columns={"frame": "1", "id": "2", "x": "3", "y": "4"}, fps=25.0))
+    assert_same(load(path, columns={"frame": "1", "id": "2", "x": "3", "y": "4"}, fps=25.0))
 
 
 @pytest.mark.parametrize(
