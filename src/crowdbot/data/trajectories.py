@@ -204,8 +204,8 @@ class Trajectories(TrackTable):
             beyond = int(np.argmin(depth) if np.mean(depth > 0.0) > 0.5 else np.argmax(depth))
             raise DataError(
                 f"{self.name}: the horizon of the homography lies between the positions, such as person"
-                f" {self.id[beyond]} at ({self.x[beyond]:g}, {self.y[beyond]:g}) px; the matrix is from (x, y, 1) of the"
-                " file to metres, perhaps it is of another picture or x and y are exchanged"
+                f" {self.id[beyond]} at ({self.x[beyond]:g}, {self.y[beyond]:g}) px; the matrix is from (x, y, 1) of"
+                " the file to metres, perhaps it is of another picture or x and y are exchanged"
             )
         walls = tuple(_transform(ring, matrix) for ring in self.walls)
         place = _transform(self.position, matrix)
