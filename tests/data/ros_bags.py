@@ -17,6 +17,16 @@ DEFINITIONS = {
     "float64 reliability\nstring[] tagnames\nstring[] tags\n",
     "people_msgs/msg/People": "std_msgs/Header header\npeople_msgs/Person[] people\n",
     "pedsim_msgs/msg/TrackedPerson": "uint64 track_id\nbool is_occluded\ngeometry_msgs/PoseWithCovariance pose\n",
+    "pedsim_msgs/msg/AgentState": "std_msgs/Header header\nuint64 id\nuint16 type\nstring social_state\n"
+    "geometry_msgs/Pose pose\ngeometry_msgs/Twist twist\n",
+    "pedsim_msgs/msg/AgentStates": "std_msgs/Header header\npedsim_msgs/AgentState[] agent_states\n",
+    "hunav_msgs/msg/Agent": "int32 id\nuint8 type\nuint8 skin\nstring name\nint8 group_id\n"
+    "geometry_msgs/Pose position\nfloat32 yaw\n",
+    "hunav_msgs/msg/Agents": "std_msgs/Header header\nhunav_msgs/Agent[] agents\n",
+    "people_msgs/msg/PositionMeasurement": "std_msgs/Header header\nstring name\nstring object_id\n"
+    "geometry_msgs/Point pos\nfloat64 reliability\nfloat64[9] covariance\nbyte initialization\n",
+    "people_msgs/msg/PositionMeasurementArray": "std_msgs/Header header\n"
+    "people_msgs/PositionMeasurement[] people\nfloat32[] cooccurrence\n",
     "pedsim_msgs/msg/TrackedPersons": "std_msgs/Header header\npedsim_msgs/TrackedPerson[] tracks\n",
     "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score\n",
     "vision_msgs/msg/ObjectHypothesisWithPose": "vision_msgs/ObjectHypothesis hypothesis\n"
@@ -109,6 +119,30 @@ class BagWriter:
             found.append(self.make("vision_msgs/msg/Detection3D", header=header, results=results, bbox=box, id=id))
         message = self.make("vision_msgs/msg/Detection3DArray", header=self.header(time, frame), detections=found)
         self.write(topic, time, message)
+
+    def agents(self, time, frame, places, kind):
+        """Write {id: (x, y)} as agents of pedsim, HuNavSim, or measurements of people."""
+        header, rows = self.header(time, frame), []
+        for id, place in places.items():
+            pose = self.make(
+                "geometry_msgs/msg/Pose", position=self.vector("Point", *place), orientation=self.turn(0.0)
+            )
+            zero = self.vector("Vector3", 0, 0)
+            twist = self.make("geometry_msgs/msg/Twist", linear=zero, angular=zero)
+            values = {
+                "AgentStates": {
+                    "header": header, "id": id, "type": 0, "social_state": "", "pose": pose, "twist": twist,
+                },
+                "Agents": {"id": id, "type": 1, "skin": 0, "name": "", "group_id": -1, "position": pose, "yaw": 0.0},
+                "PositionMeasurementArray": {
+                    "header": header, "name": "leg", "object_id": str(id), "pos": pose.position, "reliability": 1.0,
+                    "covariance": np.zeros(9), "initialization": 0,
+                },
+            }[kind.rpartition("/")[2]]  # fmt: skip
+            rows.append(self.make(kind.replace("Array", "").removesuffix("s"), **values))
+        more = {"cooccurrence": np.zeros(0, dtype=np.float32)} if kind.endswith("Array") else {}
+        field = {"AgentStates": "agent_states", "Agents": "agents"}.get(kind.rpartition("/")[2], "people")
+        self.write("/crowd", time, self.make(kind, header=header, **{field: rows}, **more))
 
     def pose(self, x, y, yaw=0.0):
         pose = self.make("geometry_msgs/msg/Pose", position=self.vector("Point", x, y), orientation=self.turn(yaw))

@@ -198,3 +198,44 @@ def test_tracked_people_in_detections_of_vision_msgs(tmp_path):
         bag.detections(BEGIN, "map", [("", "person", 0.0, 2.0)])
     with pytest.raises(InputError, match="a detection of class 'person' has no id: people must be tracked"):
         load(bag.file)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["pedsim_msgs/msg/AgentStates", "hunav_msgs/msg/Agents", "people_msgs/msg/PositionMeasurementArray"],
+)
+@pytest.mark.parametrize("storage", ["mcap", "ros1"])
+def test_messages_of_simulators_and_detectors(tmp_path, kind, storage):
+    """Fields as in the published definitions."""
+    with BagWriter(tmp_path / "bag", storage) as bag:
+        for k in range(30):
+            bag.agents(BEGIN + 0.1 * k, "map", {1: (0.13 * k, 1.0), 2: (4.0, 0.13 * k)}, kind)
+    tracks = load(bag.file)
+    assert (len(tracks), tracks.dt, tracks.ids.tolist()) == (60, 0.1, [1, 2])
+    np.testing.assert_allclose(tracks.track(1).x, 0.13 * np.arange(30))
+
+
+@pytest.mark.parametrize(("drift", "lost"), [(0.01, ()), (-0.01, ()), (0.03, ()), (0.01, (50, 51)), (0.002, (7,))])
+def test_stamps_that_drift_leave_no_gaps(tmp_path, drift, lost):
+    """Each period is a little longer or shorter than at the beginning; lost messages stay gaps."""
+    time = 0.0
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(300):
+            if k not in lost:
+                bag.people(BEGIN + time, "map", {1: (0.13 * k, 1.0)})
+            time += 0.1 * (1.0 + drift * (k >= 150))
+    tracks = load(bag.file)
+    assert tracks.frame.tolist() == [k for k in range(300) if k not in lost]
+    assert tracks.dt == pytest.approx(time / 300, rel=2e-3)
+    assert "off a regular step" in tracks.note or abs(drift) < 0.003
+
+
+@pytest.mark.parametrize("burst", [0.001, 0.01, 0.02])
+def test_messages_in_bursts_are_refused(tmp_path, burst):
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(30):
+            bag.people(
+                BEGIN + 0.1 * (k - k % 2) + burst * (k % 2) + 0.1 * (k > 20) * (k % 2), "map", {1: (0.1 * k, 1.0)}
+            )
+    with pytest.raises(DataError, match="the stamps on /people are not regular, some steps are far shorter than"):
+        load(bag.file)

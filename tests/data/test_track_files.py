@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from crowdbot.core import DataError, InputError
 from crowdbot.data import FORMATS, PrimaryScene, Trajectories, load, save
 
-finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
+finite = st.floats(-1e12, 1e12)
 
 
 @st.composite

@@ -151,7 +151,7 @@ def test_arguments_that_are_not_allowed(tmp_path):
         load(path, format="sgam")
     with pytest.raises(InputError, match="unknown time base 'tru', did you mean 'true'"):
         load(path, time_base="tru")
-    with pytest.raises(DataError, match="unknown units 'metre'.*known are m, cm, mm, ft, px"):
+    with pytest.raises(DataError, match="unknown units 'metre'.*known are m, cm, mm, km, ft, px"):
         load(path, units="metre")
 
 

@@ -503,6 +503,12 @@ def test_menge_has_obstacles_agents_and_goals(tmp_path, name, text):
         ('<ObstacleSet type="explicit"', '<ObstacleSet type="nav_mesh"', 8,
          "the obstacle set of type 'nav_mesh' in line 10 is not imported"),
         ('r="0.2"', 'r="0.2" mass="80"', 8, None),
+        ('</Experiment>', '<AgentSource rate="2"/></Experiment>', 8, "<AgentSource> in line 12 is not imported"),
+        ('</Experiment>', '<Portal/></Experiment>', 8, "<Portal> in line 12 is not imported"),
+        ('</Generator></AgentGroup>', '</Generator><Noise/></AgentGroup>', 8,
+         "<Noise> of the agents in line 6 is not imported"),
+        ('type="const" name="slow"', 'type="const" name="fast"', 8,
+         "there is no profile 'fast': its agents have the usual values"),
     ],
 )  # fmt: skip
 def test_variants_of_menge(tmp_path, old, new, people, sentence):
@@ -510,6 +516,28 @@ def test_variants_of_menge(tmp_path, old, new, people, sentence):
     done = imported(tmp_path, "hallS.xml", MENGE.replace(old, new, 1))
     assert len(trial_of(done).agents) == people
     assert sentence is None or sentence in done.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('<VelComponent type="goal"/>', '<VelComponent type="nav_mesh" file_name="hall.nav"/>',
+         "the velocity component 'nav_mesh' of state 'Walk' is not imported: routes avoid walls"),
+        ('<VelComponent type="goal"/>', '<VelComponent type="road_map"/>',
+         "the velocity component 'road_map' of state 'Walk' is not imported: routes avoid walls"),
+        ('<VelComponent type="goal"/>', '<VelModifier type="formation"/>',
+         "<VelModifier> of state 'Walk' is not imported"),
+        ('<VelComponent type="goal"/>', '<Action type="teleport"/>',
+         "the action 'teleport' of state 'Walk' is not imported"),
+        ('</BFSM>', '<VelModifier type="formation"/></BFSM>', "<VelModifier> of the behaviour is not imported"),
+    ],
+)  # fmt: skip
+def test_what_a_behaviour_of_menge_loses_is_named(tmp_path, old, new, sentence):
+    named_files(tmp_path)
+    assert old in STATES
+    (tmp_path / "hallB.xml").write_text(STATES.replace(old, new, 1))
+    (tmp_path / "hallS.xml").write_text(MENGE)
+    assert sentence in import_trial(tmp_path / "hallS.xml").left_out
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import PhysicsWorld, PlanarWorld, Robot, check_robot, import_robot, read_urdf
+from crowdbot.world.robots.base_kind import recognize_base
 
 
 def convert(folder, text, *words, name="maker"):
@@ -277,3 +278,59 @@ def test_real_robots_become_folders(urdf, tmp_path, name):
 def test_a_missing_robot_file_is_told(tmp_path, capsys):
     assert main(["new", "robot", str(tmp_path / "nothing.urdf.xacro")]) == 2
     assert "there is no robot file" in capsys.readouterr().err
+
+
+INERTIAL = "<inertial><mass value='1'/><inertia ixx='.01' iyy='.01' izz='.01' ixy='0' ixz='0' iyz='0'/></inertial>"
+
+
+def link(name, shape, at="0 0 0", visual=""):
+    """A link with a collision shape, and perhaps another one that is shown."""
+    parts = f"<collision><origin xyz='{at}'/><geometry>{shape}</geometry></collision>"
+    parts += f"<visual><origin xyz='{at}' rpy='1.5707963 0 0'/><geometry>{visual}</geometry></visual>" if visual else ""
+    return f"<link name='{name}'>{INERTIAL}{parts}</link>"
+
+
+def joint(name, kind, parent, child, at, axis="0 0 1", limit="lower='-1' upper='1'"):
+    limits = "" if kind in ("continuous", "fixed") else f"<limit {limit} effort='9' velocity='1'/>"
+    return (
+        f"<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><origin xyz='{at}'/>"
+        f"<axis xyz='{axis}'/>{limits}</joint>"
+    )
+
+
+def lifted_hand(travel, fingers):
+    """A lift, a wrist and fingers that hang down to the ground."""
+    text = link("lift", "<box size='.1 .1 .1'/>") + link("wrist", "<box size='.05 .05 .05'/>")
+    text += joint("raise", "prismatic", "base", "lift", ".3 0 .2", limit=f"lower='0' upper='{travel}'")
+    text += joint("turn", "revolute", "lift", "wrist", "0 0 -.05")
+    for k in range(fingers):
+        side = 0.02 * (k - 0.5 * (fingers - 1))
+        text += link(f"finger{k}", "<box size='.01 .01 .24'/>")
+        text += joint(f"close{k}", "revolute", "wrist", f"finger{k}", f"0 {side} -.03", "1 0 0")
+    return text
+
+
+WHEELS = "".join(
+    link(f"roller{k}", "<box size='.2 .04 .2'/>", visual="<cylinder radius='.1' length='.04'/>")
+    + joint(f"spin{k}", "continuous", "base", f"roller{k}", f"0 {y} 0", "0 1 0")
+    for k, y in enumerate((0.2, -0.2))
+)
+
+
+@pytest.mark.parametrize(
+    ("parts", "kind"),
+    [
+        (lifted_hand(1.1, 2), "planar"),
+        (lifted_hand(0.2, 2), "planar"),
+        (lifted_hand(0.5, 3), "planar"),
+        (WHEELS, "differential"),
+        (WHEELS + lifted_hand(1.1, 2), "differential"),
+    ],
+)
+def test_hands_are_no_legs_and_wheels_may_collide_as_boxes(tmp_path, parts, kind):
+    file = tmp_path / "maker.urdf"
+    body = link("base", "<box size='.4 .3 .1'/>", "0 0 .05")
+    file.write_text(f"<robot name='maker'>{body}{parts}</robot>")
+    base = recognize_base(read_urdf(file))
+    assert (base.kind, base.legs) == (kind, ())
+    assert [wheel.radius for wheel in base.wheels] == pytest.approx([0.1, 0.1] if kind == "differential" else [])

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.columns import check_quantities
     from .readers.hdf5_arrays import read_hdf5_arrays
+    from .readers.plausibility import WIDEST_DEGREES
     from .readers.ros.detections import DETECTIONS, PERSON_CLASSES, detected_people
     from .readers.ros.episode import PEOPLE_TYPES
     from .readers.ros.frames import Frames, frame_name, stamp_of
@@ -52,6 +53,7 @@ __all__ = [
     "TRAJNET_CATEGORIES",
     "UCY_TO_METRES",
     "UNITS",
+    "WIDEST_DEGREES",
     "Degradation",
     "DegradedTracks",
     "FileOption",

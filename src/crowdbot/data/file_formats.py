@@ -190,7 +190,7 @@ def _detect(source: Source) -> Reader:
     kind = {"binary": "is binary and", "zip": "is a zip and"}.get(source.kind, "is text and")
     first = f" (it starts with {source.lines[0].strip()[:40]!r})" if source.lines else ""
     hint = "a table without names needs numbers of columns, such as --columns time=1 id=2 x=3 y=4; "
-    numbers = bool(source.rows) and source.numeric(len(source.rows[0]))
+    numbers = tables.has_numbers(source)
     raise DataError(
         f"{source.path} {kind} of an unknown format{first}; {hint if numbers else ''}formats are {', '.join(FORMATS)}"
     )

@@ -69,7 +69,7 @@ def cut_windows(
     need = min(SHORTEST_FUTURE, predict) if protocol == "partial" else predict
     scored = (rows.runs.behind >= observe) & (rows.runs.ahead >= need) & ~rows.robot
     if not np.any(scored):
-        raise NoWindowError(_why_none(tracks, rows, observe, need, protocol))
+        raise NoWindowError("; ".join([_why_none(tracks, rows, observe, need, protocol), *tracks.warnings]))
     if protocol == "trajnet++":
         scored = _primary(tracks, rows, scored, observe, predict)
     scored = _apply_protocol(tracks, rows, scored, protocol)

@@ -15,6 +15,8 @@ from crowdbot.typing import Floats, Ints
 
 LARGEST = 2.0**53
 """Largest range of integers that float64 represents exactly."""
+FARTHEST = 1e12
+"""Largest coordinate: a thousand times that of UTM in millimetres; a double has 1e-4 there."""
 
 
 def where(name: str, index: int, line: Ints | None) -> str:
@@ -56,7 +58,7 @@ def check_rows(id: Ints, frame: Ints, x: Floats, y: Floats, name: str, line: Int
     """Return the order that sorts the rows by frame, then id.
 
     Raises:
-        DataError: there are no rows, a coordinate is not finite, or a (frame, id) pair is duplicated.
+        DataError: there are no rows, a coordinate is not finite or above 1e12, or a (frame, id) pair is duplicated.
     """
     if len(frame) == 0:
         raise DataError(f"{name} has no rows")
@@ -67,6 +69,12 @@ def check_rows(id: Ints, frame: Ints, x: Floats, y: Floats, name: str, line: Int
             raise DataError(
                 f"{where(name, index, line)}: {axis} is {values[index]} for frame {frame[index]}, id {id[index]};"
                 " coordinates must be finite, remove rows without a position"
+            )
+        if np.max(np.abs(values)) > FARTHEST:
+            index = int(np.argmax(np.abs(values)))
+            raise DataError(
+                f"{where(name, index, line)}: {axis} is {values[index]} for frame {frame[index]}, id {id[index]};"
+                f" coordinates must be at most {FARTHEST:g}, remove rows without a position"
             )
     order = np.lexsort((id, frame))
     twice = (np.diff(frame[order]) == 0) & (np.diff(id[order]) == 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import gzip
 import re
@@ -27,6 +28,11 @@ MOST_FILES = 100_000
 HEAD = 64 * 1024
 DIGITS = re.compile(r"(\d+)")
 GZIP = b"\x1f\x8b"
+WIDE = (
+    (codecs.BOM_UTF32_LE, "utf-32"), (codecs.BOM_UTF32_BE, "utf-32"), (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)  # fmt: skip
+"""Byte order marks of texts that spreadsheets write; that of UTF-32 begins with that of UTF-16."""
 
 MAGIC = {
     b"\x89HDF\r\n\x1a\n": "hdf5",
@@ -69,6 +75,7 @@ class Source:
         packed = head.startswith(GZIP)
         if packed:
             head = _unpack(path, HEAD)
+        head = _as_utf8(head)
         if not head.strip():
             raise DataError(f"{path} is empty")
         source = cls(path, head, packed)
@@ -116,6 +123,7 @@ class Source:
         data = _unpack(self.path, MAX_UNPACKED + 1) if self.packed else self.path.read_bytes()
         if self.packed and len(data) > MAX_UNPACKED:
             raise DataError(f"{self.path} unpacks to more than {MAX_UNPACKED} bytes; unpack it and split it in time")
+        data = _as_utf8(data)
         if b"\x00" in data:
             raise DataError(f"{self.path} has binary bytes after text; the file is damaged")
         return _decode(data)
@@ -195,6 +203,12 @@ def _unpack(path: Path, most: int) -> bytes:
             return file.read(most)
     except (OSError, EOFError, zlib.error) as error:
         raise DataError(f"{path} cannot be read as gzip, it is truncated or damaged: {error}") from None
+
+
+def _as_utf8(data: bytes) -> bytes:
+    """Return a text in UTF-16 or UTF-32 with a byte order mark as UTF-8, without an incomplete last character."""
+    encoding = next((name for mark, name in WIDE if data.startswith(mark)), "")
+    return data.decode(encoding, errors="ignore").encode() if encoding else data
 
 
 def _decode(data: bytes) -> str:

@@ -81,6 +81,16 @@ class TrackTable:
         return f"<Trajectories {self.name}: {len(self)} rows of {people} people{robots}, dt {self.dt:.4g} s>"
 
     @property
+    def warnings(self) -> list[str]:
+        """The warnings in the note: units, times or columns that can hardly be those of people.
+
+        >>> TrackTable([7], [0], [0.0], [0.0], row_rate=2.5, note="2.5 Hz; warning: slow; warning: flat").warnings
+        ['slow', 'flat']
+        """
+        parts = self.note.split("; ")
+        return [part.removeprefix("warning: ") for part in parts if part.startswith("warning: ")]
+
+    @property
     def dt(self) -> float:
         """Time between rows of a track [s]: ``frame_step / fps``, the inverse of ``row_rate``."""
         return 1.0 / self.row_rate

@@ -96,16 +96,6 @@ class Trajectories(TrackTable):
         ]
         return draw_svg([*beneath, *walls, *paths], ends, repr(self)[1:-1])
 
-    @property
-    def warnings(self) -> list[str]:
-        """The warnings in the note: units, times or columns that can hardly be those of people.
-
-        >>> Trajectories([7], [0], [0.0], [0.0], row_rate=2.5, note="2.5 Hz; warning: slow; warning: flat").warnings
-        ['slow', 'flat']
-        """
-        parts = self.note.split("; ")
-        return [part.removeprefix("warning: ") for part in parts if part.startswith("warning: ")]
-
     def track(self, id: int) -> Trajectories:
         """Return the track of one person or robot.
 
@@ -198,7 +188,8 @@ class Trajectories(TrackTable):
                 recording.
 
         Raises:
-            DataError: there is no transform, the tracks are in metres already, or a point goes to infinity.
+            DataError: there is no transform, the tracks are in metres already, a point goes to infinity, or positions
+                are on both sides of the horizon of the homography.
         """
         if self.units == "m":
             raise DataError(f"{self.name} is already in metres; load it with units='px' if its coordinates are pixels")
@@ -208,6 +199,14 @@ class Trajectories(TrackTable):
         matrix = np.diag([float(known), float(known), 1.0]) if known.ndim == 0 else known
         if matrix.shape != (3, 3) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix)) < 1e-300:
             raise DataError(f"{self.name}: the transform must be a scale above 0 or an invertible 3 x 3 matrix")
+        depth = self.position @ matrix[2, :2] + matrix[2, 2]
+        if np.min(depth) < 0.0 < np.max(depth):
+            beyond = int(np.argmin(depth) if np.mean(depth > 0.0) > 0.5 else np.argmax(depth))
+            raise DataError(
+                f"{self.name}: the horizon of the homography lies between the positions, such as person"
+                f" {self.id[beyond]} at ({self.x[beyond]:g}, {self.y[beyond]:g}) px; the matrix is from (x, y, 1) of"
+                " the file to metres, perhaps it is of another picture or x and y are exchanged"
+            )
         walls = tuple(_transform(ring, matrix) for ring in self.walls)
         place = _transform(self.position, matrix)
         return dataclasses.replace(self, x=place[:, 0], y=place[:, 1], units="m", homography=matrix, walls=walls)

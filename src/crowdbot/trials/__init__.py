@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
     from .files.code_references import code_digest, code_references, is_code
     from .files.layout_file import builtin_stages, load_layout
-    from .files.stage_maps import is_area_file, map_files
+    from .files.stage_maps import MOST_CELLS, is_area_file, map_files
     from .files.trial_files import recording_files, resolve_file
     from .ground.door import Door
     from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
@@ -88,6 +88,7 @@ __all__ = [
     "FLOWS",
     "GAP",
     "MODEL_RANGES",
+    "MOST_CELLS",
     "OVERVIEW",
     "PRESETS",
     "SIZES",

@@ -18,6 +18,8 @@ BRIDGE = 1.75
 """Longest gap, in steps, inside which positions at regular times are interpolated."""
 FIRST_FIT = 64.0
 """Steps at the begin of a recording to which the clock is fitted first."""
+MOST_STEPS = 1e12
+"""Largest duration of a recording, in steps."""
 TOLERANCE = 1e-6
 """Distance from regular times, in steps, that is not worth a note."""
 
@@ -59,13 +61,19 @@ def regular_rows(
     if len(time) == 0:
         raise DataError(f"{name} has no rows")
     if not np.all(np.isfinite(time)):
-        raise DataError(f"{where(name, int(np.argmin(np.isfinite(time))), line)}: its time is missing")
+        raise DataError(f"{where(name, int(np.argmin(np.isfinite(time))), line)}: its time is missing or infinite")
     dt = _step(id, time, name, line) if fps is None else 1.0 / fps
     if not FASTEST <= dt <= SLOWEST:
         short = "time_ms" if dt < 2e3 else "time_us" if dt < 2e6 else "time_ns"
         hint = f"; give --columns {short}=COLUMN if they are in another unit" if dt > SLOWEST else ""
         raise DataError(f"{name}: the time step is {dt:.4g}; times must be in seconds{hint}")
     since = time - time.min()
+    if not since.max() <= MOST_STEPS * dt or not np.isfinite(dt):
+        last = int(np.argmax(np.abs(time - np.median(time))))
+        raise DataError(
+            f"{where(name, last, line)}: the time {time[last]:g} s is more than {MOST_STEPS:g} steps of {dt:.4g} s from"
+            " the others; remove rows with wrong times"
+        )
     frame, phase, fitted = _fit(since, dt, fps is None)
     off = float(np.max(np.abs(since - phase - frame * fitted)))
     if off > SNAP * fitted:
@@ -103,7 +111,8 @@ def _step(id: Ints, time: Floats, name: str, line: Ints | None) -> float:
     if len(steps) == 0:
         raise DataError(f"{name}: no track has rows at two times, so its frame rate is unknown; give fps")
     dt = float(np.median(steps))
-    count = np.rint(steps / dt)
+    with np.errstate(over="ignore"):  # a wrong time may be as large as numbers get
+        count = np.rint(steps / dt)
     near = (count >= 1) & (np.abs(steps - count * dt) <= 0.5 * dt)
     return float(np.sum(steps[near]) / np.sum(count[near])) if np.any(near) else dt
 

@@ -19,7 +19,7 @@ _NAMES = {
     "id": "id agent agent_id actor_id ped ped_id pedestrian pedestrian_id person person_id p track track_id trackid"
     " trajectory_id traj_id obj_id object_id",
     "frame": "frame frame_id frameid frame_number frame_index f step",
-    "time": "time t timestamp time_s seconds sec",
+    "time": "time t timestamp time_s seconds sec secs header.stamp.sec header.stamp.secs stamp.sec stamp.secs",
     "x": "x pos_x x_pos position_x x_position x_est x_center xcenter",
     "y": "y pos_y y_pos position_y y_position y_est y_center ycenter",
     "label": "label class type agent_type category",
@@ -37,6 +37,7 @@ TIME_WITH_UNIT = re.compile(
     r"(?:(ms|msec|millis|milliseconds)|(us|µs|usec|micros|microseconds)|(ns|nsec|nanos|nanoseconds))\s*[\])]?$"
 )
 
+WHOLE_SECONDS = re.compile(r"^(.*?)secs?$")
 DECIMAL_COMMA = re.compile(r"^[+-]?\d*(,\d*)?([eE][+-]?\d+)?$")
 """A number with a decimal comma; a table with such numbers has another delimiter."""
 WITH_UNIT = re.compile(r"^(.*?[a-z])[\s_/]*[\[(/_\s]\s*(mm|cm|m|ft|px)\s*[\])]?$")
@@ -91,6 +92,19 @@ def time_unit(column: str, given: Mapping[str, str] | None = None) -> str:
         return named
     unit = TIME_WITH_UNIT.match(column.strip().lower())
     return next((long for long, short in zip(TIME_UNITS, unit.groups()[1:], strict=True) if short), "") if unit else ""
+
+
+def parts_of_seconds(column: str, names: list[str]) -> str:
+    """Return the column of nanoseconds beside one of whole seconds, as in the stamps of ROS; empty without one.
+
+    >>> parts_of_seconds("header.stamp.sec", ["header.stamp.sec", "header.stamp.nanosec", "x"])
+    'header.stamp.nanosec'
+    """
+    whole = WHOLE_SECONDS.match(column.strip().lower())
+    if whole is None:
+        return ""
+    wanted = {f"{whole[1]}{word}" for word in ("nanosec", "nanosecs", "nsec", "nsecs")}
+    return next((name for name in names if name.strip().lower() in wanted), "")
 
 
 def _is_time_with_unit(small: str) -> bool:

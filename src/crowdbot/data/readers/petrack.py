@@ -16,10 +16,14 @@ from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
-from .plausibility import FileColumns
+from .plausibility import FileColumns, exchange_warning
 from .reader import Reader, ReadOptions
 
 HERMES_FPS = 16.0
+ID_FIRST = (
+    "warning: id and frame seem to be swapped (read as id frame x y z): give --columns frame=1 id=2 x=3 y=4 and"
+    " the frame rate"
+)
 ROOM = 50.0
 """Coordinates beyond this [m] without a unit are centimetres; no indoor experiment is larger."""
 
@@ -45,6 +49,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(
             f"{source.name} has {values.shape[1]} columns, PeTrack files have id frame x y and optionally z"
         )
+    odd = exchange_warning(values[:, 0], values[:, 1], values[:, 2:4], ID_FIRST) if not header else ""
     fps, unit = FPS.search(header), UNIT.search(header)
     units, guess = (unit.group(1).lower(), "") if unit else _guess_units(values)
     notes = [] if options.units else [guess]
@@ -59,7 +64,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         y=values[:, 3],
         fps=_parse_fps(fps, source.name) if fps else (None if header else HERMES_FPS),
         units=units,
-        note="; ".join(note for note in notes if note),
+        note="; ".join(note for note in (*notes, odd) if note),
         line=line,
         columns=FileColumns(height="z", heights=values[:, 4]) if values.shape[1] == 5 else None,
     )

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Floats
 
 from .reader import ReadOptions
 from .time_base import RowRateError
@@ -38,7 +39,7 @@ TRACKER_STEPS = (1e-3, 10.0)
 WALKED = 1.0
 """Shortest way [m] of somebody in a recording whose slow speeds are judged: people who stand are slow, too."""
 WIDEST_DEGREES = 0.1
-"""Largest extent of places in degrees: 11 km."""
+"""Largest extent of places or areas in degrees: 11 km, and as metres too small for one person."""
 METRES_PER_DEGREE = 111_195.0
 SMALLER_UNITS = (("cm", 100.0), ("mm", 1000.0))
 HEAD_RANGE = 0.6
@@ -47,6 +48,19 @@ LINE = 0.01
 """Extent [m] below which a coordinate is constant."""
 OVERLAP, OVERLAP_SHARE = 0.2, 0.02
 """Distance [m] at which bodies overlap, and the share of rows above which people seem to walk through each other."""
+
+
+ENOUGH = 100
+"""Smallest number of steps of tracks that decides whether two columns are exchanged."""
+SMOOTHER = 5.0
+"""Columns are probably exchanged if steps are this much shorter the other way."""
+JUMP, FASTER = 0.5, 3.0
+"""Length [m] of a step that is impossible, if it is also faster than ``FASTEST`` and this many times as fast as nearly
+all other steps."""
+FEW = 0.02
+"""Largest share of impossible steps that are jumps of single people, instead of a wrong unit or frame rate."""
+LONG_PAUSE = 86_400.0
+"""Time without anybody [s] after which a time stamp is probably wrong: a day."""
 
 
 class FileColumns(NamedTuple):
@@ -93,7 +107,8 @@ def _check(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> 
                 fps * step,
             )
     odd = stamps or _degree_warning(tracks, options) or _speed_warning(tracks, options, speed)
-    sentences = (odd, _height_warning(tracks, columns))
+    steps = ("", "") if odd else (_jump_warning(tracks), _pause_warning(tracks))
+    sentences = (odd, _height_warning(tracks, columns), *steps)
     warnings = [f"warning: {sentence}" for sentence in sentences if sentence]
     new = [warning for warning in warnings if warning not in tracks.note]
     return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, *new)))) if new else tracks
@@ -188,11 +203,85 @@ def _speed_warning(tracks: Trajectories, options: ReadOptions, speed: float) -> 
     """Return a warning if people are too fast or too slow, else an empty text."""
     given = options.fps is not None or options.units is not None
     if not (speed > FASTEST or (given and speed < SLOWEST)):
-        return _walking_warning(tracks)
+        return _crowded_warning(tracks, options) or _walking_warning(tracks)
     smaller = () if options.units is not None else SMALLER_UNITS
     fits = next((unit for unit, per in smaller if SLOW_WALK < speed / per < FAST_WALK), "")
     hint = f" (with --units {fits} it is {speed / dict(SMALLER_UNITS)[fits]:.2g} m/s)" if fits else ""
     return f"the median speed {speed:.2g} m/s is impossible for people: check the frame rate (fps) and the units{hint}"
+
+
+def _crowded_warning(tracks: Trajectories, options: ReadOptions) -> str:
+    """Return a warning if bodies would be inside each other, as in kilometres that are read as metres."""
+    if tracks.units != "m" or options.units is not None or len(tracks) < ENOUGH:
+        return ""
+    extent = float(max(np.ptp(tracks.x), np.ptp(tracks.y)))
+    if not 0.0 < extent < OVERLAP or len(np.unique(tracks.id[tracks.frame == tracks.frame[0]])) < 2:
+        return ""
+    return f"all people are within {extent:.2g} m at all times: the places are probably in kilometres, give --units km"
+
+
+def _jump_warning(tracks: Trajectories) -> str:
+    """Return a warning if single steps of people are impossible, as where a tracker exchanges two people."""
+    if tracks.units != "m":
+        return ""
+    others = np.asarray(sorted(tracks.robots | tracks.other_agents.keys()), dtype=np.int64)
+    velocity = tracks.velocities()
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    speed[np.isin(tracks.id, others)] = np.nan
+    known = speed[np.isfinite(speed)]
+    if len(known) < ENOUGH:
+        return ""
+    limit = max(FASTEST, FASTER * float(np.percentile(known, 90)))
+    jumps = np.flatnonzero((speed > limit) & (speed * tracks.dt > JUMP))
+    if not len(jumps) or len(jumps) > max(2.0, FEW * len(known)):
+        return ""
+    first = jumps[0]
+    people = np.unique(tracks.id[jumps[tracks.frame[jumps] == tracks.frame[first]]])
+    who = " and ".join(map(str, people[:2].tolist()))
+    why = f"the ids {who} are perhaps exchanged there" if len(people) > 1 else "the track is perhaps of two people"
+    count = f"{len(jumps)} steps are" if len(jumps) > 1 else "a step is"
+    return (
+        f"{count} impossible for people: person {tracks.id[first]} moves at {speed[first]:.2g} m/s at frame"
+        f" {tracks.frame[first]}, {why}, give each part an id of its own"
+    )
+
+
+def _pause_warning(tracks: Trajectories) -> str:
+    """Return a warning if the recording is interrupted for more than a day."""
+    frames = np.unique(tracks.frame)
+    if len(frames) < 2:
+        return ""
+    gaps = np.diff(frames) / tracks.frame_step * tracks.dt
+    longest = int(np.argmax(gaps))
+    if gaps[longest] <= LONG_PAUSE:
+        return ""
+    last = (frames[longest] - frames[0]) / tracks.frame_step * tracks.dt
+    return (
+        f"nobody is there for {gaps[longest]:.3g} s after {last:.4g} s: a time stamp or a frame is probably wrong,"
+        " remove its rows"
+    )
+
+
+def exchange_warning(id: Floats, frame: Floats, place: Floats, sentence: str) -> str:
+    """Return a sentence if tracks are much smoother with ids and frames exchanged, else an empty text.
+
+    Args:
+        id, frame: columns ``[N]`` as they are read.
+        place: positions ``[N, 2]``.
+        sentence: what is wrong and how it is corrected.
+    """
+    given, exchanged = _usual_step(id, frame, place), _usual_step(frame, id, place)
+    return sentence if given is not None and exchanged is not None and given > SMOOTHER * exchanged else ""
+
+
+def _usual_step(id: Floats, frame: Floats, place: Floats) -> float | None:
+    """Return the median distance between consecutive rows of a track; None with too few rows."""
+    order = np.lexsort((frame, id))
+    same = np.diff(id[order]) == 0
+    if np.sum(same) < ENOUGH:
+        return None
+    away = np.diff(place[order], axis=0)[same]
+    return float(np.median(np.hypot(away[:, 0], away[:, 1])))
 
 
 def _walking_warning(tracks: Trajectories) -> str:

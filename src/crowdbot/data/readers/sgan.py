@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .eth import eth_time_base
+from .plausibility import exchange_warning
 from .reader import Reader, ReadOptions
 
 HIDDEN = "?"
-ENOUGH = 100
-"""Minimum number of track steps to check the order of the columns."""
-SMOOTHER = 5.0
-"""The columns are suspected to be swapped if steps are this much shorter in the other order."""
+FRAME_FIRST = "warning: id and frame seem to be swapped (read as frame id x y), format petrack reads id frame x y"
 
 
 def sniff(source: Source) -> bool:
@@ -36,6 +31,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         note = f"{left_out} rows with '?' are excluded: a test file with hidden futures"
     values, line = source.table(4, text)
     fps, base = eth_time_base(values, options) if len(values) else (None, "")
+    odd = exchange_warning(values[:, 1], values[:, 0], values[:, 2:4], FRAME_FIRST)
     return assemble(
         source,
         options,
@@ -44,27 +40,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         x=values[:, 2],
         y=values[:, 3],
         fps=fps,
-        note="; ".join(part for part in (note, base, _exchange_warning(values)) if part),
+        note="; ".join(part for part in (note, base, odd) if part),
         line=line,
     )
-
-
-def _exchange_warning(values: NDArray[np.float64]) -> str:
-    """Return a warning if tracks are much smoother with id and frame swapped."""
-    given_order, swapped_order = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
-    if given_order is None or swapped_order is None or not given_order > SMOOTHER * swapped_order:
-        return ""
-    return "id and frame seem to be swapped (read as frame id x y); format petrack reads id frame x y"
-
-
-def _jump(id: NDArray[np.float64], frame: NDArray[np.float64], values: NDArray[np.float64]) -> float | None:
-    """Return the median distance between consecutive rows of a track; None with too few rows."""
-    order = np.lexsort((frame, id))
-    same = np.diff(id[order]) == 0
-    if np.sum(same) < ENOUGH:
-        return None
-    away = np.diff(values[order, 2:4], axis=0)[same]
-    return float(np.median(np.hypot(away[:, 0], away[:, 1])))
 
 
 def _number(word: str) -> bool:

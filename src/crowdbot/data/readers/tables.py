@@ -26,13 +26,29 @@ from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .clock import regular_rows, row_rate_of_times
-from .columns import TIME_UNITS, Columns, Lines, check_columns, find_columns, ids, labels, numbers, time_unit
+from .columns import (
+    DECIMAL_COMMA,
+    TIME_UNITS,
+    Columns,
+    Lines,
+    check_columns,
+    find_columns,
+    ids,
+    labels,
+    numbers,
+    parts_of_seconds,
+    time_unit,
+)
 from .plausibility import FileColumns
 from .reader import Reader, ReadOptions
 
 ROBOT = "robot"
 """Tracks with this label are robots."""
-DELIMITERS = ",;\t"
+DELIMITERS = ";\t|,"
+"""Delimiters in the order in which they are looked for: commas may be decimal commas."""
+SEPARATOR_LINE = re.compile(r"sep=(.)\s*$", re.IGNORECASE)
+"""First line of tables of spreadsheets."""
+DUPLICATE = " (column "
 ROW_UNITS = ("m", "cm", "mm", "ft")
 OWN_ID = "id of the file"
 """Column that is added to tables of one person."""
@@ -54,6 +70,12 @@ def sniff_csv(source: Source) -> bool:
     return marked and len(lines) > 1 and len(_words(lines[1])) == len(names)
 
 
+def has_numbers(source: Source) -> bool:
+    """Return whether the first lines are numbers, perhaps with decimal commas, so that columns have numbers."""
+    lines = _data_lines(source)[:50]
+    return bool(lines) and all(is_nameless(_words(line)) for line in lines)
+
+
 def read_csv(source: Source, options: ReadOptions) -> Trajectories:
     """Read a table with or without a line of names; delimiters are commas, semicolons, tabs or blanks, "#" begins a
     comment.
@@ -68,7 +90,10 @@ def _csv_columns(source: Source) -> tuple[Columns, str, NDArray[np.int64]]:
     if not head:
         raise DataError(f"{source.name} is not a text with a line of column names")
     delimiter = _delimiter(head[0])
-    reader = csv.reader(io.StringIO(source.text(), newline=""), delimiter=delimiter or " ", skipinitialspace=True)
+    text = source.text()
+    if SEPARATOR_LINE.match(text.partition("\n")[0]):
+        text = "\n" + text.partition("\n")[2]
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter or " ", skipinitialspace=True)
     rows: list[list[str]] = []
     lines: list[int] = []
     try:
@@ -80,14 +105,18 @@ def _csv_columns(source: Source) -> tuple[Columns, str, NDArray[np.int64]]:
         raise DataError(f"{source.name} line {reader.line_num} cannot be read as a table: {error}") from None
     if not rows:
         raise DataError(f"{source.name} has no line of column names")
-    if all(map(_is_number, rows[0])):
+    if is_nameless(rows[0]):
         names, first = [str(number) for number in range(1, len(rows[0]) + 1)], 0
     else:
-        names, first = [name.strip() for name in rows[0]], 1
+        names, first = _distinct([name.strip() for name in rows[0]]), 1
     wrong = next((index for index in range(first, len(rows)) if len(rows[index]) != len(names)), None)
     if wrong is not None:
         other = "the line of names" if first else "the first line"
-        raise DataError(f"{source.name} line {lines[wrong]} has {len(rows[wrong])} columns, {other} has {len(names)}")
+        commas = any(DECIMAL_COMMA.match(word) for word in (",".join(rows[wrong][-2:]),)) and delimiter == ","
+        why = "; commas are delimiters here, numbers with decimal commas need another one" if commas else ""
+        raise DataError(
+            f"{source.name} line {lines[wrong]} has {len(rows[wrong])} columns, {other} has {len(names)}{why}"
+        )
     units = _units_row(names, rows[first]) if first and len(rows) > 1 else ""
     first += bool(units)
     cells = zip(*rows[first:], strict=True) if rows[first:] else [()] * len(names)
@@ -95,12 +124,26 @@ def _csv_columns(source: Source) -> tuple[Columns, str, NDArray[np.int64]]:
     return columns, units, np.asarray(lines[first:], dtype=np.int64)
 
 
+def is_nameless(words: Sequence[str]) -> bool:
+    """Return whether all words of a first line are numbers, perhaps with decimal commas, so that there are no names."""
+    return all(_is_number(word.strip()) for word in words)
+
+
 def _is_number(word: str) -> bool:
     try:
         float(word)
     except ValueError:
-        return False
+        return word != "" and DECIMAL_COMMA.match(word) is not None
     return True
+
+
+def _distinct(names: list[str]) -> list[str]:
+    """Return names of which the second of a kind has its number, so that no column replaces another.
+
+    >>> _distinct(["t", "x", "x"])
+    ['t', 'x', 'x (column 3)']
+    """
+    return [f"{name}{DUPLICATE}{k + 1})" if name in names[:k] else name for k, name in enumerate(names)]
 
 
 def _units_row(names: list[str], row: list[str]) -> str:
@@ -175,7 +218,8 @@ def read_parquet(source: Source, options: ReadOptions) -> Trajectories:
 
 
 def _data_lines(source: Source) -> list[str]:
-    return [line for line in source.lines if not line.lstrip().startswith("#")]
+    lines = [line for line in source.lines if not line.lstrip().startswith("#")]
+    return lines[1:] if lines and SEPARATOR_LINE.match(lines[0]) else lines
 
 
 def _delimiter(line: str) -> str | None:
@@ -195,12 +239,18 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
         columns, one = {**columns, OWN_ID: np.ones(len(columns[found["x"]]), dtype=np.int64)}, ONE_PERSON
         found["id"] = OWN_ID
     check_columns(found, list(columns), name, options.columns)
+    twice = next((c for what, c in found.items() if what not in options.columns and _is_twice(c, columns)), "")
+    if twice:
+        raise DataError(f"{name} has several columns called {twice!r}; choose one by its number, such as --columns y=4")
     known = [meaning for meaning in ("frame", "time", "x", "y", "height") if meaning in found]
     values = {meaning: numbers(columns[found[meaning]], found[meaning], name, line) for meaning in known}
     seconds, remark = found.get("time", ""), ""
     if "time" in found and (unit := time_unit(found["time"], options.columns)):
         values["time"] *= TIME_UNITS[unit]
         seconds, remark = "", f"{found['time']} is read as {unit}"
+    elif "time" in found and (rest := parts_of_seconds(found["time"], list(columns))):
+        values["time"] += 1e-9 * numbers(columns[rest], rest, name, line)
+        remark = f"times are {found['time']} with the nanoseconds of {rest}"
     id, renamed = ids(columns[found["id"]], found["id"], name, line)
     named = labels(columns[found["label"]], id) if "label" in found else {}
     beside: dict[str, Any] = {
@@ -237,6 +287,10 @@ def _by_name(given: Mapping[str, str], names: list[str]) -> dict[str, str]:
     """Return the columns of the user by name; a number that is no name counts columns from 1."""
     numbered = {str(number): name for number, name in enumerate(names, 1)}
     return {what: column if column in names else numbered.get(column, column) for what, column in given.items()}
+
+
+def _is_twice(column: str, columns: Columns) -> bool:
+    return any(name.startswith(f"{column}{DUPLICATE}") for name in columns)
 
 
 def _is_one_person(columns: Columns, found: dict[str, str]) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, parse_yaml
+from crowdbot.data import WIDEST_DEGREES
 from crowdbot.trials.fields import LARGEST
 
 from .trial_files import read_beside, resolve_file
@@ -35,8 +36,6 @@ IMAGES = ("PPM", "PNG", "BMP", "JPEG")
 """Formats of map images; PPM includes PGM and PBM."""
 RAW_OCCUPIED = 100
 """Largest value of a cell with a known occupancy [%] in the mode raw."""
-MOST_DEGREES = 0.1
-"""Largest extent of an area that is taken for degrees: 11 km, and as metres too small for one person."""
 GEOGRAPHIC = re.compile(r"CRS84|EPSG:+(?:[0-9.]+:)?(4326|4258|4269|4979)\b", re.IGNORECASE)
 """Names of reference systems in degrees: WGS 84, ETRS89 and NAD83."""
 WKT = re.compile(r"\s*(MULTI)?(POLYGON|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
@@ -146,7 +145,7 @@ def _check_degrees(text: str, whole: shapely.Geometry, name: str) -> None:
     if GEOGRAPHIC.search(kind):
         raise InputError(f'{name} is in degrees ({kind[:60]}): {project}; remove its "crs" if the numbers are metres')
     size = max(east - west, north - south)
-    if size < MOST_DEGREES and max(abs(west), abs(south)) > 1.0:
+    if size < WIDEST_DEGREES and max(abs(west), abs(south)) > 1.0:
         raise InputError(
             f"{name} is {east - west:.3g} m x {north - south:.3g} m: its coordinates look like degrees of longitude and"
             f" latitude; {project}"

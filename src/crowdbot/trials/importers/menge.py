@@ -23,6 +23,10 @@ from .scene_parts import ImportedScene, as_number, box, move
 
 Spot = tuple[float, float]
 MODELS: dict[str, type[CrowdModel]] = {"orca": ORCA, "helbing": SocialForce}
+READ = {"AgentProfile", "Common", "Elevation", "SpatialQuery", "Helbing", "Karamouzas", "Orca", "PedVO", "Zanlungo"}
+"""Elements of a scene that are read, that act on no person, or that are parameters of models, which have a note."""
+STRAIGHT = {"goal", "zero", "const"}
+"""Velocity components that need no map: straight to the goal, none, or the same for all."""
 MOST_AGENTS = 5000
 MOST_STATES = 100
 RADIUS, SPEED = 0.19, 1.04
@@ -108,7 +112,7 @@ class _Reader:
                 step = min(1.0, max(0.001, self._number(part, "time_step")))
             elif part.tag == "Elevation" and part.attributes.get("type") != "flat":
                 self.scene.note("the elevation is not imported: the ground is level")
-            elif part.tag in ("AgentSource", "Target", "Event", "EventSystem"):
+            elif part.tag not in READ:
                 self.scene.note(f"<{part.tag}> in line {part.line} is not imported")
         kind = MODELS.get(self.model, ORCA)
         if self.model not in MODELS:
@@ -171,6 +175,11 @@ class _Reader:
                 self.scene.note(f"the <{tag}> in line {selector.line} is not constant: its first choice is taken")
             first = next(iter(selector.children), selector)
             chosen[tag] = selector.attributes.get("name") or first.attributes.get("name", "")
+        for inner in part.children:
+            if inner.tag not in ("ProfileSelector", "StateSelector", "Generator"):
+                self.scene.note(f"<{inner.tag[:40]}> of the agents in line {part.line} is not imported")
+        if chosen["ProfileSelector"] not in profiles:
+            self.scene.note(f"there is no profile {chosen['ProfileSelector'][:40]!r}: its agents have the usual values")
         profile = profiles.get(chosen["ProfileSelector"], AgentProfile())
         for generator in part.each("Generator"):
             for x, y in self._places(generator):
@@ -243,6 +252,15 @@ class _Reader:
         name = state.attributes.get("name", "")[:40]
         for part in state.each("Action"):
             self.scene.note(f"the action {part.attributes.get('type', '')[:30]!r} of state {name!r} is not imported")
+        for part in state.each("VelComponent"):
+            kind = part.attributes.get("type", "goal")
+            if kind not in STRAIGHT:
+                self.scene.note(
+                    f"the velocity component {kind[:30]!r} of state {name!r} is not imported: routes avoid walls"
+                )
+        for part in state.children:
+            if part.tag not in ("Action", "VelComponent", "GoalSelector"):
+                self.scene.note(f"<{part.tag[:40]}> of state {name!r} is not imported")
         selector = next(iter(state.each("GoalSelector")), None)
         kind = selector.attributes.get("type", "identity") if selector is not None else "identity"
         if selector is None or kind in ("identity", "mirror"):

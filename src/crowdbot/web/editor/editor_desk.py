@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, TrialError, without_running_code
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials import (
+    MOST_CELLS,
     Avatar,
     Points,
     Trial,
@@ -48,7 +49,6 @@ ROOM = 0.3
 """Distance between the people and the border of their zone [m]."""
 SAME = ("journey", "speed", "radius", "arrival", "crowd", "body", "activity")
 """Attributes that a spawner takes over if all its people have the same value."""
-MOST_CELLS = 16_000_000
 MESSAGE = re.compile(r":(\d+): (?:<([^>\s]+)>)?")
 MOST_WAYS = 60
 BODY = 0.25

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.typing import Floats
-from crowdbot.world.urdf import Cylinder, Joint, RobotModel
+from crowdbot.world.urdf import Cylinder, Joint, LinkShape, RobotModel
 from crowdbot.world.urdf.transforms import transform_points
 
 BASE_KINDS = (
     "differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional", "legged", "planar",
 )  # fmt: skip
 """Kinds of base; ``planar`` is a base without wheels and legs that are recognized."""
+LIFT = 0.3
+"""Travel [m] above which a sliding joint belongs to a lift, not to a leg."""
 NEAR_GROUND = 0.03
 """Height [m] above the lowest point up to which a part stands on the ground."""
 TOUCHES = 0.008
@@ -129,6 +131,8 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
     loose: list[FoundWheel] = []
     for joint in model.movable:
         wheel = _wheel(model, joint, poses, points[joint.child], ground)
+        if wheel is None and model.links[joint.child].collisions:  # the collision shape of a wheel may be a box
+            wheel = _wheel(model, joint, poses, _outline(model.links[joint.child].visuals, poses[joint.child]), ground)
         if wheel is not None:
             (loose if _is_castor(model, joint) else found).append(wheel)
     if not found:  # castors alone cannot drive a robot: they have motors
@@ -147,9 +151,12 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
 
 def _points(model: RobotModel, name: str, poses: Mapping[str, Floats]) -> Floats:
     link = model.links[name]
-    rows = [
-        transform_points(poses[name] @ part.origin, part.shape.points()) for part in link.collisions or link.visuals
-    ]
+    return _outline(link.collisions or link.visuals, poses[name])
+
+
+def _outline(parts: Sequence[LinkShape], pose: Floats) -> Floats:
+    """Return points ``[N, 3]`` of shapes at a pose."""
+    rows = [transform_points(pose @ part.origin, part.shape.points()) for part in parts]
     return np.concatenate(rows) if rows else np.zeros((0, 3))
 
 
@@ -242,19 +249,23 @@ def _is_castor(model: RobotModel, joint: Joint) -> bool:
 
 
 def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tuple[str, ...]:
-    """Return the joints of chains of at least two rotating joints whose last links are near the ground."""
+    """Return the joints of legs: chains of at least two rotating joints whose last links are near the ground.
+
+    Legs begin at different joints of the body. Fingers of a hand that hangs down do not, nor does an arm on a lift.
+    """
     found: dict[str, None] = {}
-    feet = 0
+    limbs: set[str] = set()
     for name, rows in points.items():
         if not len(rows) or rows[:, 2].min() > ground + 2.0 * NEAR_GROUND:
             continue
         last = next((joint for joint in model.joints.values() if joint.child == name), None)
         chain = [] if last is None else [last, *_above(model, last)]
         turning = [joint for joint in chain if joint.kind in ("revolute", "continuous") and joint.mimic is None]
-        if len(turning) >= 2:
-            feet += 1
+        lifted = any(joint.kind == "prismatic" and joint.upper - joint.lower > LIFT for joint in chain)
+        if len(turning) >= 2 and not lifted:
+            limbs.add(chain[-1].name)
             found |= dict.fromkeys(joint.name for joint in reversed(turning))
-    return tuple(found) if feet >= 2 else ()
+    return tuple(found) if len(limbs) >= 2 else ()
 
 
 def _kind(

@@ -33,6 +33,8 @@ ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
 TRUTH_ENDING = "/ground_truth/odom"
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 METADATA, ENDING = "crowdbot", "crowdbot.end"
+SHORTEST_STEP = 0.25
+"""Shortest time between two messages, in periods."""
 HUNAV_ROBOT = 2
 """Type of an agent of HuNavSim that is a robot."""
 
@@ -44,13 +46,15 @@ PEOPLE_TYPES: Mapping[str, Callable[[Any], Iterator[_Person]]] = {
         (str(p.track_id), p.pose.pose.position) for p in message.tracks
     ),
     "pedsim_msgs/msg/TrackedPersons": lambda message: ((str(p.track_id), p.pose.pose.position) for p in message.tracks),
-    "pedsim_msgs/msg/AgentStates": lambda message: ((str(p.id), p.position) for p in message.agent_states),
+    "pedsim_msgs/msg/AgentStates": lambda message: (
+        (str(p.id), p.pose.position if hasattr(p, "pose") else p.position) for p in message.agent_states
+    ),
     "hunav_msgs/msg/Agents": lambda message: (
         (str(p.id), p.position.position) for p in message.agents if p.type != HUNAV_ROBOT
     ),
     DETECTIONS: lambda message: ((person.name, person.point) for person in detected_people(message)),
 }
-"""Message types of people; each gives names and positions."""
+"""Message types of people; each gives names and positions. AgentState of pedsim once had a position, now a pose."""
 
 
 @dataclass
@@ -83,7 +87,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         messages = _read_messages(source, options)
     people = messages.people
     stamps = np.asarray(people.stamps, dtype=np.int64)
-    period, frames = _frames(source.name, messages.topic, stamps, messages.schedule)
+    period, frames, drift = _frames(source.name, messages.topic, stamps, messages.schedule)
     message = np.asarray([person[0] for person in people.persons], dtype=np.int64)
     place = np.asarray([person[2:] for person in people.persons], dtype=np.float64).reshape(-1, 3)
     target, moved, remarks = _to_fixed_frame(source, options, messages, stamps[message], place)
@@ -105,7 +109,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         y=y,
         row_rate=SECOND / period,
         frame_step=1,
-        note="; ".join(filter(None, (cut, *remarks, *about_robots))),
+        note="; ".join(filter(None, (cut, drift, *remarks, *about_robots))),
         walls=_walls(source.name, messages.walls),
         robots=frozenset(int(robot[0][0]) for robot in robots),
     )
@@ -271,8 +275,12 @@ def _schedule(known: Mapping[str, str]) -> TickSchedule | None:
 
 def _frames(
     name: str, topic: str, stamps: NDArray[np.int64], schedule: TickSchedule | None
-) -> tuple[float, NDArray[np.int64]]:
-    """Return the period of the topic of people [ns] and the frame of each message, from its stamp."""
+) -> tuple[float, NDArray[np.int64], str]:
+    """Return the period of the topic of people [ns], the frame of each message, and a remark on a clock that drifts.
+
+    A frame is a multiple of the period. If the stamps drift away from these, each message is a whole number of frames
+    after the one before, and the period is the mean.
+    """
     if len(stamps) < 2:
         raise DataError(f"{name} has {len(stamps)} messages on {topic}, at least 2 are required")
     steps = np.diff(stamps)
@@ -282,6 +290,11 @@ def _frames(
     if schedule is None:
         period = float(np.median(steps))
         frames = np.rint((stamps - stamps[0]) / period).astype(np.int64)
+        follow = np.concatenate([[0], np.cumsum(np.maximum(1, np.rint(steps / period)))]).astype(np.int64)
+        if np.all(steps >= SHORTEST_STEP * period) and np.any(np.diff(frames) != np.diff(follow)):
+            period = float((stamps[-1] - stamps[0]) / follow[-1])
+            off = float(np.max(np.abs(stamps - stamps[0] - follow * period))) / SECOND
+            return period, follow, f"stamps are up to {off:.2g} s off a regular step of {period / SECOND:.4g} s"
     else:
         period = float(schedule.period_ns)
         frames = schedule.index(stamps // schedule.step_ns)
@@ -290,7 +303,7 @@ def _frames(
         raise DataError(
             f"{name}: the stamps on {topic} are not regular, some steps are far shorter than {period / 1e6:.3g} ms"
         )
-    return period, frames
+    return period, frames, ""
 
 
 def _number_names(names: list[str]) -> NDArray[np.int64]:
