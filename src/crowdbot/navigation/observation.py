@@ -21,6 +21,8 @@ from .track_history import HORIZON, TrackHistory, choose_predictor
 
 BY_INDEX: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 """Default of ids: people are numbered by their index."""
+CERTAIN: Floats = np.ones(0)
+"""Default of existence: everybody is there."""
 DISC: Floats = np.zeros((0, 2))
 """Outline of a disc: no corners."""
 AT_GOAL = (math.nan, math.nan)
@@ -53,16 +55,21 @@ class VisiblePeople:
         velocity: ``[N, 2]`` [m/s].
         radius: ``[N]`` [m].
         ids: ``[N]`` identities; default: the indices.
+        existence: ``[N]`` probability that there is a person, as a tracker says; default 1. MPC and time-elastic band
+            weigh the cost of a contact by it.
     """
 
     position: Floats
     velocity: Floats
     radius: Floats
     ids: NDArray[np.int64] = field(default_factory=lambda: BY_INDEX)
+    existence: Floats = field(default_factory=lambda: CERTAIN)
 
     def __post_init__(self) -> None:
         if self.ids is BY_INDEX:
             object.__setattr__(self, "ids", np.arange(len(self.radius)))
+        if self.existence is CERTAIN:
+            object.__setattr__(self, "existence", np.ones(len(self.radius)))
 
     @classmethod
     def none(cls) -> VisiblePeople:

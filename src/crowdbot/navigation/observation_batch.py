@@ -17,7 +17,7 @@ from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
 from crowdbot.typing import Bools, Floats
 
-from .observation import DISC, DriveLimits, Observation, VisiblePeople
+from .observation import CERTAIN, DISC, DriveLimits, Observation, VisiblePeople
 from .track_batch import TrackBatch
 from .track_history import HORIZON, SAME, TrackHistory, choose_predictor, forecast_problem
 
@@ -35,6 +35,7 @@ class AgentsInView:
         radius: ``[N, A]`` [m].
         seen: ``[N, A]`` bool, whether the robot sees the agent; False for itself and for free places.
         ids: ``[N, A]`` identities.
+        existence: ``[N, A]`` probability that there is an agent; default 1.
     """
 
     position: Floats
@@ -42,6 +43,11 @@ class AgentsInView:
     radius: Floats
     seen: Bools
     ids: NDArray[np.int64]
+    existence: Floats = field(default_factory=lambda: CERTAIN)
+
+    def __post_init__(self) -> None:
+        if self.existence is CERTAIN:
+            object.__setattr__(self, "existence", np.ones(self.radius.shape))
 
     @classmethod
     def none(cls, count: int) -> AgentsInView:
@@ -115,7 +121,7 @@ class ObservationBatch:
         for name, shape in (("pose", 3), ("goal", 2), ("waypoint", 2), ("twist", 3), ("radius", 0), ("time", 0)):
             _require(self, name, (N, shape) if shape else (N,))
         A = self.people.radius.shape[-1]
-        for name, kind in (("position", 2), ("velocity", 2), ("radius", 0), ("seen", 0), ("ids", 0)):
+        for name, kind in (("position", 2), ("velocity", 2), ("radius", 0), ("seen", 0), ("ids", 0), ("existence", 0)):
             _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, np.float64))
         if len(self.tracks) not in (0, N):
             raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
@@ -202,6 +208,7 @@ class ObservationBatch:
                 self.people.velocity[k, seen],
                 self.people.radius[k, seen],
                 self.people.ids[k, seen],
+                self.people.existence[k, seen],
             ),
             walls=self.walls,
             time=float(self.time[k]),

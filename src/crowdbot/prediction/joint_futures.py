@@ -74,10 +74,9 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
         if len(who) < 2:
             continue
         fixed, room = past.robot[window, who], _rooms(past, window, who, contact)
-        for k in range(place.shape[1]):
-            path = _with_plans(past, np.ascontiguousarray(np.moveaxis(place[window, k][:, who], 1, 0)), window, who)
-            moved = separate_paths(path, fixed, room, ROUNDS)
-            found[window, k][:, who] = np.moveaxis(moved, 0, 1)
+        paths = _with_plans(past, place[window][:, :, who].transpose(0, 2, 1, 3), window, who)
+        moved = np.stack([separate_paths(path, fixed, room, ROUNDS) for path in np.ascontiguousarray(paths)])
+        found[window][:, :, who] = moved.transpose(0, 2, 1, 3)
     windows, slots = np.nonzero(past.present[:, -1])
     if past.walls and len(windows):
         now = past.position[windows, -1, slots][:, None, None]
@@ -127,22 +126,19 @@ def _choice(
     K = place.shape[1]
     if len(who) < 2 or contact <= 0.0:
         return np.tile(np.arange(K), (len(who), 1))
-    path = np.ascontiguousarray(place[window][:, :, who].transpose(2, 0, 1, 3))
-    path = np.stack([_with_plans(past, np.ascontiguousarray(path[:, k]), window, who) for k in range(K)], axis=1)
+    path = _with_plans(past, place[window][:, :, who].transpose(0, 2, 1, 3), window, who)
+    path = np.ascontiguousarray(np.swapaxes(path, 0, 1))
     return np.asarray(assign_futures(path, _rooms(past, window, who, contact), order, SWEEPS))
 
 
 def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]) -> Floats:
-    """Return paths ``[A, T, 2]`` in which robots follow their plans."""
+    """Return paths ``[K, A, T, 2]`` in which robots follow their plans."""
     if past.plan is None:
         return path
-    path = path.copy()
-    for step in range(path.shape[1]):
-        ahead = past.plan_at(step + 1)[window, who]
-        path[:, step] = np.where(np.isnan(ahead), path[:, step], ahead)
-    return path
+    ahead = np.stack([past.plan_at(step + 1)[window, who] for step in range(path.shape[2])], axis=1)
+    return np.where(np.isnan(ahead), path, ahead)
 
 
 def _reorder(place: Floats, choice: NDArray[np.int64]) -> Floats:
     """Return ``place [K, T, A, 2]`` with the futures of each person permuted by ``choice [A, K]``."""
-    return np.take_along_axis(place, choice.T[:, None, :, None], axis=0)
+    return place.transpose(2, 0, 1, 3)[np.arange(len(choice))[:, None], choice].transpose(1, 2, 0, 3)

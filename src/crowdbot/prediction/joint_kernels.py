@@ -13,6 +13,8 @@ from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats, Ints
 
 FLAT = 1e-9
+SURE = 1.0 - 1e-9
+"""Factor of distances by which people who are far apart are left out, against rounding."""
 
 
 @kernel
@@ -35,6 +37,30 @@ def _boxes(path: Floats, room: Floats) -> Floats:  # pragma: no cover - compiled
 @kernel
 def _disjoint(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
     return bool(one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1])
+
+
+@kernel
+def _longest_steps(path: Floats) -> Floats:  # pragma: no cover - compiled
+    """Return ``[N]``: the longest step [m] of each path ``[N, T, 2]``."""
+    N, T, _ = path.shape
+    found = np.zeros(N)
+    for n in range(N):
+        for t in range(1, T):
+            dx, dy = path[n, t, 0] - path[n, t - 1, 0], path[n, t, 1] - path[n, t - 1, 1]
+            found[n] = max(found[n], math.sqrt(dx * dx + dy * dy))
+    return found
+
+
+@kernel
+def _rows_apart(squared: float, limit: float, closing: float) -> int:  # pragma: no cover - compiled
+    """Return after how many rows two people may be closer than ``limit`` [m] at the earliest, at least 1.
+
+    They are the root of ``squared`` [m] apart, and come closer by at most ``closing`` [m] in a row.
+    """
+    away = math.sqrt(squared) * SURE - limit
+    if away <= closing:
+        return 1
+    return int(min(away / closing, 1e9)) if closing > 0.0 else 1_000_000_000
 
 
 @kernel
@@ -130,14 +156,19 @@ def _exchange(choice: Ints, cost: Floats) -> bool:  # pragma: no cover - compile
 
 
 @kernel
-def _closest(one: Floats, other: Floats, limit: float) -> tuple[float, float, float, float]:  # pragma: no cover
+def _closest(
+    one: Floats, other: Floats, limit: float, closing: float
+) -> tuple[float, float, float, float]:  # pragma: no cover
     """Return where two paths ``[T, 2]``, straight between steps, are closest below ``limit``; -1: nowhere.
 
     Returns the step, with its fraction since the step before, the squared distance, and the difference of positions.
+    Steps in which they cannot come below ``limit`` [m], since they close by at most ``closing`` [m] in a step, are left
+    out.
     """
     when, least, dx, dy = -1.0, limit * limit, 0.0, 0.0
     u, v = one[0, 0] - other[0, 0], one[0, 1] - other[0, 1]
-    for t in range(len(one)):
+    t = 0
+    while t < len(one):
         x, y = one[t, 0] - other[t, 0], one[t, 1] - other[t, 1]
         wx, wy = x - u, y - v
         length = wx * wx + wy * wy
@@ -148,6 +179,10 @@ def _closest(one: Floats, other: Floats, limit: float) -> tuple[float, float, fl
         squared = near_x * near_x + near_y * near_y
         if squared < least:
             when, least, dx, dy = max(0.0, t - 1.0 + share), squared, near_x, near_y
+        later = _rows_apart(x * x + y * y, limit, closing)
+        if later > 1 and t + later < len(one):
+            x, y = one[t + later - 1, 0] - other[t + later - 1, 0], one[t + later - 1, 1] - other[t + later - 1, 1]
+        t += later
         u, v = x, y
     return when, least, dx, dy
 
@@ -160,22 +195,25 @@ def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Flo
     directions where they are closest, by half of the missing distance each. The offset grows linearly up to there and
     stays constant afterwards.
     Agents in ``fixed`` are not moved. All pairs move simultaneously in each round; the result does not depend on the
-    order of people.
+    order of people. Two people whom the round before did not move are not looked at again.
     """
     A, T, _ = path.shape
     out = path.copy()
+    push, moved, longest = np.zeros((A, T, 2)), np.ones(A, dtype=np.bool_), _longest_steps(path)
     for _ in range(rounds):
-        push = np.zeros((A, T, 2))
+        before = moved.copy()
+        moved[:] = False
         found = False
         for a in range(A):
             for b in range(a + 1, A):
-                if fixed[a] and fixed[b]:
+                if (fixed[a] and fixed[b]) or not (before[a] or before[b]):
                     continue
                 limit = room[a] + room[b]
-                when, least, dx, dy = _closest(out[a], out[b], limit)
+                when, least, dx, dy = _closest(out[a], out[b], limit, longest[a] + longest[b])
                 if when < 0.0:
                     continue
                 found = True
+                moved[a], moved[b] = moved[a] or not fixed[a], moved[b] or not fixed[b]
                 away = math.sqrt(least)
                 if away < FLAT:  # same position: move across the direction of motion
                     dy, dx = out[a, T - 1, 0] - out[a, 0, 0], out[a, 0, 1] - out[a, T - 1, 1]
@@ -194,9 +232,10 @@ def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Flo
         if not found:
             break
         for a in range(A):
-            for t in range(T):
-                for c in range(2):
-                    out[a, t, c] += push[a, t, c]
+            if moved[a]:
+                out[a] += push[a]
+                push[a] = 0.0
+                longest[a] = _longest_steps(out[a : a + 1])[0]
     return out
 
 

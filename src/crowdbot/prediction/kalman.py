@@ -16,6 +16,7 @@ from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
 from crowdbot.typing import Floats
 
+from .kalman_kernels import filter_rows, predict_variances
 from .predictor import Predictor
 
 KALMAN = Paper(
@@ -64,18 +65,18 @@ class _Filter(Predictor):
         covariance = self._covariance(spread, past, steps)
         return dataclasses.replace(self.forecast(past, place[:, None]), covariance=covariance)
 
-    def _covariance(self, spread: list[list[Floats]], past: Windows, steps: int) -> Floats:
+    def _covariance(self, spread: Floats, past: Windows, steps: int) -> Floats:
         """Return covariances ``[W, T, A, 2, 2]`` [m^2] of predicted positions; 0 for absent agents and known plans."""
-        n = len(self._start)
-        drift, noise = _step(n, past.dt), self._push**2 * _noise(n, past.dt, spread[0][0].shape[-1])
-        variance = []
-        for step in range(1, steps + 1):
-            spread = _predict_covariance(drift, spread, noise)
-            here = past.present[:, -1]
-            if past.plan is not None:
-                here = here & np.isnan(past.plan_at(step)).any(axis=-1)
-            variance.append(np.where(here[..., None, None], spread[0][0], 0.0))
-        found = np.stack(variance, axis=1)
+        n, (W, A) = len(self._start), spread.shape[:2]
+        drift, noise = _step(n, past.dt), self._push**2 * _noise(n, past.dt)
+        flat = np.ascontiguousarray(spread).reshape(W * A, *spread.shape[2:])
+        ahead = predict_variances(flat, drift, noise, steps).reshape(W, A, steps, *spread.shape[4:])
+        found = np.moveaxis(ahead, 2, 1)
+        here = np.repeat(past.present[:, -1][:, None], steps, axis=1)
+        if past.plan is not None:
+            for step in range(1, steps + 1):
+                here[:, step - 1] &= np.isnan(past.plan_at(step)).any(axis=-1)
+        found = np.where(here[..., None, None], found, 0.0)
         return np.asarray(found * np.eye(2) if found.shape[-1] == 1 else found)
 
     @classmethod
@@ -111,41 +112,25 @@ class _Filter(Predictor):
 
     def _run_filter(
         self, position: Floats, present: NDArray[np.bool_], dt: float, covariance: Floats | None = None
-    ) -> tuple[list[Floats], float, list[list[Floats]]]:
+    ) -> tuple[list[Floats], float, Floats]:
         """Return position and derivatives ``[..., 2]`` after the rows, the negative log-likelihood and the covariance.
 
-        The covariance is ``[n][n]`` of arrays ``[..., 2, 2]``; without covariances ``[T, ..., 2, 2]`` of the measured
-        positions x and y have the same variances, in arrays ``[..., 1, 1]``.
+        The covariance is ``[..., n, n, 2, 2]``; without covariances ``[T, ..., 2, 2]`` of the measured positions x and
+        y have the same variances, ``[..., n, n, 1, 1]``.
         """
         n, shape = len(self._start), present.shape[1:]
         one = np.eye(1 if covariance is None else 2)
-        drift, noise = _step(n, dt), self._push**2 * _noise(n, dt, len(one))
         measured = np.broadcast_to(self._start[0] ** 2 * one, (len(position), *shape, *one.shape))
         if covariance is not None:
             measured = np.where(np.isnan(covariance), measured, covariance)
-        motion = [np.zeros((*shape, 2)) for _ in range(n)]
-        start = [np.broadcast_to(value**2 * one, (*shape, *one.shape)) for value in self._start]
-        spread = [[start[i] if i == j else 0.0 * start[i] for j in range(n)] for i in range(n)]
-        started, negative_log_likelihood = np.zeros(shape, dtype=np.bool_), 0.0
-        for seen, here, error in zip(position, present, measured, strict=True):
-            motion = _propagate(drift, motion)
-            later = _predict_covariance(drift, spread, noise)
-            running = started[..., None, None]
-            spread = [[np.where(running, later[i][j], spread[i][j]) for j in range(n)] for i in range(n)]
-            update = started & here
-            expected = spread[0][0] + error
-            wrong = np.where(update[..., None], seen - motion[0], 0.0)
-            inverse = _inverse(expected)
-            negative_log_likelihood += float(np.sum(np.where(update, _surprise(expected, wrong, inverse), 0.0)))
-            ratio = [_divide(spread[i][0], expected, inverse) for i in range(n)]
-            gain = [np.where(update[..., None, None], value, 0.0) for value in ratio]
-            motion = [value + _apply(gain[i], wrong) for i, value in enumerate(motion)]
-            spread = [[spread[i][j] - _multiply(gain[i], spread[0][j]) for j in range(n)] for i in range(n)]
-            first = here & ~started
-            motion[0] = np.where(first[..., None], seen, motion[0])
-            spread[0][0] = np.where(first[..., None, None], error, spread[0][0])
-            started |= here
-        return motion, negative_log_likelihood, spread
+        rows, size = len(position), len(one)
+        motion, surprise, spread = filter_rows(
+            np.ascontiguousarray(position).reshape(rows, -1, 2), np.ascontiguousarray(present).reshape(rows, -1),
+            np.ascontiguousarray(measured).reshape(rows, -1, size, size), _step(n, dt),
+            self._push**2 * _noise(n, dt), np.array(self._start),
+        )  # fmt: skip
+        moved = motion.reshape(*shape, n, 2)
+        return [moved[..., i, :] for i in range(n)], float(surprise.sum()), spread.reshape(*shape, n, n, size, size)
 
 
 @dataclass(frozen=True)
@@ -268,63 +253,12 @@ def _step(n: int, dt: float) -> Floats:
     return np.array([[dt ** (j - i) / math.factorial(j - i) if j >= i else 0.0 for j in range(n)] for i in range(n)])
 
 
-def _noise(n: int, dt: float, size: int) -> Floats:
-    """Return the process noise covariance ``[n, n, size, size]`` of one row for unit density."""
+def _noise(n: int, dt: float) -> Floats:
+    """Return the process noise covariance ``[n, n]`` of one row for unit density."""
     left = [n - 1 - i for i in range(n)]
-    density = [[dt ** (p + q + 1) / ((p + q + 1) * math.factorial(p) * math.factorial(q)) for q in left] for p in left]
-    return np.array(density)[:, :, None, None] * np.eye(size)
-
-
-def _propagate(drift: Floats, rows: list[Floats]) -> list[Floats]:
-    """Return the product of a triangular matrix and a column; its bits do not depend on the batch, unlike BLAS."""
-    n = len(rows)
-    found = []
-    for i in range(n):
-        total = rows[i]
-        for j in range(i + 1, n):
-            total = total + drift[i, j] * rows[j]
-        found.append(total)
-    return found
-
-
-def _predict_covariance(drift: Floats, spread: list[list[Floats]], noise: Floats) -> list[list[Floats]]:
-    """Return ``F P F' + Q``."""
-    columns = [_propagate(drift, list(column)) for column in zip(*spread, strict=True)]
-    rows = [_propagate(drift, list(row)) for row in zip(*columns, strict=True)]
-    return [[value + noise[i, j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
-
-
-def _multiply(block: Floats, other: Floats) -> Floats:
-    """Return the product of matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``."""
-    return np.asarray(block * other if block.shape[-1] == 1 else block @ other)
-
-
-def _divide(block: Floats, divisor: Floats, inverse: Floats) -> Floats:
-    """Return a matrix times the inverse of another; numbers ``[..., 1, 1]`` are divided, which rounds once."""
-    return np.asarray(block / divisor if block.shape[-1] == 1 else block @ inverse)
-
-
-def _apply(block: Floats, vector: Floats) -> Floats:
-    """Return the product of matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``, and vectors ``[..., 2]``."""
-    return np.asarray(block[..., 0] * vector if block.shape[-1] == 1 else (block @ vector[..., None])[..., 0])
-
-
-def _inverse(block: Floats) -> Floats:
-    """Return the inverse of symmetric matrices ``[..., 2, 2]``, or of numbers ``[..., 1, 1]``."""
-    if block.shape[-1] == 1:
-        return np.asarray(1.0 / block)
-    a, b, d = block[..., 0, 0], block[..., 0, 1], block[..., 1, 1]
-    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-b, a], axis=-1)], axis=-2)
-    return np.asarray(adjugate / (a * d - b * b)[..., None, None])
-
-
-def _surprise(expected: Floats, wrong: Floats, inverse: Floats) -> Floats:
-    """Return the negative log-likelihood of innovations ``[..., 2]``, without ``log(2 pi)``."""
-    distance = 0.5 * np.sum(wrong * _apply(inverse, wrong), axis=-1)
-    if expected.shape[-1] == 1:
-        return np.asarray(np.log(expected[..., 0, 0]) + distance)
-    size = expected[..., 0, 0] * expected[..., 1, 1] - expected[..., 0, 1] * expected[..., 1, 0]
-    return np.asarray(0.5 * np.log(size) + distance)
+    return np.array(
+        [[dt ** (p + q + 1) / ((p + q + 1) * math.factorial(p) * math.factorial(q)) for q in left] for p in left]
+    )
 
 
 def _rows_first(values: NDArray) -> NDArray:  # type: ignore[type-arg]

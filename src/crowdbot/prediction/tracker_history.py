@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, kernel
 from crowdbot.typing import Bools, Floats, Ints
 
 from .tracker_frame import TrackerFrame
@@ -188,11 +188,10 @@ class TrackerHistory:
 
     def _last_existence(self, id: Ints) -> Floats:
         """Return the existence probabilities ``[A]`` in the last frames of agents."""
-        found = np.ones(len(id))
-        for row in self._rows:  # later rows overwrite earlier ones
-            slot = np.flatnonzero(np.isin(id, row.who))
-            found[slot] = row.existence[np.searchsorted(row.who, id[slot])]
-        return found
+        last: dict[int, float] = {}
+        for row in self._rows:
+            last.update(zip(row.who.tolist(), row.existence.tolist(), strict=True))
+        return np.array([last[int(number)] for number in id])
 
     def _last_radii(self, id: Ints) -> Floats | None:
         """Return radii ``[A]`` [m], or None if none is known."""
@@ -273,22 +272,46 @@ class TrackerHistory:
 
     def _at(self, times: Floats, seen: Floats, place: Floats, spread: Floats) -> tuple[Floats, Bools, Floats]:
         """Return positions ``[T, 2]`` at times ``[T]``, whether they are known, and their covariances ``[T, 2, 2]``."""
-        after = np.minimum(np.searchsorted(seen, times - 1e-6 * self.dt), len(seen) - 1)
-        exact = np.abs(seen[after] - times) <= 1e-6 * self.dt
-        before = np.maximum(after - 1, 0)
-        gap = seen[after] - seen[before]
-        inside = (seen[before] < times) & (times < seen[after]) & (gap <= BRIDGE) & self._stamped
-        share = np.where(inside, (times - seen[before]) / np.where(gap > 0.0, gap, 1.0), 0.0)[:, None]
-        between = place[before] + share * (place[after] - place[before])
-        found = np.where(exact[:, None], place[after], between)
-        known = exact | inside
-        start, end = (np.square(part)[..., None] for part in (1.0 - share, share))
-        noise = np.where(exact[:, None, None], spread[after], start * spread[before] + end * spread[after])
+        found, known, noise = interpolate_track(times, seen, place, spread, 1e-6 * self.dt, self._stamped)
+        exact = abs(seen[-1] - times[-1]) <= 1e-6 * self.dt
         if self._stamped and len(seen) > 1 and len(times) > 1 and not known[:-1].any():  # observed for less than dt
             found[-2] = found[-1] - self.dt * _velocity(seen, place)
-            known[-2] = bool(exact[-1])
+            known[-2] = exact
             noise[-2] = _coasted_covariance(seen, spread, -self.dt)
         return np.where(known[:, None], found, 0.0), known, np.where(known[:, None, None], noise, np.nan)
+
+
+@kernel
+def interpolate_track(
+    times: Floats, seen: Floats, place: Floats, spread: Floats, same: float, between: bool
+) -> tuple[Floats, Bools, Floats]:  # pragma: no cover - compiled
+    """Return positions ``[T, 2]`` at times ``[T]``, whether they are known, and their covariances ``[T, 2, 2]``.
+
+    Args:
+        times: times [s].
+        seen, place, spread: times ``[N]``, positions ``[N, 2]`` and covariances ``[N, 2, 2]`` of a track.
+        same: largest difference [s] of times that are the same.
+        between: whether positions between two rows are interpolated.
+    """
+    T, N = len(times), len(seen)
+    found, known, noise = np.zeros((T, 2)), np.zeros(T, dtype=np.bool_), np.full((T, 2, 2), np.nan)
+    after = 0
+    for t in range(T):
+        while after < N - 1 and seen[after] < times[t] - same:
+            after += 1
+        if abs(seen[after] - times[t]) <= same:
+            found[t], noise[t], known[t] = place[after], spread[after], True
+            continue
+        before = max(after - 1, 0)
+        gap = seen[after] - seen[before]
+        if not between or not (seen[before] < times[t] and times[t] < seen[after] and gap <= BRIDGE):
+            continue
+        share, known[t] = (times[t] - seen[before]) / gap, True
+        for c in range(2):
+            found[t, c] = place[before, c] + share * (place[after, c] - place[before, c])
+            for d in range(2):
+                noise[t, c, d] = (1.0 - share) ** 2 * spread[before, c, d] + share**2 * spread[after, c, d]
+    return found, known, noise
 
 
 def _merged(row: _Row, other: _Row) -> _Row:

@@ -453,9 +453,9 @@ def view_tracks(perceived: Sequence[PerceivedPeople], times: Floats) -> AgentsIn
     """Return the tracked people of N environments at times ``[N]`` [s], where constant velocities take them."""
     N, A = len(perceived), max((len(tracks) for _, tracks in perceived), default=0)
     position, velocity = np.zeros((N, A, 2)), np.zeros((N, A, 2))
-    seen, ids = np.zeros((N, A), dtype=np.bool_), np.zeros((N, A), dtype=np.int64)
+    seen, ids, existence = np.zeros((N, A), dtype=np.bool_), np.zeros((N, A), dtype=np.int64), np.ones((N, A))
     for k, (_, tracks) in enumerate(perceived):
         count = len(tracks)
         position[k, :count], velocity[k, :count] = tracks.at(float(times[k])), tracks.velocity
-        seen[k, :count], ids[k, :count] = True, tracks.ids
-    return AgentsInView(position, velocity, np.full((N, A), RADIUS), seen, ids)
+        seen[k, :count], ids[k, :count], existence[k, :count] = True, tracks.ids, tracks.existence
+    return AgentsInView(position, velocity, np.full((N, A), RADIUS), seen, ids, existence)

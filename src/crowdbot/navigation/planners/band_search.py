@@ -33,6 +33,7 @@ class BandScene(NamedTuple):
         numbers: largest speed [m/s] and acceleration [m/s2].
         position, moving: ``[A, 2]`` people [m], [m/s].
         reach: ``[A]`` distance of centres below which a person costs [m].
+        share: ``[A]`` factor of the residuals of a person, the root of the probability that there is one.
         segments: ``[M, 4]`` walls [m].
         wall_reach: distance to walls below which they cost [m].
         weights: weights in the order of the module.
@@ -43,6 +44,7 @@ class BandScene(NamedTuple):
     position: Floats
     moving: Floats
     reach: Floats
+    share: Floats
     segments: Floats
     wall_reach: float
     weights: Floats
@@ -142,7 +144,7 @@ def _add_push(
 def _add_obstacles(scene: BandScene, band: Floats, dt: float, equations: _Equations) -> float:
     """Add the lack of clearance to people, who keep their velocity, and to walls; return the sum of squares."""
     position, moving, reach, segments = scene.position, scene.moving, scene.reach, scene.segments
-    total, w, v = 0.0, scene.weights[PEOPLE], scene.weights[WALLS]
+    total, most, v = 0.0, scene.weights[PEOPLE], scene.weights[WALLS]
     for i in range(1, POINTS):
         x, y, time = band[i, 0], band[i, 1], i * dt
         for a in range(len(reach)):
@@ -150,7 +152,7 @@ def _add_obstacles(scene: BandScene, band: Floats, dt: float, equations: _Equati
             away2 = dx * dx + dy * dy
             if away2 >= reach[a] * reach[a]:
                 continue
-            away = max(math.sqrt(away2), TINY)
+            away, w = max(math.sqrt(away2), TINY), most * scene.share[a]
             ux, uy = dx / away, dy / away
             _point(equations, 0, i, -w * ux, -w * uy)
             _interval(equations, 2, w * i * (ux * moving[a, 0] + uy * moving[a, 1]))

@@ -33,11 +33,11 @@ class TimeElasticBandNavigator(Navigator):
     """Optimises a band of points in space and time to the waypoint, and drives along its beginning.
 
     The band has 20 equal time intervals, whose length is a variable, too. Damped least squares minimise its duration,
-    the excess of speed and acceleration, the lack of ``margin`` to people, who keep their velocity, and the lack of
-    ``wall_margin``. Seven first bands, straight, bent to both sides and slow, lead to different sides of people and
-    to passing before or behind them; the cheapest result counts. If even that band touches somebody, the robot
-    approaches the contact only as fast as it can stop. The bands start anew at each decision, so the same observation
-    gives the same decision.
+    the excess of speed and acceleration, the lack of ``margin`` to people, who keep their velocity, times the
+    probability that they exist, and the lack of ``wall_margin``. Seven first bands, straight, bent to both sides and
+    slow, lead to different sides of people and to passing before or behind them; the cheapest result counts. If even
+    that band touches somebody, the robot approaches the contact only as fast as it can stop. The bands start anew at
+    each decision, so the same observation gives the same decision.
 
     Fields:
         speed: largest speed [m/s], limited by the drive.
@@ -128,6 +128,7 @@ class TimeElasticBandNavigator(Navigator):
             people.position[near] - here,
             np.ascontiguousarray(people.velocity[near]),
             np.ascontiguousarray(reach[near]),
+            np.sqrt(people.existence[near]),
             np.ascontiguousarray(segments - np.tile(here, 2)),
             float(observation.wall_radius + self.wall_margin),
             weights,

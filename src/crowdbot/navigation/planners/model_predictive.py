@@ -35,8 +35,10 @@ class MPCNavigator(Navigator):
 
     * progress: ``(mean + last remaining path) / speed`` over the horizon,
     * ``risk`` times the sum over people of the largest probability of contact, ``Phi(-(gap - margin) / sigma)`` with
-      ``sigma = uncertainty + growth t min(1, pace / 0.5 m/s)``, as a weighted mean over the futures of the forecast,
-    * ``comfort`` times the mean lack of ``space`` to people, as a share,
+      ``sigma = uncertainty + growth t min(1, pace / 0.5 m/s)``, times the probability that the person exists, as a
+      weighted mean over the futures of the forecast,
+    * ``comfort`` times the mean lack of ``space`` to people, as a share, whether they exist or not: otherwise the robot
+      would turn aside too late, and stop before somebody who hardly exists,
     * ``smoothness`` times the change of the motion in the first step, as shares of the largest speed and turn rate,
     * the depth in walls and their margin.
 
@@ -100,20 +102,21 @@ class MPCNavigator(Navigator):
     def _people(self, observation: Observation, position: Floats) -> Floats:
         """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``."""
         T, total = position.shape[1], np.zeros(len(position))
-        places, radius, weight, pace = self._forecast(observation, T)
+        places, radius, weight, pace, there = self._forecast(observation, T)
         sigma = self.uncertainty + self.growth * STEP * np.arange(1, T + 1)[:, None] * pace
         for future, share in zip(places, weight.tolist(), strict=True):
             away = position[:, :, None] - future
             gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - radius - observation.radius
             meets = contact_probability(gap, self.margin, sigma)
             lack = space_lack(gap, self.space).max(axis=2, initial=0.0)
-            total += share * (self.risk * meets.sum(axis=1) + self.comfort * lack.mean(axis=1))
+            total += share * (self.risk * (there * meets).sum(axis=1) + self.comfort * lack.mean(axis=1))
         return total
 
-    def _forecast(self, observation: Observation, steps: int) -> tuple[Floats, Floats, Floats, Floats]:
+    def _forecast(self, observation: Observation, steps: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """Return places ``[K, T, N, 2]`` of the people within reach, radii ``[N]``, weights ``[K]``, shares ``[N]``.
 
-        The shares are those of the growth of the uncertainty: who stands is expected to stay.
+        The shares are those of the growth of the uncertainty: who stands is expected to stay. The last value are the
+        probabilities ``[N]`` that the people exist.
         """
         people = observation.people
         times = STEP * np.arange(1, steps + 1)
@@ -134,7 +137,7 @@ class MPCNavigator(Navigator):
         closest = np.hypot(*np.moveaxis(places - observation.position, -1, 0)).min(axis=(0, 1)) - people.radius
         near = closest < reach
         pace = np.minimum(np.hypot(*people.velocity[near].T) / WALKING, 1.0)
-        return places[:, :, near], people.radius[near], weight, pace
+        return places[:, :, near], people.radius[near], weight, pace, people.existence[near]
 
     def _walls(self, observation: Observation, position: Floats, heading: Floats) -> Floats:
         """Return the cost ``[C]`` of paths ``[C, T, 2]`` with headings ``[C, T]`` in walls or in their margin."""

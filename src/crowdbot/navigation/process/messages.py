@@ -28,6 +28,8 @@ LONGEST_LINE = 64_000_000
 """Largest size of a message [bytes]."""
 TRUTH = ("hit", "part", "direction", "velocity", "acceleration_bias", "turn_bias")
 """Fields of readings that no real sensor knows; they are left out, except the velocities of tracked people."""
+PEOPLE_FIELDS = ("position", "velocity", "radius", "ids", "existence")
+"""Fields of the visible people."""
 DTYPES = {"<f8", "<f4", "<f2", "<i8", "<i4", "<i2", "|i1", "|u1", "<u2", "<u4", "<u8", "|b1"}
 DEEPEST = 20
 """Largest depth of a memory."""
@@ -72,7 +74,7 @@ def encode_observation(observation: Observation) -> dict[str, Any]:
         "dt": observation.dt,
         "time": observation.time,
         "twist": list(observation.twist),
-        "people": {name: encode_array(getattr(people, name)) for name in ("position", "velocity", "radius", "ids")},
+        "people": {name: encode_array(getattr(people, name)) for name in PEOPLE_FIELDS},
         "walls": {field.name: encode_array(getattr(walls, field.name)) for field in dataclasses.fields(walls)},
         "readings": {name: _encode_reading(reading) for name, reading in observation.readings.items()},
         "tracks": None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import kernel
 from crowdbot.data import Windows
 from crowdbot.prediction.kalman import Kalman
 from crowdbot.typing import Floats
@@ -17,6 +18,36 @@ HORIZON = 4.8
 WIDENED, FILTERED = 3.0, 0.2
 """Factors of the covariance of the mixture and of that of the Kalman filter in their sum. The training recordings are
 interpolated and have hardly any noise, so the mixture alone is overconfident elsewhere."""
+
+
+@kernel
+def add_products(
+    probability: Floats, spread: Floats, arm: Floats, away: Floats
+) -> Floats:  # pragma: no cover - compiled
+    """Return covariances ``[N, T, 2, 2]`` [m^2] within and between K futures, summed in a fixed order.
+
+    Args:
+        probability, spread: ``[N, K]``, ``[N, K, D]`` of the futures.
+        arm: ``[N, D, T, 2]`` [m] displacements by the coefficients.
+        away: ``[N, K, T, 2]`` [m] from the trajectory to each future.
+    """
+    N, D, T, _ = arm.shape
+    found = np.zeros((N, T, 2, 2))
+    for n in range(N):
+        for d in range(D):
+            variance = 0.0
+            for k in range(probability.shape[1]):
+                variance += probability[n, k] * spread[n, k, d] ** 2
+            for t in range(T):
+                for x in range(2):
+                    for y in range(2):
+                        found[n, t, x, y] += variance * arm[n, d, t, x] * arm[n, d, t, y]
+        for k in range(probability.shape[1]):
+            for t in range(T):
+                for x in range(2):
+                    for y in range(2):
+                        found[n, t, x, y] += probability[n, k] * away[n, k, t, x] * away[n, k, t, y]
+    return found
 
 
 def future_covariances(
@@ -32,20 +63,11 @@ def future_covariances(
         heading: ``[N, 2]`` directions of the people.
         steps, dt: number of rows and their time step [s].
     """
-    D = len(basis)
+    D, N = len(basis), len(probability)
     shape = resample_paths(basis.reshape(1, D, PREDICTED_ROWS, 2), np.zeros((1, 2)), steps, dt)[0]
     time = dt * np.arange(1, steps + 1)
-    found = np.zeros((len(probability), steps, 2, 2))
-    for d in range(D):  # summation order independent of the batch
-        variance = np.zeros(len(probability))
-        for k in range(probability.shape[1]):
-            variance += probability[:, k] * spread[:, k, d] ** 2
-        arm = np.broadcast_to(shape[d], (len(probability), 1, steps, 2))
-        arm = rotate(arm, heading, back=True)[:, 0]
-        found += variance[:, None, None, None] * arm[..., :, None] * arm[..., None, :]
-    for k in range(probability.shape[1]):
-        gap = away[:, k]
-        found += probability[:, k, None, None, None] * gap[..., :, None] * gap[..., None, :]
+    arm = rotate(np.broadcast_to(shape, (N, D, steps, 2)), heading, back=True)
+    found = add_products(probability, spread, np.ascontiguousarray(arm), np.ascontiguousarray(away))
     found *= (np.maximum(time / HORIZON, 1.0) ** 2)[:, None, None]
     return found
 

@@ -168,15 +168,15 @@ class AnchorNet(Predictor):
             return _with_uncertainty(
                 self.forecast(past, separate_people(past, place, self.contact)), past, numbers, bends
             )
-        pairing = _pairing(bends, samples)
-        path = _path(numbers, bends, np.take_along_axis(bends.mode, pairing[..., None], axis=1), past, steps)[0]
+        pairing, modes = _pairing(bends, samples), _path(numbers, bends, bends.mode, past, steps)[0]
+        path = modes[np.arange(len(modes))[:, None], pairing]
         place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = np.take_along_axis(bends.probability, pairing, axis=1)
         place, weight, own = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
         forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
-        forecast = _with_uncertainty(forecast, past, numbers, bends)
+        forecast = _with_uncertainty(forecast, past, numbers, bends, modes)
         total = own[:, :samples].sum(axis=1, keepdims=True)
         own = own[:, :samples] / np.where(total > 0.0, total, 1.0)
         return dataclasses.replace(forecast, weight=weight, person_weight=own)
@@ -315,13 +315,18 @@ def _pairing(bends: _Bends, samples: int) -> Ints:
     return np.where(bends.slow[:, None], rank, np.argsort(bends.anchor, axis=1))
 
 
-def _with_uncertainty(forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends) -> Forecast:
-    """Return the forecast with the covariance and the out-of-distribution score of each person."""
+def _with_uncertainty(
+    forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends, modes: Floats | None = None
+) -> Forecast:
+    """Return the forecast with the covariance and the out-of-distribution score of each person.
+
+    ``modes`` are the paths ``[N, K, T, 2]`` of all futures, if they are known.
+    """
     foreign = np.zeros((len(past), past.present.shape[2]))
     foreign[bends.window, bends.slot] = bends.foreign
     steps = forecast.steps
     middle = _path(numbers, bends, bends.single[:, None], past, steps)[0]
-    away = _path(numbers, bends, bends.mode, past, steps)[0] - middle
+    away = (_path(numbers, bends, bends.mode, past, steps)[0] if modes is None else modes) - middle
     own = future_covariances(
         numbers["basis"], bends.probability, bends.spread, away, bends.heading, steps, past.dt
     )  # fmt: skip
