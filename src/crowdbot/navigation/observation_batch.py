@@ -168,7 +168,7 @@ class ObservationBatch:
             np.empty((N, A), BOOL),
             np.empty((N, A), INTEGER),
         )
-        some = _gather(
+        values: Any = (
             which,
             robot,
             *(dense(value, (*shape, 2), FLOAT) for value in (scene.position, scene.velocity, scene.goal)),
@@ -180,7 +180,7 @@ class ObservationBatch:
             *(pose, goal, radius, moving),
             *(people.position, people.velocity, people.radius, people.seen, people.ids),
         )
-        if not some:
+        if not _gather(*values):
             raise IndexError(f"robot {robot} in environments {which.tolist()}: the scene has the shape {list(shape)}")
         time = scene.time[which] if isinstance(scene.time, np.ndarray) else np.full(N, scene.time)
         return cls(
