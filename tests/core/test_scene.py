@@ -353,3 +353,15 @@ def test_one_environment_is_the_same_as_a_selection_of_one():
     assert one.digest() == selection.digest()
     assert (one.time, one.memory["state"].tolist()) == (2.0, selection.memory["state"].tolist())
     assert np.shares_memory(one.position, scene.position)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_kernels_get_contiguous_arrays_after_a_replacement(order):
+    scene = Scene.of(np.arange(12.0).reshape(2, 3, 2), np.ones((2, 3, 2)), radius=0.2)
+    later = scene.advance(scene.velocity, 0.5)
+    later.check()
+    place = np.array(later.position + 1.0, order=order)
+    changed = later.replace(position=place, time=4.0)
+    np.testing.assert_array_equal(changed.step_arrays()[0], place)
+    assert all(value.flags.c_contiguous for value in changed.step_arrays())
+    np.testing.assert_array_equal(changed.advance(changed.velocity, 0.5).position, place + 0.5)

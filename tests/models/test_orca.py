@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import json
 
@@ -280,3 +281,33 @@ def test_the_parameters_do_something():
 def test_a_bad_maximum_speed(value):
     with pytest.raises(InputError, match=r"ORCA: max_speed = (-1\.0|nan|inf) \[m/s\] is not allowed"):
         ORCA(max_speed=value)
+
+
+@pytest.mark.parametrize("given", [False, True])
+@pytest.mark.parametrize("own", [False, True])
+def test_small_crowds_step_as_in_a_large_batch_to_the_bit(given, own):
+    rng = np.random.default_rng(5)
+    shape = E, A = 70, 9
+    model = ORCA(reciprocal=own)
+    if own:
+        numbers = {"neighbor_distance": rng.uniform(0.5, 6.0, shape), "max_neighbors": rng.uniform(0.0, 12.0, shape)}
+        model = ORCA(**numbers, time_horizon=rng.uniform(0.5, 3.0, shape), max_speed=rng.uniform(0.5, 2.0, shape))
+    wish = {"preferred_velocity": rng.normal(size=(E, A, 2))} if given else {"goal": rng.uniform(-4, 4, (E, A, 2))}
+    scene = Scene.of(
+        rng.uniform(-2.5, 2.5, (E, A, 2)), rng.normal(size=(E, A, 2)), radius=0.25, walls=[[(-1.0, 3.0), (3.0, -1.0)]],
+        active=rng.random(shape) < 0.9, visible=rng.random(shape) < 0.9, external=rng.random(shape) < 0.2, **wish,
+    )  # fmt: skip
+    together = model.velocity(scene, 0.1)
+    for e in range(0, E, 7):
+        names = ("neighbor_distance", "max_neighbors", "time_horizon", "max_speed") if own else ()
+        alone = dataclasses.replace(model, **{name: getattr(model, name)[e : e + 1] for name in names})
+        np.testing.assert_array_equal(alone.velocity(scene.environment(e), 0.1)[0], together[e])
+
+
+def test_a_small_crowd_names_the_value_that_is_not_allowed():
+    scene = Scene.of([[0.0, 0.0], [1.0, 0.0]]).replace(position=np.array([[[0.0, 0.0], [2e9, 0.0]]]))
+    with pytest.raises(InputError, match="position .* of agent 1 in environment 0 is not finite or larger than 1e"):
+        ORCA().velocity(scene, 0.1)
+    for dt in (0.0, np.nan, np.inf):
+        with pytest.raises(InputError, match="time step .* is not allowed"):
+            ORCA().velocity(Scene.of([[0.0, 0.0]]), dt)

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, Pose, Twist, stream, wrap_angle
-from crowdbot.world import DifferentialDrive, Omnidirectional, Twists, integrate_twist
+from crowdbot.core import InputError, Pose, Scene, Twist, stream, wrap_angle
+from crowdbot.models import ORCA
+from crowdbot.world import DifferentialDrive, Omnidirectional, PlanarWorld, Twists, integrate_twist
 
 few = settings(max_examples=60, deadline=None)
 finite = st.floats(-1e6, 1e6)
@@ -206,3 +207,25 @@ def test_without_a_limit_of_lateral_acceleration_nothing_changes():
         DifferentialDrive(max_lateral_acceleration=0.0)
     with pytest.raises(InputError, match="max_lateral_acceleration = nan m/s2 must be above 0"):
         DifferentialDrive(max_lateral_acceleration=math.nan)
+
+
+@pytest.mark.parametrize("kind", [DifferentialDrive, Omnidirectional])
+def test_a_world_moves_robots_by_the_step_of_their_drive(kind):
+    class Own(kind):
+        def step(self, pose, twist, command, dt):
+            calls.append(len(pose.heading))
+            return super().step(pose, twist, command, dt)
+
+    calls, rng = [], np.random.default_rng(2)
+    start = Scene.of(
+        rng.uniform(-9.0, 9.0, (3, 2, 2)), heading=rng.uniform(-3.0, 3.0, (3, 2)), external=True,
+        active=[[True, True], [False, True], [True, True]],
+    )  # fmt: skip
+    one, two = (PlanarWorld(start, ORCA(), {1: drive(), 0: drive()}, 0.1) for drive in (kind, Own))
+    for _ in range(20):
+        commands = {robot: Twists(*rng.uniform(-2.0, 2.0, (3, 3))) for robot in range(2)}
+        here, there = one.step(commands), two.step(commands)
+        for name in ("position", "velocity", "heading"):
+            np.testing.assert_array_equal(getattr(here, name), getattr(there, name))
+    np.testing.assert_array_equal(here.position[1, 0], start.position[1, 0])
+    assert calls == [3] * 40

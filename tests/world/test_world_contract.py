@@ -154,3 +154,19 @@ def test_the_room_shows_its_contracts():
     }
     assert set(WORLDS) == {"physics-world", "planar-world"}
     assert all(hasattr(room, name) for name in room.__all__)
+
+
+@each_world
+def test_a_selected_world_has_people_of_its_own(kind):
+    world = build(kind)
+    world.step({0: Twist()})
+    world.pose_people()
+    some = room.select_environments(world, [0])
+    feet = world.people.ends[0].copy()
+    np.testing.assert_array_equal(some.people.ends[0], feet)
+    for _ in range(5):
+        some.step({0: Twist()})
+        some.pose_people()
+    assert some.people is not world.people
+    assert np.abs(some.people.ends[0] - feet).max() > 0.1
+    np.testing.assert_array_equal(world.people.ends[0], feet)

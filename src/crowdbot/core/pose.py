@@ -64,8 +64,10 @@ class Pose:
     def offset(self, x: float, y: float, heading: float) -> Pose:
         """Return the pose of a part at ``x``, ``y`` [m] and ``heading`` [rad] in this frame."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
-        shift = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
-        return Pose(self.position + shift, self.heading + heading)
+        place = np.empty((len(self.heading), 2))
+        np.add(self.position[:, 0], cos * x - sin * y, out=place[:, 0])
+        np.add(self.position[:, 1], sin * x + cos * y, out=place[:, 1])
+        return Pose(place, self.heading + heading)
 
     def to_spatial(self, z: ArrayLike = MOUNT_HEIGHT, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0) -> SpatialPose:
         """Return the spatial pose at height ``z`` [m] with ``roll`` and ``pitch`` [rad].

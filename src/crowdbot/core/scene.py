@@ -29,6 +29,8 @@ INTEGER = np.dtype(np.int64)
 PAIRS = ("position", "velocity", "goal", "preferred_velocity")
 NUMBERS = ("heading", "radius", "preferred_speed", "max_speed")
 MASKS = ("active", "visible", "external")
+DENSE = {**dict.fromkeys((*PAIRS, *NUMBERS), FLOAT), **dict.fromkeys(MASKS, BOOL)}
+"""Data type of the fields that kernels read."""
 IS_DENSE = "_is_dense"
 """Entry of a scene whose arrays kernels accept as they are."""
 CHECKED_NAMES = ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed")
@@ -232,9 +234,11 @@ class Scene:
         """
         later = self._copy()
         fields = later.__dict__
-        fields.pop(IS_DENSE, None)
         count = len(fields)
         fields.update(changes)
+        if IS_DENSE in fields and not self._are_dense(changes):
+            del fields[IS_DENSE]
+            count -= 1
         if len(fields) != count:
             unknown = sorted(changes.keys() - self.__dict__.keys())
             raise TypeError(f"Scene has no field {unknown[0]!r}")
@@ -260,6 +264,18 @@ class Scene:
         if all(value is fields[name] for name, value in made.items()):
             fields[IS_DENSE] = True
         return made
+
+    def _are_dense(self, values: Mapping[str, Any]) -> bool:
+        """Return whether new values of fields are arrays that kernels accept, or belong to no kernel."""
+        place = self.__dict__["position"].shape
+        for name, value in values.items():
+            kind = DENSE.get(name)
+            if kind is None or (value is None and name == "preferred_velocity"):
+                continue
+            shape = place if name in PAIRS else place[:2]
+            if not (type(value) is np.ndarray and value.dtype is kind and value.shape == shape and value.flags.carray):
+                return False
+        return True
 
     def without(self, agent: int) -> Scene:
         """Return the scene without ``agent``, as its own sensors see it."""

@@ -124,7 +124,7 @@ def begin_rows(scene: Scene, dt: float, max_speed: PerAgent | None = None) -> Ag
         position, velocity, radius, own_limit, limit, aim, speed, active, visible, external, given, float(dt),
         start.agents, start.walking, start.seen, start.out,
     )  # fmt: skip
-    if _fill_part(0, count, *values) if count <= SERIAL else _fill(*values):
+    if fill_rows(0, count, *values) if count <= SERIAL else _fill(*values):
         _raise_wrong_value(scene, start.agents[:, WISH_X : WISH_Y + 1].reshape(*shape, 2))
     return start
 
@@ -183,7 +183,7 @@ def _fill(
 ) -> int:  # fmt: skip
     wrong = 0
     for part in prange((len(agents) + PART - 1) // PART):
-        wrong += _fill_part(
+        wrong += fill_rows(
             part * PART, min((part + 1) * PART, len(agents)), position, velocity, radius, max_speed, limit, aim,
             preferred_speed, active, visible, external, given, dt, agents, walking, seen, chosen,
         )  # fmt: skip
@@ -191,7 +191,7 @@ def _fill(
 
 
 @kernel
-def _fill_part(
+def fill_rows(
     begin: int, end: int, position: Floats, velocity: Floats, radius: Floats, max_speed: Floats, limit: Floats,
     aim: Floats, preferred_speed: Floats, active: Bools, visible: Bools, external: Bools, given: bool, dt: float,
     agents: Floats, walking: Bools, seen: Bools, chosen: Floats,

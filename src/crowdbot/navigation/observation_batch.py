@@ -11,17 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Twist, Walls, stream
+from crowdbot.core import InputError, Scene, Twist, Walls, dense, kernel, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
-from crowdbot.typing import Bools, Floats
+from crowdbot.typing import Bools, Floats, Ints
 
 from .observation import CERTAIN, DISC, DriveLimits, Observation, VisiblePeople
 from .track_batch import TrackBatch
 from .track_history import HORIZON, SAME, TrackHistory, choose_predictor, forecast_problem
 
-TYPES: dict[str, Any] = {"seen": np.bool_, "ids": np.int64}
+FLOAT, BOOL, INTEGER = np.dtype(np.float64), np.dtype(np.bool_), np.dtype(np.int64)
+TYPES = {"seen": BOOL, "ids": INTEGER}
 SEEDS = 2**63
 """Predictors draw the seed of each window below this number; see ``crowdbot.prediction.window_streams``."""
 
@@ -122,7 +123,7 @@ class ObservationBatch:
             _require(self, name, (N, shape) if shape else (N,))
         A = self.people.radius.shape[-1]
         for name, kind in (("position", 2), ("velocity", 2), ("radius", 0), ("seen", 0), ("ids", 0), ("existence", 0)):
-            _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, np.float64))
+            _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, FLOAT))
         if len(self.tracks) not in (0, N):
             raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
         if not isinstance(self.tracks, TrackBatch) and len({one.length for one in self.tracks}) == 1:
@@ -160,22 +161,44 @@ class ObservationBatch:
         >>> batch.people.seen.tolist()
         [[False, True], [False, True]]
         """
-        E, A = scene.shape
+        E, A = shape = scene.shape
         which = np.arange(E) if environments is None else np.asarray(environments, dtype=np.int64)
-        visible = scene.active[which] if seen is None else scene.active[which] & seen[which]
-        visible[:, robot] = False
         ids = others.pop("ids", None)
-        numbers = np.broadcast_to(np.arange(A), (len(which), A)) if ids is None else ids[which]
+        numbers = np.broadcast_to(np.arange(A), shape) if ids is None else ids
+        N = len(which)
+        pose, goal, radius, moving = np.empty((N, 3)), np.empty((N, 2)), np.empty(N), np.empty((N, 3))
+        people = AgentsInView(
+            np.empty((N, A, 2)),
+            np.empty((N, A, 2)),
+            np.empty((N, A)),
+            np.empty((N, A), BOOL),
+            np.empty((N, A), INTEGER),
+        )
+        values: Any = (
+            which,
+            robot,
+            *(dense(value, (*shape, 2), FLOAT) for value in (scene.position, scene.velocity, scene.goal)),
+            *(dense(value, shape, FLOAT) for value in (scene.heading, scene.radius)),
+            dense(scene.active, shape, BOOL),
+            dense(scene.active if seen is None else seen, shape, BOOL),
+            dense(numbers, shape, INTEGER),
+            dense(twist, (E, 3), FLOAT),
+            *(pose, goal, radius, moving),
+            *(people.position, people.velocity, people.radius, people.seen, people.ids),
+        )
+        if not _gather(*values):
+            raise IndexError(f"robot {robot} in environments {which.tolist()}: the scene has the shape {list(shape)}")
+        time = scene.time[which] if isinstance(scene.time, np.ndarray) else np.full(N, scene.time)
         return cls(
-            pose=np.column_stack([scene.position[which, robot], scene.heading[which, robot]]),
-            goal=scene.goal[which, robot],
-            radius=scene.radius[which, robot],
+            pose=pose,
+            goal=goal,
+            radius=radius,
             limits=limits,
             dt=dt,
-            twist=twist[which],
-            people=AgentsInView(scene.position[which], scene.velocity[which], scene.radius[which], visible, numbers),
+            twist=moving,
+            people=people,
             walls=scene.walls,
-            **{"time": np.broadcast_to(scene.time, (E,))[which], **others},
+            **{"time": time, **others},
         )
 
     def __len__(self) -> int:
@@ -242,14 +265,39 @@ class ObservationBatch:
         return forecast_tracks(self.tracks, known, seconds, steps, self.walls, samples, seed)
 
 
-def _require(owner: Any, name: str, shape: tuple[int, ...], kind: Any = np.float64) -> None:
+@kernel
+def _gather(
+    which: Ints, robot: int, position: Floats, velocity: Floats, goal: Floats, heading: Floats, radius: Floats,
+    active: Bools, seen: Bools, ids: Ints, twist: Floats, pose: Floats, target: Floats, size: Floats, moving: Floats,
+    place: Floats, pace: Floats, wide: Floats, visible: Bools, numbers: Ints,
+) -> bool:  # fmt: skip
+    """Write pose, goal, radius and twist of a robot in some environments, and the fields of the people around it.
+
+    Return False if an environment or the robot is not in the scene.
+    """
+    E, A = active.shape
+    for k in range(len(which)):
+        e = which[k]
+        if not (0 <= e < E and 0 <= robot < A):
+            return False
+        pose[k, 0], pose[k, 1], pose[k, 2] = position[e, robot, 0], position[e, robot, 1], heading[e, robot]
+        target[k, 0], target[k, 1], size[k] = goal[e, robot, 0], goal[e, robot, 1], radius[e, robot]
+        moving[k, 0], moving[k, 1], moving[k, 2] = twist[e, 0], twist[e, 1], twist[e, 2]
+        for a in range(A):
+            place[k, a, 0], place[k, a, 1] = position[e, a, 0], position[e, a, 1]
+            pace[k, a, 0], pace[k, a, 1], wide[k, a] = velocity[e, a, 0], velocity[e, a, 1], radius[e, a]
+            visible[k, a], numbers[k, a] = active[e, a] and seen[e, a] and a != robot, ids[e, a]
+    return True
+
+
+def _require(owner: Any, name: str, shape: tuple[int, ...], kind: np.dtype[Any] = FLOAT) -> None:
     """Check the shape of an array field and make it fit for kernels: of one type, C-contiguous and writeable."""
     value = getattr(owner, name)
     if value.shape != shape:
         raise InputError(
             f"observations: {name} has shape {list(value.shape)}, it must be {list(shape)} in {shape[0]} environments"
         )
-    if value.dtype != kind or not value.flags.carray:
+    if value.dtype is not kind or not value.flags.carray:
         object.__setattr__(owner, name, np.require(value, kind, ["C", "W"]))
 
 

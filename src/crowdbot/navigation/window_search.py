@@ -43,6 +43,8 @@ SIGHT = 5.0
 """People and walls farther away than this are ignored [m]."""
 FORWARD, TURNS = 9, 13
 """Number of candidate speeds and turn rates."""
+STRIDE = 3
+"""Number of steps that are computed at once beyond :data:`MATCH`."""
 SLACK = 1e-6
 """Margin [m] of what is left out, against rounding."""
 
@@ -270,9 +272,9 @@ def _search(
             total = difference + to_near * near + to_contact * contact + to_wall * touch
             if total > bound:
                 continue
-        if course[j, 2] < steps:
-            _extend(j, steps, turns, speeds, change, course, path, bearing)
         for k in range(steps):
+            if course[j, 2] <= k:  # most candidates are given up after a few steps
+                _extend(j, min(k + STRIDE, steps), turns, speeds, change, course, path, bearing)
             changed = False
             reach = margin * (1.0 - near / fades[k]) + SLACK
             if fades[k] > contact:

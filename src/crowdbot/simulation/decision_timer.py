@@ -92,11 +92,13 @@ class DecisionTimer:
                 late[k] = int(ticks[k]) in recorded.missed
             else:
                 late[k] = decisions.seconds[k] > (robot.deadline or math.inf)
-        late[list(decisions.failures)] = False
-        for k in np.flatnonzero(decisions.seconds > 0.0).tolist():
-            if k not in decisions.failures:
+        if decisions.failures:
+            late[list(decisions.failures)] = False
+        for k in np.flatnonzero(decisions.seconds).tolist():
+            if decisions.seconds[k] > 0.0 and k not in decisions.failures:
                 self.spent[environments[k]] += (float(decisions.seconds[k]),)
-        self.missed[environments[late]] = ticks[late]
+        if robot.deadline is not None:
+            self.missed[environments[late]] = ticks[late]
         for k, error in decisions.failures.items():
             if isinstance(error, HungNavigatorError):
                 self.hung[environments[k]] = ticks[k]
@@ -112,6 +114,8 @@ class DecisionTimer:
     def recorded_hangs(self, robot: RobotSpec, environments: Ints, ticks: Ints) -> dict[int, Exception]:
         """Return the errors of the replayed environments whose decision at their tick ``[N]`` did not return."""
         found: dict[int, Exception] = {}
+        if not any(self.recorded):
+            return found
         for e, tick in zip(environments.tolist(), ticks.tolist(), strict=True):
             recorded = self.recorded[e]
             order = None if recorded is None else recorded.hung.get(tick)

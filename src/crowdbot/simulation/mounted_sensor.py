@@ -159,7 +159,9 @@ class MountedSensor:
             around: the world.
             lateness: ``[E]`` additional ticks until a reading arrives, by a fault.
         """
-        due = np.flatnonzero(live & self.schedule.measures(ticks))
+        common = around.world.environment_time.common_tick
+        measuring = self.schedule.measures(ticks) if common is None else self.schedule.measures(common)
+        due = np.flatnonzero(live if measuring is True else live & measuring)
         errors: list[tuple[int, Exception]] = []
         for part in [due] if self.together else [due[k : k + 1] for k in range(len(due))]:
             try:
@@ -172,10 +174,10 @@ class MountedSensor:
                 errors += [(int(e), error) for e in part]
         if not self.waiting:
             return [], errors
-        ready, later = [], []
+        ready, later = list[SensorReadings](), list[SensorReadings]()
         for readings in self.waiting:
             now = readings.arrival <= ticks[readings.environments]
-            if now.all():
+            if np.logical_and.reduce(now):
                 ready.append(readings)
             elif not now.any():
                 later.append(readings)
@@ -240,14 +242,15 @@ class MountedSensor:
         scene, pose = around.flat, self.pose(agent, around)
         if not every:
             scene, pose = scene.environments(due), tree.take(pose, due)
-        count, rngs = len(self.rngs), self.rngs.rows(due)
+        count, rngs = len(self.rngs), self.rngs if every else self.rngs.rows(due)
         state = self.state if every or self.state is None else take_state_rows(self.state, due)
         wheels = wheel_rotation(around.world, agent, self.wheels)
         view = SensorView(scene.without(agent), pose, wheels=wheels)
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
         if new is not None or self.state is not None:
             self.state = new if every else put_state_rows(self.state, due, new, count)
-        return SensorReadings(self.name, due, reading, ids[due], slots[due], arrival, self._people(around, due))
+        ids, slots = (ids.copy(), slots.copy()) if every else (ids[due], slots[due])
+        return SensorReadings(self.name, due, reading, ids, slots, arrival, self._people(around, due))
 
     def _measure_one(self, e: int, agent: int, around: WorldView, arrival: Ints) -> SensorReadings:
         index = np.array([e])

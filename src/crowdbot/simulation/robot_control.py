@@ -178,7 +178,7 @@ class RobotControl:
         command = self.command
         if self.faults is not None:
             command = self.faults.change_commands(command, times, self.robot.radius)
-        return Twists.of_columns(np.ascontiguousarray(command.T.copy()))
+        return Twists.of_columns(command.T.copy())
 
     def mount(self, name: str) -> Mount:
         """Return a mounted sensor by name."""
@@ -235,7 +235,8 @@ class RobotControl:
             visible = sensor.visible(ids)
             if visible is not None:
                 seen |= visible
-        twist = np.stack([twists.forward, twists.turn, twists.left], axis=-1)
+        twist = np.empty((len(ids), 3))
+        twist[:, 0], twist[:, 1], twist[:, 2] = twists.forward, twists.turn, twists.left
         if world.has_own_walls and len(world.slots) > 1:
             scene = around.flat_of(int(environments[0]))
             slots = scene.shape[1]
@@ -290,7 +291,8 @@ class RobotControl:
             return hangs | (self.decide(around, rest) if len(rest) else {})
         batch, known = self._observe(around, environments)
         failures: dict[int, Exception] = {}
-        if not self.begun[environments].all():
+        every = len(environments) == len(self.begun)
+        if not np.logical_and.reduce(self.begun if every else self.begun[environments]):
             new = np.flatnonzero(~self.begun[environments])
             first = batch if len(new) == len(environments) else self.observations(around, environments[new])
             memories, failed = self.timer.first_memories(self.robot, first, environments[new])
@@ -298,7 +300,8 @@ class RobotControl:
             for k, memory in zip(new.tolist(), memories, strict=True):
                 self.memories[int(environments[k])] = memory
             self.begun[environments[new]] = True
-        decisions = self.timer.decide(self.robot, batch, [self.memories[e] for e in environments], environments)
+        memories = list(self.memories) if every else [self.memories[e] for e in environments]
+        decisions = self.timer.decide(self.robot, batch, memories, environments)
         decisions.failures.update(failures | known.failures)
         failures = decisions.failures
         for error in failures.values():
@@ -308,6 +311,13 @@ class RobotControl:
         if self.faults is not None:
             late = late | self.faults.lost_commands(around.world.times, environments)
         self._remember(environments, known)
+        self.wanted = {}
+        if every and not (failures or late.any()):
+            self.memories[:] = decisions.memories
+            self.command[:] = decisions.twist
+            if any(decisions.joints):
+                self.wanted = {e: joints for e, joints in enumerate(decisions.joints) if joints}
+            return {}
         for k, e in enumerate(environments.tolist()):
             if k not in failures:
                 self.memories[e] = decisions.memories[k]
@@ -320,8 +330,9 @@ class RobotControl:
         return {int(environments[k]): error for k, error in failures.items()}
 
     def _remember(self, environments: Ints, known: _Known) -> None:
-        self.path[environments] = known.path
-        for e, one in zip(environments.tolist(), known.perceived, strict=False):
+        if self.planner is not None:
+            self.path[environments] = known.path
+        for e, one in zip(environments.tolist() if known.perceived else (), known.perceived, strict=False):
             self.perceived[e] = one
         if self.tracks:
             whole = len(environments) == len(self.tracks)

@@ -185,7 +185,7 @@ class Mount:
         """Defaults of fields that depend on others."""
         return {"z": 0.0 if self.link else MOUNT_HEIGHT}
 
-    @property
+    @functools.cached_property
     def origin(self) -> Floats:
         """Frame ``[4, 4]`` of the sensor relative to the robot or the link."""
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.heading))

@@ -83,6 +83,7 @@ def select_environments(world: PlanarWorld, environments: Sequence[int] | Ints) 
         some._bodies = [world._bodies[e].copy() for e in index]
         for bodies in some._bodies:
             bodies.doors = some.doors
+        some.people = some._bodies[0].people if len(index) else None
     return some
 
 
@@ -98,6 +99,8 @@ def put_environments(world: PlanarWorld, environments: Sequence[int] | Ints, oth
         models[e] = _models(other)[k]
         if world._bodies is not None and other._bodies is not None:
             world._bodies[e] = other._bodies[k]
+    if world._bodies is not None:
+        world.people = world._bodies[0].people
     changed = any(model is not world.model for model in models)
     whole, rows = _states([world, other])
     _set_state(world, tree.put(whole, index, rows, len(world.slots)), models if changed else None)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, Twist
+from crowdbot.core import InputError, Scene, Twist
 from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_clearance, step_outline_clearance
 from crowdbot.models import CrowdModel
@@ -23,7 +23,7 @@ from .crowd.departure import leave_at_goals, leave_in_zone
 from .crowd.people_flow import PeopleFlow
 from .crowd.portal import PortalTransfer, apply_portals
 from .crowd.waypoint import PolygonZone
-from .robots.drives.drive import Drive, Twists, put_robot
+from .robots.drives.drive import Drive, Twists
 from .world import Contact
 
 STILL = Twist()
@@ -37,8 +37,9 @@ def show_robots(scene: Scene, robots: Iterable[int], margin: float) -> Scene:
     ([[0.3, 0.4]], [[False, True]])
     """
     index, wide, robot = list(robots), scene.radius.copy(), np.zeros(scene.shape, dtype=np.bool_)
-    wide[:, index] += margin
-    robot[:, index] = True
+    for agent in index:
+        wide[:, agent] += margin
+        robot[:, agent] = True
     return scene.replace(radius=wide, robot=robot if index else None)
 
 
@@ -163,12 +164,7 @@ def move_robots(
     position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
     new = dict(twists)
     for robot, command in commands.items():
-        old = Pose(before.position[:, robot].copy(), before.heading[:, robot].copy())
-        pose, new[robot] = drives[robot].step(old, twists[robot], command, dt)
-        put_robot(
-            robot, before.active, before.position, before.heading, pose.position, pose.heading,
-            new[robot].forward, new[robot].left, position, velocity, heading,
-        )  # fmt: skip
+        new[robot] = drives[robot].move(robot, before, twists[robot], command, dt, (position, velocity, heading))
     return after.replace(position=position, velocity=velocity, heading=heading), new
 
 

@@ -229,7 +229,7 @@ def nearest_of_rows(
         order = search_again(seekers, visible, E, agent, number, search_in_grid, SMALL)
     elif count <= SMALL:
         order = IN_ORDER[:count]
-        _compare_part(0, count, *seekers, visible, A, agent, number)
+        compare_rows(0, count, *seekers, visible, A, agent, number)
     else:
         order = np.arange(count, dtype=COUNT)
         period = E if shared else find_period(seekers[0].reshape(E, A, 2), visible.reshape(E, A))
@@ -247,11 +247,11 @@ def _compare(
 ) -> None:  # fmt: skip
     for part in prange((len(number) + CHUNK - 1) // CHUNK):
         end = min((part + 1) * CHUNK, len(number))
-        _compare_part(part * CHUNK, end, place, reach, capacity, asking, seen, A, agent, number)
+        compare_rows(part * CHUNK, end, place, reach, capacity, asking, seen, A, agent, number)
 
 
 @kernel
-def _compare_part(
+def compare_rows(
     begin: int, end: int, place: Floats, reach: Floats, capacity: Rows, asking: NDArray[np.bool_],
     seen: NDArray[np.bool_], A: int, agent: Rows, number: Rows,
 ) -> None:  # fmt: skip

@@ -4,15 +4,30 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
-from crowdbot.models.agent_rows import LIMIT, RADIUS, VX, VY, WISH_X, WISH_Y, X, Y, begin_rows
+from crowdbot.core.neighbors.cell_grid import SMALL
+from crowdbot.core.neighbors.search import CROWD, IN_ORDER, compare_rows
+from crowdbot.models.agent_rows import (
+    COLUMNS,
+    LIMIT,
+    RADIUS,
+    VX,
+    VY,
+    WISH_X,
+    WISH_Y,
+    X,
+    Y,
+    begin_rows,
+    fill_rows,
+    speed_limit,
+)
 from crowdbot.models.model import CrowdModel, launch
 from crowdbot.models.parameter_rows import parameter_rows
-from crowdbot.typing import Bools, Floats
+from crowdbot.typing import Bools, Floats, Rows
 
 from .linear_program import best_velocity, clip_speed
 from .orca_lines import (
@@ -33,6 +48,7 @@ SHORTEST = 1e-3
 
 
 HORIZONS = ("time_horizon", "time_horizon_walls")
+NEIGHBORS = ("neighbor_distance", "max_neighbors")
 
 
 @kernel(parallel=True)
@@ -104,6 +120,40 @@ def _choose_part(
         out[row, 0], out[row, 1] = best_x, best_y
 
 
+@kernel
+def _choose_few(
+    position: Floats, velocity: Floats, radius: Floats, own_limit: Floats, limit: Floats, aim: Floats, speed: Floats,
+    active: Bools, visible: Bools, external: Bools, given: bool, dt: float, reciprocal: bool, reach: Floats,
+    horizons: Floats, edges: Edges, order: Rows, out: Floats,
+) -> bool:  # fmt: skip
+    """Choose the next velocity of every agent of small crowds in one call; return whether a value is not allowed.
+
+    A call from Python takes longer than the work for some agents, so rows, neighbours and velocities are one kernel.
+    """
+    E, A = active.shape
+    begin, count, widest = int(np.int64(0)), E * A, int(np.int64(0))
+    agents, walking, seen = np.empty((count, COLUMNS)), np.empty(count, np.bool_), np.empty(count, np.bool_)
+    chosen = out.reshape(count, 2)
+    if fill_rows(
+        begin, count, position, velocity, radius, own_limit, limit, aim, speed, active, visible, external, given, dt,
+        agents, walking, seen, chosen,
+    ):  # fmt: skip
+        return True
+    far, most, others = np.empty(count), np.empty(count, np.int32), external.reshape(count)
+    for row in range(count):
+        own = row if len(reach) > 1 else 0
+        far[row], most[row] = reach[own, 0], np.int32(np.rint(reach[own, 1]))
+        widest = max(widest, int(most[row]))
+    if reciprocal:
+        others = np.zeros(count, np.bool_)
+    widest = min(widest, A - 1)
+    agent, number = np.empty((count, widest), np.int32), np.empty(count, np.int32)
+    compare_rows(begin, count, position.reshape(count, 2), far, most, walking, seen, A, agent, number)
+    near: Any = (agent.reshape(E, A, widest), number.reshape(E, A), order)
+    _choose_part(begin, count, agents, walking, others, horizons, near, edges, dt, chosen)
+    return False
+
+
 @dataclass(frozen=True)
 class ORCA(CrowdModel):
     """Optimal reciprocal collision avoidance: each pair shares the smallest velocity change that avoids a collision.
@@ -154,10 +204,23 @@ class ORCA(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        start = begin_rows(scene, dt, self.max_speed)
+        E, A = shape = scene.shape
+        if 0 < E * A <= SMALL and A < CROWD and 0.0 < dt < math.inf:
+            position, velocity, radius, own_limit, *others = scene.step_arrays()
+            limit = own_limit if self.max_speed is None else speed_limit(self.max_speed, scene)
+            out = np.empty((E, A, 2))
+            reach, horizons = parameter_rows(self, NEIGHBORS, shape), parameter_rows(self, HORIZONS, shape)
+            given, edges = scene.preferred_velocity is not None, tuple(edges_of(scene.walls))
+            values: Any = (
+                position, velocity, radius, own_limit, limit, *others, given, float(dt), self.reciprocal, reach,
+                horizons, edges, IN_ORDER[: E * A], out,
+            )  # fmt: skip
+            if not _choose_few(*values):
+                return out
+        start = begin_rows(scene, dt, self.max_speed)  # raises the error for a wrong value
         near = start.neighbors(self.neighbor_distance, self.max_neighbors)
         external = np.zeros_like(start.external) if self.reciprocal else start.external
         horizons = parameter_rows(self, HORIZONS, scene.shape)
-        values = start.agents, start.walking, external, horizons, near, edges_of(scene.walls), float(dt)
-        launch(_choose, _choose_part, start.out, *values)
+        rows = start.agents, start.walking, external, horizons, near, edges_of(scene.walls), float(dt)
+        launch(_choose, _choose_part, start.out, *rows)
         return start.velocity

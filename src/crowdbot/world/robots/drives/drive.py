@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Twist, check_number, kernel, storable
-from crowdbot.typing import Floats
+from crowdbot.core import InputError, Pose, Scene, Twist, check_number, kernel, storable
+from crowdbot.typing import Bools, Floats
+
+MovedAgents = tuple[Floats, Floats, Floats]
+"""Positions ``[E, A, 2]`` [m], velocities ``[E, A, 2]`` [m/s] and headings ``[E, A]`` [rad] of all agents."""
 
 
 @kernel
@@ -100,6 +104,36 @@ def put_robot(
         out_velocity[e, robot, 1] = sin * forward[e] + cos * left[e]
 
 
+@kernel
+def _move_differential(
+    robot: int, active: Bools, old_place: Floats, old_heading: Floats, forward: Floats, turn: Floats, wanted: Floats,
+    wanted_turn: Floats, top: float, most: float, aside: float, push: float, spin: float, dt: float, out: Floats,
+    out_place: Floats, out_velocity: Floats, out_heading: Floats,
+) -> None:  # fmt: skip
+    """Move an agent with a differential drive in the arrays of a scene, and write its new twists."""
+    place, heading = old_place[:, robot].copy(), old_heading[:, robot].copy()
+    _differential(place, heading, forward, turn, wanted, wanted_turn, top, most, aside, push, spin, dt, out)
+    put_robot(
+        robot, active, old_place, old_heading, place, heading, out[0], out[2], out_place, out_velocity, out_heading
+    )
+
+
+@kernel
+def _move_omnidirectional(
+    robot: int, active: Bools, old_place: Floats, old_heading: Floats, forward: Floats, turn: Floats, left: Floats,
+    wanted: Floats, wanted_turn: Floats, wanted_left: Floats, top: float, most: float, push: float, spin: float,
+    dt: float, out: Floats, out_place: Floats, out_velocity: Floats, out_heading: Floats,
+) -> None:  # fmt: skip
+    """Move an agent with an omnidirectional drive in the arrays of a scene, and write its new twists."""
+    place, heading = old_place[:, robot].copy(), old_heading[:, robot].copy()
+    _omnidirectional(
+        place, heading, forward, turn, left, wanted, wanted_turn, wanted_left, top, most, push, spin, dt, out
+    )
+    put_robot(
+        robot, active, old_place, old_heading, place, heading, out[0], out[2], out_place, out_velocity, out_heading
+    )
+
+
 @storable
 @dataclass(frozen=True)
 class Twists:
@@ -128,6 +162,10 @@ class Twists:
         """
         if twist.__class__ is Twists and twist._count == count:
             return twist
+        if type(twist) is Twist and type(sum(twist)) is float and math.isfinite(sum(twist)):
+            columns = np.empty((3, count))
+            columns[0], columns[1], columns[2] = twist
+            return cls.of_columns(columns)
         found = cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
         if cls is Twists:
             object.__setattr__(found, "_count", count)
@@ -168,6 +206,24 @@ class Drive(ABC):
         Raises:
             InputError: a command is not finite or ``dt`` is not positive.
         """
+
+    def move(self, robot: int, before: Scene, twist: Twists, command: Twists, dt: float, after: MovedAgents) -> Twists:
+        """Move an agent of a scene by a step of ``dt`` [s], and return its new twist; an absent robot stands still.
+
+        Args:
+            robot: index of the agent.
+            before: scene at the start of the step.
+            twist, command: current and commanded twist.
+            dt: time step [s].
+            after: positions, velocities and headings of all agents after the step; modified in place.
+        """
+        old = Pose(before.position[:, robot].copy(), before.heading[:, robot].copy())
+        pose, new = self.step(old, twist, command, dt)
+        put_robot(
+            robot, before.active, before.position, before.heading, pose.position, pose.heading, new.forward, new.left,
+            *after,
+        )  # fmt: skip
+        return new
 
 
 @dataclass(frozen=True)
@@ -213,11 +269,26 @@ class DifferentialDrive(Drive):
         check_step(dt)
         place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
         columns = np.empty((3, len(heading)))
-        limits = (float(self.max_speed), float(self.max_turn_rate), float(self.max_lateral_acceleration))
-        changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
         now = (twist.forward, twist.turn, wanted.forward, wanted.turn)
-        _differential(place, heading, *now, *limits, *changes, dt, columns)
+        values: Any = (place, heading, *now, *self._numbers(dt), columns)
+        _differential(*values)
         return Pose(place, heading), Twists.of_columns(columns)
+
+    def move(self, robot: int, before: Scene, twist: Twists, command: Twists, dt: float, after: MovedAgents) -> Twists:
+        """Move an agent of a scene, in one kernel; see :meth:`Drive.move`."""
+        if type(self).step is not DifferentialDrive.step:
+            return super().move(robot, before, twist, command, dt, after)
+        wanted, columns = Twists.of(command, len(before.position)), np.empty((3, len(before.position)))
+        check_step(dt)
+        now = (twist.forward, twist.turn, wanted.forward, wanted.turn)
+        start = before.active, before.position, before.heading
+        values: Any = (robot, *start, *now, *self._numbers(dt), columns, *after)
+        _move_differential(*values)
+        return Twists.of_columns(columns)
+
+    def _numbers(self, dt: float) -> tuple[float, ...]:
+        limits = (float(self.max_speed), float(self.max_turn_rate), float(self.max_lateral_acceleration))
+        return (*limits, self.max_acceleration * dt, self.max_turn_acceleration * dt, dt)
 
 
 @dataclass(frozen=True)
@@ -246,11 +317,26 @@ class Omnidirectional(Drive):
         check_step(dt)
         place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
         columns = np.empty((3, len(heading)))
-        limits = (float(self.max_speed), float(self.max_turn_rate))
-        changes = (self.max_acceleration * dt, self.max_turn_acceleration * dt)
         now = (twist.forward, twist.turn, twist.left, wanted.forward, wanted.turn, wanted.left)
-        _omnidirectional(place, heading, *now, *limits, *changes, dt, columns)
+        values: Any = (place, heading, *now, *self._numbers(dt), columns)
+        _omnidirectional(*values)
         return Pose(place, heading), Twists.of_columns(columns)
+
+    def move(self, robot: int, before: Scene, twist: Twists, command: Twists, dt: float, after: MovedAgents) -> Twists:
+        """Move an agent of a scene, in one kernel; see :meth:`Drive.move`."""
+        if type(self).step is not Omnidirectional.step:
+            return super().move(robot, before, twist, command, dt, after)
+        wanted, columns = Twists.of(command, len(before.position)), np.empty((3, len(before.position)))
+        check_step(dt)
+        now = (twist.forward, twist.turn, twist.left, wanted.forward, wanted.turn, wanted.left)
+        start = before.active, before.position, before.heading
+        values: Any = (robot, *start, *now, *self._numbers(dt), columns, *after)
+        _move_omnidirectional(*values)
+        return Twists.of_columns(columns)
+
+    def _numbers(self, dt: float) -> tuple[float, ...]:
+        limits = (float(self.max_speed), float(self.max_turn_rate))
+        return (*limits, self.max_acceleration * dt, self.max_turn_acceleration * dt, dt)
 
 
 def integrate_twist(pose: Pose, twist: Twists, dt: float) -> Pose:
