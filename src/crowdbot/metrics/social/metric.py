@@ -110,10 +110,11 @@ _HEAD = """# Metrics
 This page is generated from the table of metrics: `python -m crowdbot.metrics.social.page docs/reference/metrics.md`.
 
 All metrics come from logs: positions and velocities of the robot and of people over time. They apply to simulated
-episodes and to recordings of real robots. The log counts up to the first sample at the
-goal. `d` is the clearance, surface to surface, negative for overlap. `r` and `r_i` are the radii of the robot and of a
-person, `v` and `v_i` their velocities, `S` is 1 for success, `L` the length of the path, `T` its time, `mu` the reduced
-mass and `k` the stiffness of the body region.
+episodes and to recordings of real robots. The log counts up to the first sample at the goal. `d` is the clearance,
+surface to surface, negative for overlap: from the outline of the robot, or its disc if it has none, to the disc of a
+person. `r` and `r_i` are the radii of the robot (of the disc around its outline) and of a person, `v` and `v_i` their
+velocities, `S` is 1 for success, `L` the length of the path, `T` its time, `mu` the reduced mass and `k` the stiffness
+of the body region.
 
 Statistics over runs are explained in [Compare navigators](../how-to/evaluate.md). "Better" says which direction is
 better; `none` marks a covariate, which describes the situation. A value that is not defined is NaN, and the run does
